@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from typing import Any
 
 import pytest
 
 from substructures import Definition, TreeSpec, catalogue, derive
+from substructures.documents import read_json, write_json
 from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import Equivalence, equivalence
@@ -98,6 +100,20 @@ def test_the_culprit_is_named(pattern: str, new: str, body: str, parameters: set
     assert not found.equal
     assert {c.body for c in found.culprits} == {body}
     assert {c.parameter for c in found.culprits} & parameters
+
+
+def swinging(mass: float) -> Side:
+    joint = {"type": "revolute", "coordinate": "q", "theta": "pi/2"}
+    body = {"name": "b", "parent": "base", "mass": mass, "com": [0.3, 0, 0], "joint": joint}
+    body["inertia"] = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
+    return Side.of_part(derive(Definition.read({"name": "a", "bodies": [body]})))
+
+
+@pytest.mark.parametrize("mass", [2, 1.000001])
+def test_what_differs_is_told_as_json(mass: float) -> None:
+    told = read_json(write_json(equivalence(swinging(1), swinging(mass)).plain()))
+    assert told["equal"] is False
+    assert told["culprits"] == [{"body": "b", "parameter": "mass", "a": 1, "b": pytest.approx(Decimal(str(mass)))}]
 
 
 def test_armature_is_named() -> None:
