@@ -36,7 +36,8 @@ from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
-from substructures.mechanics.closure_rows import rank_of, row_sizes
+from substructures.mechanics.closure_rows import RowBounds, rank_of, row_sizes
+from substructures.quantities.closure_columns import row_bounds
 from substructures.tree.model import Model
 
 ALL = slice(None)
@@ -122,11 +123,21 @@ class Constrained:
 
         if not self.labels:
             return np.ones(0), np.ones(0)
-        found = row_sizes(self.model.joints, self.conditions.q[None], look)
+        found = row_sizes(self.model.joints, self.conditions.q[None], look, self._bounds)
         width = found.width[0]
         # of prescribed coordinates the value says nothing
         width[self.closed :] = 1.0
         return found.reach[0], width
+
+    def _bounds(self, places: Array) -> RowBounds:
+        """What the geometry allows; rows of prescribed coordinates are as long as they are."""
+        columns, spans = np.zeros((len(places), *self.G.shape)), np.zeros((len(places), len(self.labels)))
+        if self.closed:
+            names = self.model.coordinates
+            values = self.conditions.values | {name: places[:, a] for a, name in enumerate(names)}
+            found = row_bounds(self.model, values, len(places))
+            columns[:, : self.closed], spans[:, : self.closed] = found
+        return RowBounds(columns, spans)
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
@@ -178,6 +189,11 @@ class Constrained:
     def opening(self) -> float:
         """The largest |phi| over its width."""
         return float(np.abs(self.phi / self.width).max(initial=0))
+
+    @property
+    def opening_rate(self) -> float:
+        """The largest |G q' + phi_t| over the width of its row [per s]."""
+        return float(np.abs(self.velocity_residual / self.width).max(initial=0))
 
     @property
     def balanced(self) -> Array:

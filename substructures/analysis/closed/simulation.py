@@ -247,7 +247,7 @@ def _judged_quantities(s: Constrained) -> dict[str, Any]:
         "position_residual": np.abs(s.phi).max(initial=0),
         "velocity_residual": np.abs(s.velocity_residual).max(initial=0),
         "opening": s.opening,
-        "opening_rate": np.abs(s.velocity_residual / s.width).max(initial=0),
+        "opening_rate": s.opening_rate,
     }
 
 
