@@ -212,6 +212,13 @@ class Constrained:
         return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
 
     @property
+    def effort(self) -> float:
+        """|Q_a| |q^a|, angles no less than 1: what forces do on the way to here, by which rounding is known [J]."""
+        turns = np.array([joint == "R" for joint in self.model.joints])
+        way = np.where(turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
+        return float(np.abs(self._out["forces"][0]) @ way)
+
+    @property
     def lost_power(self) -> float:
         """(Q + dV/dq) q' + dV/dt: power of the applied forces that have no constant potential [W]."""
         return float(self._out[POWER][0])

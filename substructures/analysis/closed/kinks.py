@@ -53,7 +53,9 @@ def require_smooth(motion: Columns, places: Columns, span: tuple[float, float], 
         before, after = motion(np.array([a, b]))[:, :2]
         # what is more than a smooth motion changes by
         t = (a + b) / 2
-        _require(t if abs(t) > 4 * h else 0.0, before, after, JUMP * greatest[:2] + 4 * (b - a) * greatest[1:], pointer, unit)
+        _require(
+            t if abs(t) > 4 * h else 0.0, before, after, JUMP * greatest[:2] + 4 * (b - a) * greatest[1:], pointer, unit
+        )
 
 
 def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, float]]:
@@ -74,7 +76,9 @@ def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, f
 
 def _require(t: float, before: Array, after: Array, allowed: Array, pointer: str, unit: str) -> None:
     """``before``, ``after``: value and velocity on both sides of t."""
-    for what, unit_of, a, b, most in zip(("it", "its velocity"), (unit, f"{unit}/s"), before, after, allowed, strict=True):
+    for what, unit_of, a, b, most in zip(
+        ("it", "its velocity"), (unit, f"{unit}/s"), before, after, allowed, strict=True
+    ):
         if abs(b - a) > most:
             message = (
                 f"the given motion has a kink at t = {t:.6g} s: {what} jumps from {a:.6g} to {b:.6g} {unit_of}, which "
