@@ -99,10 +99,12 @@ class ClosedSearch(RestSearch):
 
 
 def is_met(residual: Array, K: Array) -> bool:
-    """Whether forces, beside what a unit displacement causes (n, k), and openings, all over their units, are none."""
+    """Whether forces, each beside what a unit displacement causes there (n, k), and openings, all over their units, are
+    none.
+    """
     forces, openings = np.abs(residual[: len(K)]), np.abs(residual[len(K) :])
-    size = max(1.0, float(np.abs(K).max(initial=0)))
-    return bool(forces.max(initial=0) <= RESIDUAL * size and openings.max(initial=0) <= RESIDUAL)
+    sizes = np.maximum(1.0, np.abs(K).max(axis=1, initial=0))
+    return bool((forces <= RESIDUAL * sizes).all() and openings.max(initial=0) <= RESIDUAL)
 
 
 def multiplier_units(G: Array, reach: Array, unit: Array) -> Array:
