@@ -341,3 +341,41 @@ def test_what_closed_motions_refuse() -> None:
     with pytest.raises(InvalidInput) as error:
         simulate(slider_crank({}), at(model, piston=0.18), (0, 1), friction="exact")
     assert [fault.pointer for fault in error.value.faults] == ["/friction"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("torque", [0, 1, 4.9, -4.999])
+def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
+    """5 N m hold what is less: no energy is there, and none is the scale of another."""
+    joint = {"type": "revolute", "coordinate": "q1", "friction": {"coulomb": 5, "velocity": 0.001}}
+    bodies = [
+        {"name": "crank", "parent": "base", "joint": joint, "mass": 1, "com": [0.1, 0, 0]},
+        {
+            "name": "coupler",
+            "parent": "crank",
+            "joint": {"type": "revolute", "coordinate": "q2", "d": 0.2},
+            "mass": 1,
+            "com": [0.25, 0, 0],
+        },
+        {
+            "name": "rocker",
+            "parent": "base",
+            "joint": {"type": "revolute", "coordinate": "q3", "placement": {"position": [0.45, 0, 0]}},
+            "mass": 1,
+            "com": [0.2, 0, 0],
+        },
+    ]
+    ports = [
+        {"name": "e", "body": "coupler", "position": [0.5, 0, 0]},
+        {"name": "r", "body": "rocker", "position": [0.4, 0, 0]},
+    ]
+    pin = {"name": "pin", "type": "pin", "from": "f.e", "to": "f.r"}
+    document = {"gravity": [0, 0, 0], "instances": [{"name": "f", "substructure": "bar"}], "closures": [pin]}
+    model = tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
+    inputs = {"tau.f.q1": torque}
+    motion = simulate(model, [0.5, 0.09, 1.2], (0, 0.3), count=4, inputs=inputs, friction="exact", reduction=method)
+    assert motion.is_right, motion.checks
+    np.testing.assert_allclose(motion.q, np.tile(motion.q[0], (4, 1)), atol=1e-14)
+    energy = next(check for check in motion.checks if check.name == "energy")
+    assert energy.relative < 1e-12
+    assert energy.scale > 0.1

@@ -249,7 +249,7 @@ def test_optimal_controls_are_judged_along_accurate_motions() -> None:
     problem: Plain = {"controls": ["tau.x.q1"], "cost": Cost("tau.x.q1^2"), "horizon": 2, "intervals": 4, "q": [0]}
     problem |= {"end": End([0.5], [0])}
     coarse, fine = optimal_control(model, **problem), optimal_control(model, **problem, steps=8)
-    assert (coarse.status, coarse.is_right) == ("optimal", False)
+    assert (coarse.status, coarse.is_right) == ("failed", False)
     assert "'steps'" in coarse.message
     assert (fine.status, fine.is_right) == ("optimal", True), fine.checks
     assert {check.name for check in fine.checks} == {"end", "stationarity", "cost", "q", "qd"}
