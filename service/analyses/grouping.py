@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from service.analyses.binding import bound
-from service.analyses.printing import JSON, TO_READ, Style, model_quantity, text_of
+from service.analyses.printing import JSON, TO_READ, Style, text_of
 from service.analyses.source import Source
 from service.cache import Cache
 from service.refusals import unprocessable
@@ -66,7 +66,7 @@ def grouped_text(source: Source, quantity: str, style: Style, interface: Interfa
     except InvalidInput as error:
         raise error.moved(lambda _: "/query/group") from None
     parameters = found.model.parameters
-    program = bound(model_quantity(Sources(found.model), quantity), parameters, style.bind)
+    program = bound(Sources(found.model).formulas(quantity), parameters, style.bind)
     definitions = Definitions(
         bound(found.definitions, parameters, style.bind), {s.name: cut(sum_of(s.standard)) for s in found.symbols}
     )

@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from substructures.client.frames import Array, Tabular, labelled, states
 from substructures.formats.arrays import nested, view_npz
+from substructures.quantities.quantity import LABELS
 
 #: what an evaluation answers beside quantities
-BESIDE = (
-    *("coordinates", "count", "digest", "frames", "columns", "joints", "loads"),
-    *("failures", "warnings", "range", "states"),
-)
+BESIDE = ("coordinates", "count", "digest", *LABELS, "failures", "warnings", "range", "states")
 
 
 class Evaluation(Tabular):

@@ -14,7 +14,7 @@ from substructures.mechanics.accelerations import CLOSED, closed_solve, conditio
 from substructures.mechanics.closure_rows import POSITIONS, RowSizes, row_sizes
 from substructures.quantities.derivatives import FD
 from substructures.quantities.formulas import DYNAMICS
-from substructures.quantities.table import CONDITION
+from substructures.quantities.quantity import CONDITION
 from substructures.tree.model import Model
 
 #: numbers of a block where an intermediate result is larger than the result

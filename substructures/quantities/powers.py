@@ -43,6 +43,11 @@ class PowerModel:
     rows: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
 
+    @property
+    def labels(self) -> Mapping[str, Any]:
+        """Names by axis."""
+        return {"loads": self.rows}
+
 
 def powers(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> PowerModel:
     """The powers of a tree of stored parts (by instance name).

@@ -61,6 +61,11 @@ class ReactionModel:
     rows: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
 
+    @property
+    def labels(self) -> Mapping[str, Any]:
+        """Names by axis."""
+        return {"joints": self.rows}
+
     def of(self, joints: Sequence[str] | None) -> ReactionModel:
         """Of some rows alone. Raises InvalidArgument (``/joints/i``, ``unknown-joint``)."""
         return self if joints is None else _chosen(_ByDigest(self), read_joints(joints, self.rows))
