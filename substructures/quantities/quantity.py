@@ -144,6 +144,7 @@ PROGRAMS: dict[str, Derivation] = {
     REGRESSOR: Derivation("regressor.regressor", of_parts=True),
     REACTIONS: Derivation("reactions.reactions", of_parts=True),
     POWERS: Derivation("powers.powers", of_parts=True),
+    "centroidal": Derivation("centroidal.centroidal", of_parts=True),
 }
 #: those that are formed from a model alone, and from the parts of a tree
 DERIVED = tuple(name for name, made in PROGRAMS.items() if not made.of_parts)
@@ -243,6 +244,15 @@ _ROWS = (
         options=("joints",),
     ),
     _row(POWERS, "t q qd u p", "loads", "W"),
+    _row(
+        "mass_centre",
+        "q qd p",
+        source="centroidal",
+        arrays=(
+            Array("mass_centre_position", "axes", "m", "position"),
+            Array("mass_centre_velocity", "axes", "m/s", "velocity"),
+        ),
+    ),
     # groups of formulas, outputs of parts, and what analyses make
     _stored("closures", "q qd p", arrays=(), written=_CLOSURES, is_number=False),
     _row("interface", "q p", source=PART, arrays=(), written=_INTERFACE, is_number=False),

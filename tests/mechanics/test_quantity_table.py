@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -14,7 +15,8 @@ from substructures.certificate.served import SERVED
 from substructures.client.numbers import Evaluation as Answer
 from substructures.errors import InvalidArgument
 from substructures.export import exported_model, interface_of_model
-from substructures.export.interface import signature
+from substructures.export.fmu.variables import layout_of
+from substructures.export.interface import Interface, signature
 from substructures.printers.names import LETTERS, RAISED
 from substructures.quantities import quantity as table
 from substructures.quantities.evaluation import Direction, Evaluation, evaluate
@@ -142,6 +144,24 @@ def test_a_rod_has_its_textbook_moments() -> None:
     given = Sources(couple(spec, parts), of_parts=of_parts(spec, parts))
     found = evaluate(given.model, ["moments_of_inertia"], [0.3], sources=given)
     np.testing.assert_allclose(found["moments_of_inertia"], [np.diag([0, 4, 4])], rtol=1e-14, atol=1e-14)
+
+
+def test_outputs_of_an_fmu_have_the_units_of_the_rows() -> None:
+    given = sources(3)
+    interface = interface_of_model(given.model)
+    names = ["forward_dynamics", "position", "lagrangian", "power", "total_momentum", "mass_centre"]
+    exported = exported_model(given, interface, names, "demo")
+    found = layout_of(replace(exported, interface=with_numbers(interface))).variables
+    units = {each.name: each.unit for each in found if each.causality == "output"}
+    expected = {"lagrangian": "J", "power": "W", "linear": "kg m/s", "mass_centre_velocity": "m/s"}
+    assert expected.items() <= units.items()
+    assert units[f"{given.model.frames[1]}.position"] == "m"
+
+
+def with_numbers(interface: Interface) -> Interface:
+    """All parameters with a value."""
+    p = interface.vectors["p"]
+    return replace(interface, vectors={**interface.vectors, "p": replace(p, defaults=(1.0,) * len(p))})
 
 
 def test_letters_are_in_the_rows() -> None:

@@ -1,0 +1,91 @@
+"""The mass centre of a tree: of all that its joints move, without what is fixed to the ground.
+
+    m = sum of m_k        r = (sum of m_k r_k + R_k^T s_k) / m        r' = p_a q'^a / m
+
+over the carriers k, whose masses the definitions put where they are (m_k, s_k about the body frame origin r_k, in its
+axes), with the linear momenta p_a of unit velocities, in the axes of the world.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from functools import reduce
+from typing import Any
+
+from substructures.certificate.centroidal import centroidal_outputs
+from substructures.errors import InvalidArgument, TooLarge
+from substructures.expr.program import Formulas, Program, array, program
+from substructures.mechanics.kinematics import INTERFACE
+from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, exactly, scale, transpose
+from substructures.part.outputs import over_formulas
+from substructures.part.part import MAX_NODES, Part
+from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.certificate import certify_rows
+from substructures.tree.coupling import OWN, Coupled, couple_parts
+from substructures.tree.document import TreeSpec
+from substructures.tree.model_outputs import MOMENTUM, model_outputs, rate_symbols
+
+
+@dataclass(frozen=True)
+class CentroidalModel:
+    """``program``: outputs ``mass_centre_position`` (3,) [m] and ``mass_centre_velocity`` (3,) [m/s] in the world,
+    functions of q, q' and free parameters.
+    """
+
+    program: Program
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+
+    @property
+    def labels(self) -> Mapping[str, Any]:
+        """No axis has places of its own."""
+        return {}
+
+
+def centroidal(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> CentroidalModel:
+    """The mass centre of a tree of stored parts (by instance name).
+
+    Raises InvalidDocument with pointers into the tree document, InvalidArgument where nothing that moves has mass,
+    TooLarge for more than ``max_nodes`` operations, and VerificationFailed unless it is what the documents say.
+    """
+    assembly = assemble(spec, parts)
+    try:
+        outputs = _outputs(assembly)
+    except ZeroDivisionError:
+        raise division_by_zero(spec, assembly) from None
+    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge("the mass centre (in operations)", len(result), max_nodes)
+    definitions = {name: part.definition for name, part in parts.items()}
+    certify_rows("mass centre", spec, definitions, result, (), centroidal_outputs)
+    return CentroidalModel(result, assembly.parameters)
+
+
+def _outputs(assembly: Assembly) -> dict[str, Formulas]:
+    coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity, christoffel=False)
+    rates, accelerations = rate_symbols(assembly)
+    momenta = model_outputs(assembly, coupled, rates, accelerations, frozenset(MOMENTUM))
+    masses = list(_masses(assembly, coupled))
+    m: Scalar = sum(m_k for m_k, _ in masses)
+    moment = reduce(add, (moment_k for _, moment_k in masses), ZERO)
+    if exactly(m, 0):
+        raise InvalidArgument.at("/quantities", "no-mass", "nothing that moves has mass: there is no mass centre")
+    lift = assembly.scope.graph.lift
+    p = momenta["linear_momentum"].entries
+    total: list[Scalar] = [sum(p.get((a, i), 0) * rate for a, rate in enumerate(rates)) for i in range(3)]
+    return {
+        "mass_centre_position": array((3,), lambda i: lift(moment[i]) / lift(m)),
+        "mass_centre_velocity": array((3,), lambda i: lift(total[i]) / lift(m)),
+    }
+
+
+def _masses(assembly: Assembly, coupled: Coupled) -> Iterator[tuple[Scalar, Vector]]:
+    """m_k and m_k r_k + R_k^T s_k of every carrier that moves, about the world's origin."""
+    run = over_formulas(assembly.scope.graph)
+    for m, here in zip(assembly.mounted, coupled.placed, strict=True):
+        own = run(m.part, m.bindings, OWN)
+        for carrier in (*range(m.part.dof), *([INTERFACE] if here.columns[INTERFACE] else [])):
+            # about the origin of the joint frame, z = tau e3, and out of its axes
+            tau = 0 if carrier == INTERFACE else here.outputs.scalar("tau", carrier)
+            mass, pose = own.own_inertia(carrier).shifted((0, 0, tau)), here.pose(carrier)
+            yield mass.m, add(scale(mass.m, pose.r), apply(transpose(pose.R), mass.s))
