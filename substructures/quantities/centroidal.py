@@ -1,9 +1,13 @@
-"""The mass centre of a tree: of all that its joints move, without what is fixed to the ground.
+"""The mass centre of a tree, and its momentum about it: of all that moves, without what is fixed to the ground.
 
     m = sum of m_k        r = (sum of m_k r_k + R_k^T s_k) / m        r' = p_a q'^a / m
 
 over the carriers k, whose masses the definitions put where they are (m_k, s_k about the body frame origin r_k, in its
-axes), with the linear momenta p_a of unit velocities, in the axes of the world.
+axes), with the linear momenta p_a of unit velocities, in the axes of the world. The centroidal momentum matrix A has
+the columns (p_a, L_a - r x p_a), L_a about the world's origin, so that A q' is the momentum and the moment of momentum
+about the mass centre.
+
+Source: D. E. Orin, A. Goswami, S.-H. Lee, Centroidal dynamics of a humanoid robot, Autonomous Robots 35, 2013.
 """
 
 from __future__ import annotations
@@ -17,7 +21,7 @@ from substructures.certificate.centroidal import centroidal_outputs
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.kinematics import INTERFACE
-from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, exactly, scale, transpose
+from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, cross, exactly, scale, sub, transpose
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
@@ -29,8 +33,9 @@ from substructures.tree.model_outputs import MOMENTUM, model_outputs, rate_symbo
 
 @dataclass(frozen=True)
 class CentroidalModel:
-    """``program``: outputs ``mass_centre_position`` (3,) [m] and ``mass_centre_velocity`` (3,) [m/s] in the world,
-    functions of q, q' and free parameters.
+    """``program``: outputs ``mass_centre_position`` (3,) [m] and ``mass_centre_velocity`` (3,) [m/s] in the world, and
+    ``centroidal_momentum_matrix`` (6, n): three rows of momentum, then three of moment of momentum; functions of q, q'
+    and free parameters.
     """
 
     program: Program
@@ -71,12 +76,24 @@ def _outputs(assembly: Assembly) -> dict[str, Formulas]:
     if exactly(m, 0):
         raise InvalidArgument.at("/quantities", "no-mass", "nothing that moves has mass: there is no mass centre")
     lift = assembly.scope.graph.lift
-    p = momenta["linear_momentum"].entries
-    total: list[Scalar] = [sum(p.get((a, i), 0) * rate for a, rate in enumerate(rates)) for i in range(3)]
+    p = [_row(momenta["linear_momentum"], a) for a in range(len(rates))]
+    total: list[Scalar] = [sum(p_a[i] * rate for p_a, rate in zip(p, rates, strict=True)) for i in range(3)]
+    x, y, z = (lift(s) / lift(m) for s in moment)
+    r = x, y, z
+    columns = dict[tuple[int, ...], Scalar]()
+    for a in range(len(rates)):
+        p_a, L_a = (_row(momenta[name], a) for name in MOMENTUM)
+        columns |= {(i, a): x for i, x in enumerate((*p_a, *sub(L_a, cross(r, p_a))))}
     return {
-        "mass_centre_position": array((3,), lambda i: lift(moment[i]) / lift(m)),
+        "centroidal_momentum_matrix": Formulas((6, len(rates)), columns),
+        "mass_centre_position": array((3,), lambda i: r[i]),
         "mass_centre_velocity": array((3,), lambda i: lift(total[i]) / lift(m)),
     }
+
+
+def _row(momenta: Formulas, a: int) -> Vector:
+    x, y, z = (momenta.entries.get((a, i), 0) for i in range(3))
+    return x, y, z
 
 
 def _masses(assembly: Assembly, coupled: Coupled) -> Iterator[tuple[Scalar, Vector]]:

@@ -5,8 +5,8 @@ formulas and what it needs. Signatures of exports, units of FMUs, columns of tab
 and lists of names all come from here. Nothing is imported: clients and printers read the same rows.
 
 Axes are named by the member of an answer that lists their places: ``coordinates``, ``frames`` (bodies and ports),
-``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures); ``axes`` are x, y, z, and
-digits a length.
+``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures); those of FIXED have the
+same names everywhere, and digits are a length.
 """
 
 from __future__ import annotations
@@ -22,9 +22,9 @@ MODEL, CONDITION, FORWARD = "model", "condition", "forward_dynamics"
 REGRESSOR, REACTIONS, POWERS = "regressor", "reactions", "powers"
 #: formulas that follow from a model by an analysis, and outputs of a part: not numbers of a tree
 ANALYSIS, PART = "analysis", "part"
-COORDINATES, FRAMES, AXES = "coordinates", "frames", "axes"
-#: axes whose places a tree names by itself, so that answers do not list them
-PLAIN = (COORDINATES, AXES)
+COORDINATES, FRAMES = "coordinates", "frames"
+#: axes whose places have the same names in every tree
+FIXED = {"axes": ("x", "y", "z"), "momenta": ("px", "py", "pz", "Lx", "Ly", "Lz")}
 #: of what is not in the table: all but further symbols
 EVERYTHING = ("t", "q", "qd", "qdd", "u", "p")
 _CLOSURES = ("closure.residual", "closure.jacobian", "closure.acceleration", "closure.direction")
@@ -51,7 +51,8 @@ class Array:
 
     def shape(self, sizes: Mapping[str, int]) -> tuple[int, ...]:
         """Lengths of the axes, by their names in ``sizes``."""
-        return tuple(int(axis) if axis.isdigit() else sizes[axis] for axis in self.axes)
+        lengths = {axis: len(names) for axis, names in FIXED.items()} | dict(sizes)
+        return tuple(int(axis) if axis.isdigit() else lengths[axis] for axis in self.axes)
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +95,7 @@ class Quantity:
     def labelled(self) -> tuple[str, ...]:
         """The axes whose places an answer names."""
         axes = (axis for array in self.arrays for axis in array.axes)
-        return tuple(dict.fromkeys(axis for axis in axes if axis not in PLAIN and not axis.isdigit()))
+        return tuple(dict.fromkeys(axis for axis in axes if axis not in (COORDINATES, *FIXED) and not axis.isdigit()))
 
     def of(self, found: Mapping[str, Any]) -> Any:
         """Its arrays among the outputs of its program: one, or several by field."""
@@ -253,6 +254,7 @@ _ROWS = (
             Array("mass_centre_velocity", "axes", "m/s", "velocity"),
         ),
     ),
+    _row("centroidal_momentum_matrix", "q p", "momenta coordinates", source="centroidal", symbol="A"),
     # groups of formulas, outputs of parts, and what analyses make
     _stored("closures", "q qd p", arrays=(), written=_CLOSURES, is_number=False),
     _row("interface", "q p", source=PART, arrays=(), written=_INTERFACE, is_number=False),
@@ -328,7 +330,7 @@ def labels_of(name: str, told: Mapping[str, object]) -> list[list[str]]:
 
 
 def _labels(axis: str, told: Mapping[str, object]) -> Iterator[str]:
-    given = "xyz" if axis == AXES else told.get(axis, ())
+    given = FIXED.get(axis) or told.get(axis, ())
     given = given.get("names", ()) if isinstance(given, Mapping) else given
     yield from map(str, given if isinstance(given, Iterable) else ())
 

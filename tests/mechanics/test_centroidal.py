@@ -33,7 +33,7 @@ def moving(seed: int) -> Plain:
 
 @pytest.mark.parametrize("seed", range(6))
 def test_against_an_engine(seed: int) -> None:
-    """Position and velocity of random trees at two states."""
+    """Position, velocity and momentum matrix of random trees at two states."""
     pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
     from pinocchio_trees import engine_of  # noqa: PLC0415 -- the engine is optional
 
@@ -41,30 +41,39 @@ def test_against_an_engine(seed: int) -> None:
     sources = sources_of(definition)
     model = sources.model
     states = random_states(np.random.default_rng(seed), 2, model.dof)
-    found = evaluate(model, ["mass_centre"], **states, sources=sources)["mass_centre"]
+    answer = evaluate(model, ["mass_centre", "centroidal_momentum_matrix"], **states, sources=sources)
+    found, matrix = answer["mass_centre"], answer["centroidal_momentum_matrix"]
     engine = engine_of(definition, GRAVITY)
-    place = np.argsort(engine.order([c.removeprefix("x.") for c in model.coordinates]))
+    order = engine.order([c.removeprefix("x.") for c in model.coordinates])
+    place = np.argsort(order)
     for i in range(2):
-        data = engine.model.createData()
-        centre = pin.centerOfMass(engine.model, data, states["q"][i][place], states["qd"][i][place])
+        data, q, qd = engine.model.createData(), states["q"][i][place], states["qd"][i][place]
+        np.testing.assert_allclose(matrix[i], pin.ccrba(engine.model, data, q, qd)[:, order], rtol=1e-11, atol=1e-11)
+        np.testing.assert_allclose(matrix[i] @ states["qd"][i], data.hg.vector, rtol=1e-10, atol=1e-10)
+        centre = pin.centerOfMass(engine.model, data, q, qd)
         np.testing.assert_allclose(found["position"][i], centre, rtol=1e-11, atol=1e-11)
         np.testing.assert_allclose(found["velocity"][i], data.vcom[0], rtol=1e-11, atol=1e-11)
 
 
 @pytest.mark.parametrize("seed", range(3))
 def test_theorems(seed: int) -> None:
-    """r' is the derivative of r; gravity does the work m g . r'; the momentum is m r'."""
+    """r' is the derivative of r; gravity does the work m g . r'; the momentum is m r'; A q' is the momentum, with L
+    about the mass centre: L_0 = r x p + L."""
     definition = moving(seed + 20)
     sources = sources_of(definition)
     model, rng = sources.model, np.random.default_rng(seed)
     q, qd = rng.uniform(-1, 1, (2, model.dof))
-    names = ["mass_centre", "momentum", "gravity", "inertial_parameters"]
+    names = ["mass_centre", "momentum", "gravity", "inertial_parameters", "centroidal_momentum_matrix"]
     found, h = evaluate(model, names, q, qd, sources=sources), 1e-6
     sides = [evaluate(model, "mass_centre", q + s * h * qd, sources=sources)["mass_centre"] for s in (1, -1)]
     velocity = found["mass_centre"]["velocity"]
     np.testing.assert_allclose((sides[0]["position"] - sides[1]["position"]) / (2 * h), velocity, atol=1e-7)
     m = found["inertial_parameters"][::10].sum()
     np.testing.assert_allclose(found["momentum"]["linear"], m * velocity, rtol=1e-10, atol=1e-12)
+    h_q = found["centroidal_momentum_matrix"] @ qd
+    np.testing.assert_allclose(h_q[:3], found["momentum"]["linear"], rtol=1e-10, atol=1e-12)
+    carried = np.cross(found["mass_centre"]["position"], h_q[:3])
+    np.testing.assert_allclose(carried + h_q[3:], found["momentum"]["angular"], rtol=1e-9, atol=1e-10)
     assert found["gravity"] @ qd == pytest.approx(m * velocity @ np.array(GRAVITY, dtype=float), rel=1e-9, abs=1e-9)
 
 
@@ -84,6 +93,10 @@ def test_two_masses_on_a_rod() -> None:
     r = 7 / 4
     np.testing.assert_allclose(found["position"], [r * np.cos(0.5), r * np.sin(0.5), 0], atol=1e-15)
     np.testing.assert_allclose(found["velocity"], [-2 * r * np.sin(0.5), 2 * r * np.cos(0.5), 0], atol=1e-15)
+    # about the mass centre: m1 (r - l1)^2 + m2 (l2 - r)^2
+    matrix = evaluate(sources.model, "centroidal_momentum_matrix", [0.5], sources=sources)["centroidal_momentum_matrix"]
+    expected = [-4 * r * np.sin(0.5), 4 * r * np.cos(0.5), 0, 0, 0, (r - 1) ** 2 + 3 * (2 - r) ** 2]
+    np.testing.assert_allclose(matrix[:, 0], expected, atol=1e-14)
 
 
 def test_of_several_parts() -> None:
