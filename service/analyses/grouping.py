@@ -24,13 +24,10 @@ from substructures.export import Interface
 from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.quantity import DERIVED, PROGRAMS
 
 #: what follows from the equations of motion alone, and has formulas in grouped symbols
-DERIVED = (
-    *("coriolis", "kinetic_energy", "generalised_momenta", "forward_dynamics", "inverse_metric"),
-    "christoffel_second_kind",
-)
-QUANTITIES = tuple(dict.fromkeys((*OUTPUTS, *DERIVED)))
+QUANTITIES = (*OUTPUTS, *(name for name in DERIVED if name not in OUTPUTS and {*PROGRAMS[name].needs} <= {*OUTPUTS}))
 
 _grouped: Cache[Grouped] = Cache(2_000_000, lambda found: len(found.model.program))
 
