@@ -11,7 +11,6 @@ from service.cache import Cache
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.sources import OfParts
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -33,7 +32,7 @@ class Caches:
     parts: Cache[Part]
     models: Cache[Model]
     derived: Cache[Program]
-    of_parts: Cache[OfParts]
+    of_parts: Cache[Any]  # of substructures.quantities.of_parts
     numeric_trees: Cache[NumericTree]
     plausibilities: Cache[Plausibility]
     evaluations: Cache[Any]  # of service.operations.at_hand

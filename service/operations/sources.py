@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import partial
+from typing import Any
 
 from service.integrity import reading
 from service.operations.trees import parts_of
@@ -14,7 +15,7 @@ from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.sources import OfParts, Sources, of_parts
+from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
@@ -31,7 +32,7 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     )
 
 
-def _of_parts(store: Store, tree: Tree, name: str) -> OfParts:
+def _of_parts(store: Store, tree: Tree, name: str) -> Any:
     """What is derived of the parts of a tree beside its model. Raises TooLarge."""
     parts, nodes = partial(tree_parts, store, tree), store.settings.limits.program_nodes
     key = tree.digest, name, part_programs(store, tree)

@@ -13,60 +13,33 @@ Source: D. E. Orin, A. Goswami, S.-H. Lee, Centroidal dynamics of a humanoid rob
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
 from functools import reduce
-from typing import Any
 
 from substructures.certificate.centroidal import centroidal_outputs
-from substructures.errors import InvalidArgument, TooLarge
-from substructures.expr.program import Formulas, Program, array, program
+from substructures.errors import InvalidArgument
+from substructures.expr.program import Formulas, array
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, cross, exactly, scale, sub, transpose
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.certificate import certify_rows
+from substructures.quantities.of_parts import OfParts, formed
+from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import OWN, Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.model_outputs import MOMENTUM, model_outputs, rate_symbols
 
 
-@dataclass(frozen=True)
-class CentroidalModel:
-    """``program``: outputs ``mass_centre_position`` (3,) [m] and ``mass_centre_velocity`` (3,) [m/s] in the world, and
-    ``centroidal_momentum_matrix`` (6, n): three rows of momentum, then three of moment of momentum; functions of q, q'
-    and free parameters.
+def centroidal(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> OfParts:
+    """The mass centre of a tree of stored parts (by instance name): outputs ``mass_centre_position`` (3,) [m] and
+    ``mass_centre_velocity`` (3,) [m/s] in the world, and ``centroidal_momentum_matrix`` (6, n): three rows of momentum,
+    then three of moment of momentum; functions of q, q' and free parameters.
+
+    Raises as :func:`.of_parts.formed`, and InvalidArgument where nothing that moves has mass.
     """
-
-    program: Program
-    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
-
-    @property
-    def labels(self) -> Mapping[str, Any]:
-        """No axis has places of its own."""
-        return {}
+    return OfParts(*formed("mass centre", spec, parts, _outputs, centroidal_outputs, max_nodes))
 
 
-def centroidal(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> CentroidalModel:
-    """The mass centre of a tree of stored parts (by instance name).
-
-    Raises InvalidDocument with pointers into the tree document, InvalidArgument where nothing that moves has mass,
-    TooLarge for more than ``max_nodes`` operations, and VerificationFailed unless it is what the documents say.
-    """
-    assembly = assemble(spec, parts)
-    try:
-        outputs = _outputs(assembly)
-    except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
-    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the mass centre (in operations)", len(result), max_nodes)
-    definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows("mass centre", spec, definitions, result, (), centroidal_outputs)
-    return CentroidalModel(result, assembly.parameters)
-
-
-def _outputs(assembly: Assembly) -> dict[str, Formulas]:
+def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity, christoffel=False)
     rates, accelerations = rate_symbols(assembly)
     momenta = model_outputs(assembly, coupled, rates, accelerations, frozenset(MOMENTUM))
@@ -84,11 +57,12 @@ def _outputs(assembly: Assembly) -> dict[str, Formulas]:
     for a in range(len(rates)):
         p_a, L_a = (_row(momenta[name], a) for name in MOMENTUM)
         columns |= {(i, a): x for i, x in enumerate((*p_a, *sub(L_a, cross(r, p_a))))}
-    return {
+    outputs = {
         "centroidal_momentum_matrix": Formulas((6, len(rates)), columns),
         "mass_centre_position": array((3,), lambda i: r[i]),
         "mass_centre_velocity": array((3,), lambda i: lift(total[i]) / lift(m)),
     }
+    return outputs, ()
 
 
 def _row(momenta: Formulas, a: int) -> Vector:

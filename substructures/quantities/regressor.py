@@ -22,7 +22,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from substructures.certificate.regressed import regressor_outputs
-from substructures.errors import InvalidArgument, TooLarge
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.composite_form import Inertia, moments_of_inertia, pairing
@@ -32,11 +32,11 @@ from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.of_parts import formed
 from substructures.quantities.regrouping import named_frames, relations
 from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
 from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
-from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.certificate import certify_rows
+from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
@@ -136,17 +136,28 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     parts hold, bound to the tree's parameters. Raises InvalidDocument with pointers into the tree document, or TooLarge
     for more than ``max_nodes`` operations.
     """
-    assembly = assemble(spec, parts)
+    result, names, parameters = formed("regressor", spec, parts, _outputs, regressor_outputs, max_nodes)
+    assembly, used = assemble(spec, parts), {symbol.name for symbol in result.symbols}
+    return RegressorModel(
+        result,
+        tuple(f"{i.name}.{c}" for i, m in _pairs(assembly) for c in m.part.coordinates),
+        "".join(m.part.joints for m in assembly.mounted),
+        names,
+        tuple(unit for name in names[::10] for _, unit in inertia_names(name.removesuffix(".m"))),
+        {name: value for name, value in parameters.items() if name in used},
+        _regrouping(assembly),
+        tuple(cut.rows for cut in assembly.cuts),
+    )
+
+
+def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], list[str]]:
+    links = _links(over_formulas(assembly.scope.graph), assembly)
     n = sum(m.part.dof for m in assembly.mounted)
-    try:
-        links = _links(over_formulas(assembly.scope.graph), assembly)
-        Y: dict[tuple[int, ...], Scalar] = {
-            (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
-        }
-        # pi = (m, s, J) of every link, so that Y pi = g q'' + Gamma q' q' - Q(gravity)
-        pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
-    except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
+    Y: dict[tuple[int, ...], Scalar] = {
+        (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
+    }
+    # pi = (m, s, J) of every link, so that Y pi = g q'' + Gamma q' q' - Q(gravity)
+    pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
     # Theta = tr(J) 1 - J
     theta = [moments_of_inertia(link.inertia.J) for link in links]
     outputs = {
@@ -154,23 +165,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         "inertial_parameters": array((len(pi),), lambda i: pi[i]),
         "moments_of_inertia": array((len(links), 3, 3), lambda k, i, j: theta[k][SYMMETRIC_INDEX[i][j]]),
     }
-    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the regressor (in operations)", len(result), max_nodes)
-    named = [pair for link in links for pair in inertia_names(link.name)]
-    definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows("regressor", spec, definitions, result, [name for name, _ in named], regressor_outputs)
-    used = {symbol.name for symbol in result.symbols}
-    return RegressorModel(
-        result,
-        tuple(f"{i.name}.{c}" for i, m in _pairs(assembly) for c in m.part.coordinates),
-        "".join(m.part.joints for m in assembly.mounted),
-        tuple(name for name, _ in named),
-        tuple(unit for _, unit in named),
-        {name: value for name, value in assembly.parameters.items() if name in used},
-        _regrouping(assemble(spec, parts)),
-        tuple(cut.rows for cut in assembly.cuts),
-    )
+    return outputs, [name for link in links for name, _ in inertia_names(link.name)]
 
 
 def _regrouping(assembly: Assembly) -> Program:

@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cache, cached_property
 from math import prod
-from typing import Any, Protocol
+from typing import Any
 
 from substructures.array import Array
 from substructures.errors import SOUGHT, Fault, InvalidArgument, TooLarge, meant
@@ -42,27 +42,11 @@ PRODUCT = 30
 _KNOWN = ", ".join(QUANTITIES)
 
 
-class OfParts(Protocol):
-    """What is derived of the parts of a tree beside its model: RegressorModel, ReactionModel, PowerModel, ...
-
-    ``parameters``: those that its formulas may have; ``labels``: names of the places along its axes.
-    """
-
-    @property
-    def program(self) -> Program:
-        """The formulas."""
-
-    @property
-    def parameters(self) -> Mapping[str, Mapping[str, Any]]:
-        """By name, with default, unit and description."""
-
-    @property
-    def labels(self) -> Mapping[str, Any]:
-        """Names by axis."""
-
-
 def of_parts(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> Callable[[str], Any]:
-    """What is derived of parts by name, each once, when it is first asked for. Raises InvalidDocument, TooLarge."""
+    """What is derived of parts by name (:mod:`.of_parts`), each once, when it is first asked for.
+
+    Raises InvalidDocument, TooLarge, VerificationFailed.
+    """
     return cache(lambda source: PROGRAMS[source].function(spec, parts, max_nodes))
 
 

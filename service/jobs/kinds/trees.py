@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
 from service.analyses.source import Source
 from service.cache import Cache
@@ -14,7 +15,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.part.definition import Definition
-from substructures.quantities.sources import OfParts, Sources, of_parts
+from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.plausibility import Plausibility
 
@@ -23,7 +24,7 @@ CAPACITY = 2_000_000  # operations
 TREES = 200  # with what judges their values
 
 _plausibilities: Cache[Plausibility] = Cache(TREES, lambda _: 1)
-_kept: Cache[OfParts] = Cache(CAPACITY, lambda found: len(found.program))
+_kept: Cache[Any] = Cache(CAPACITY, lambda found: len(found.program))
 
 
 def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
@@ -68,7 +69,7 @@ def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
     )
 
 
-def _of_parts(item: ItemDocument, blobs: Blobs, name: str) -> OfParts:
+def _of_parts(item: ItemDocument, blobs: Blobs, name: str) -> Any:
     """What is derived of the parts of a tree beside its model. Raises InvalidDocument, TooLarge."""
     parts: ItemDocument = item["parts"]
     key = item["tree"], name, *sorted(parts["programs"].values())
