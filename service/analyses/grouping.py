@@ -27,7 +27,10 @@ from substructures.quantities.evaluation import Sources
 from substructures.quantities.quantity import DERIVED, PROGRAMS
 
 #: what follows from the equations of motion alone, and has formulas in grouped symbols
-QUANTITIES = (*OUTPUTS, *(name for name in DERIVED if name not in OUTPUTS and {*PROGRAMS[name].needs} <= {*OUTPUTS}))
+QUANTITIES = (
+    *OUTPUTS,
+    *(name for name in DERIVED if name not in OUTPUTS and {*PROGRAMS[name].needs.split()} <= {*OUTPUTS}),
+)
 
 _grouped: Cache[Grouped] = Cache(2_000_000, lambda found: len(found.model.program))
 

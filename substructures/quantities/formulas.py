@@ -108,7 +108,7 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
     more = dict.fromkeys(map(momentum, model.coordinates), "parameter")
-    return certified(result, model, SERVED[quantity], quantity, needs=made.needs, more=more)
+    return certified(result, model, SERVED[quantity], quantity, needs=made.needs.split(), more=more)
 
 
 _programs = ProgramCache()

@@ -64,6 +64,9 @@ class Quantity:
     of the model that its formulas are, where these are others; ``only``: why a tree may have none; ``options``: of its
     formulas; ``rule``: symmetry of these; ``note``: what readers must know; ``of_momenta``: a function of
     ``p.<coordinate>``, in numbers at those of the velocities; ``is_number``, ``is_formula``: what can be asked for.
+
+    Where no other row has the same program: ``by``, the module here and the function that make it, of a model, or
+    ``of_parts`` of a tree and its document; ``needs``: the outputs of the model that it is made of (certificate.md).
     """
 
     name: str
@@ -80,6 +83,16 @@ class Quantity:
     of_momenta: bool = False
     is_number: bool = True
     is_formula: bool = True
+    by: str = ""
+    of_parts: bool = False
+    needs: str = "metric bias forces"
+
+    @property
+    def function(self) -> Callable[..., Any]:
+        """What makes its program, imported when it is first asked for."""
+        module, _, name = self.by.partition(".")
+        found: Callable[..., Any] = getattr(import_module(f"substructures.quantities.{module}"), name)
+        return found
 
     @property
     def outputs(self) -> tuple[str, ...]:
@@ -108,61 +121,27 @@ class Quantity:
         return sum(prod(array.shape(sizes)) for array in self.arrays)
 
 
-@dataclass(frozen=True, slots=True)
-class Derivation:
-    """What makes a program: ``place``, a function of a module here, of a model, or ``of_parts``, the document of a
-    tree and its parts; ``needs``: the outputs of the model that it is made of (certificate.md, section 4).
-    """
-
-    place: str
-    of_parts: bool = False
-    needs: tuple[str, ...] = ("metric", "bias", "forces")
-
-    @property
-    def function(self) -> Callable[..., Any]:
-        """Itself, imported when it is first asked for."""
-        module, _, name = self.place.partition(".")
-        found: Callable[..., Any] = getattr(import_module(f"substructures.quantities.{module}"), name)
-        return found
-
-
-#: programs beside that of the model, by name
-PROGRAMS: dict[str, Derivation] = {
-    "coriolis": Derivation("formulas.coriolis", needs=("christoffel",)),
-    "inverse_dynamics": Derivation("formulas.inverse_dynamics"),
-    "forward_dynamics": Derivation("derivatives.forward_dynamics"),
-    "kinetic_energy": Derivation("formulas.kinetic_energy"),
-    "lagrangian": Derivation("formulas.lagrangian", needs=("metric", "potential_energy")),
-    "generalised_momenta": Derivation("formulas.generalised_momenta"),
-    "power": Derivation("formulas.power"),
-    "total_momentum": Derivation("formulas.total_momentum", needs=("linear_momentum", "angular_momentum")),
-    "inverse_metric": Derivation("canonical.inverse_metric"),
-    "christoffel_second_kind": Derivation("canonical.christoffel_second_kind", needs=("metric", "christoffel")),
-    "hamiltonian": Derivation("canonical.hamiltonian", needs=("metric", "potential_energy")),
-    "canonical_equations": Derivation("canonical.canonical_equations"),
-    "inverse_dynamics_derivative": Derivation("derivatives.inverse_dynamics_derivative"),
-    "forward_dynamics_derivative": Derivation("derivatives.forward_dynamics_derivative"),
-    REGRESSOR: Derivation("regressor.regressor", of_parts=True),
-    REACTIONS: Derivation("reactions.reactions", of_parts=True),
-    POWERS: Derivation("powers.powers", of_parts=True),
-    "centroidal": Derivation("centroidal.centroidal", of_parts=True),
-}
-#: those that are formed from a model alone, and from the parts of a tree
-DERIVED = tuple(name for name, made in PROGRAMS.items() if not made.of_parts)
-OF_PARTS = tuple(name for name, made in PROGRAMS.items() if made.of_parts)
-
-
 def _row(
     name: str, arguments: str, along: str = "", unit: str = "", symbol: str = "", raised: int = 0, **more: Any
 ) -> Quantity:
-    """A quantity of one array, or of ``arrays``; with a program of its own name where no ``source`` is given."""
+    """A quantity of one array, or of ``arrays``; with a program of its own name where no ``source`` is given, made by
+    the function of that name in ``module``.
+    """
     arrays = more.pop("arrays", (Array(name, along, unit, "", symbol, raised),))
+    if "module" in more:
+        more["by"] = f"{more.pop('module')}.{name}"
     return Quantity(name, more.pop("source", name), tuple(arguments.split()), arrays, **more)
 
 
 _stored = partial(_row, source=MODEL)
 _loops = partial(_row, source=MODEL, only="the tree has no closures")
 _made = partial(_row, source=ANALYSIS, is_number=False)
+_formula = partial(_row, module="formulas")
+_derivative = partial(_row, module="derivatives")
+_canonical = partial(_row, module="canonical", pivots=("pivots",))
+_SECOND, _SYMMETRIC = "christoffel_second_kind", "Gamma^a_bc = Gamma^a_cb"
+_RATES = tuple(Array(name, "coordinates", field=name) for name in ("coordinate_rates", "momentum_rates"))
+_OF_UNIT = ("linear_momentum", "angular_momentum")
 _MOMENTUM = (Array("linear", "axes", "kg m/s", "linear"), Array("angular", "axes", "kg m^2/s", "angular"))
 _BINET = "Jxx is Binet's integral of x^2 dm, not the moment of inertia about the x axis: see moments_of_inertia"
 _PIVOTS = ("pivots", "inertias")
@@ -201,36 +180,24 @@ _ROWS = (
     ),
     # what follows from a model
     _row("condition", "q p", is_formula=False),
-    _row("coriolis", "q qd p", "coordinates coordinates", symbol="C"),
-    _row("inverse_dynamics", "t q qd qdd u p", "coordinates", symbol=r"\tau", requires=("qdd",)),
-    _row("inverse_dynamics_derivative", "t q qd qdd u p", "coordinates", requires=("qdd", "along")),
-    _row(FORWARD, "t q qd u p", "coordinates", symbol=r"\ddot{q}", pivots=_PIVOTS),
-    _row("forward_dynamics_derivative", "t q qd u p", "coordinates", requires=("along",), pivots=_PIVOTS),
-    _row("kinetic_energy", "q qd p", unit="J", symbol="T"),
-    _row("lagrangian", "t q qd p", unit="J", symbol="L"),
-    _row("generalised_momenta", "q qd p", "coordinates"),
-    _row("power", "t q qd u p", "coordinates", "W", "P"),
+    _formula("coriolis", "q qd p", "coordinates coordinates", symbol="C", needs="christoffel"),
+    _formula("inverse_dynamics", "t q qd qdd u p", "coordinates", symbol=r"\tau", requires=("qdd",)),
+    _derivative("inverse_dynamics_derivative", "t q qd qdd u p", "coordinates", requires=("qdd", "along")),
+    _derivative(FORWARD, "t q qd u p", "coordinates", symbol=r"\ddot{q}", pivots=_PIVOTS),
+    _derivative("forward_dynamics_derivative", "t q qd u p", "coordinates", requires=("along",), pivots=_PIVOTS),
+    _formula("kinetic_energy", "q qd p", unit="J", symbol="T"),
+    _formula("lagrangian", "t q qd p", unit="J", symbol="L", needs="metric potential_energy"),
+    _formula("generalised_momenta", "q qd p", "coordinates"),
+    _formula("power", "t q qd u p", "coordinates", "W", "P"),
     # in numbers that of the motion, as formulas those of unit velocities
-    _row("momentum", "q p", source="total_momentum", arrays=_MOMENTUM, written=("linear_momentum", "angular_momentum")),
-    _row("total_momentum", "q qd p", arrays=_MOMENTUM, is_number=False),
-    _row("inverse_metric", "q p", "coordinates coordinates", "", "g", 2, pivots=("pivots",)),
-    _row(
-        "christoffel_second_kind",
-        "q p",
-        "coordinates coordinates coordinates",
-        pivots=("pivots",),
-        rule="Gamma^a_bc = Gamma^a_cb",
-    ),
-    _row("hamiltonian", "t q p", unit="J", symbol="H", pivots=("pivots",), of_momenta=True),
-    _row(
-        "canonical_equations",
-        "t q u p",
-        arrays=tuple(Array(name, "coordinates", field=name) for name in ("coordinate_rates", "momentum_rates")),
-        pivots=("pivots",),
-        of_momenta=True,
-    ),
+    _row("momentum", "q p", source="total_momentum", arrays=_MOMENTUM, written=_OF_UNIT),
+    _formula("total_momentum", "q qd p", arrays=_MOMENTUM, is_number=False, needs=" ".join(_OF_UNIT)),
+    _canonical("inverse_metric", "q p", "coordinates coordinates", symbol="g", raised=2),
+    _canonical(_SECOND, "q p", "coordinates coordinates coordinates", rule=_SYMMETRIC, needs="metric christoffel"),
+    _canonical("hamiltonian", "t q p", unit="J", symbol="H", of_momenta=True, needs="metric potential_energy"),
+    _canonical("canonical_equations", "t q u p", arrays=_RATES, of_momenta=True),
     # what follows from the parts of a tree
-    _row(REGRESSOR, "q qd qdd p", "coordinates columns", requires=("qdd",)),
+    _row(REGRESSOR, "q qd qdd p", "coordinates columns", requires=("qdd",), by="regressor.regressor", of_parts=True),
     _row("inertial_parameters", "p", "columns", source=REGRESSOR, note=_BINET),
     _row("moments_of_inertia", "p", "links axes axes", "kg m^2", source=REGRESSOR),
     _row(
@@ -243,8 +210,10 @@ _ROWS = (
             Array("reaction_moment_world", "joints axes", "N m", "moment_world"),
         ),
         options=("joints",),
+        by="reactions.reactions",
+        of_parts=True,
     ),
-    _row(POWERS, "t q qd u p", "loads", "W"),
+    _row(POWERS, "t q qd u p", "loads", "W", by="powers.powers", of_parts=True),
     _row(
         "mass_centre",
         "q qd p",
@@ -253,6 +222,8 @@ _ROWS = (
             Array("mass_centre_position", "axes", "m", "position"),
             Array("mass_centre_velocity", "axes", "m/s", "velocity"),
         ),
+        by="centroidal.centroidal",
+        of_parts=True,
     ),
     _row("centroidal_momentum_matrix", "q p", "momenta coordinates", source="centroidal", symbol="A"),
     # groups of formulas, outputs of parts, and what analyses make
@@ -267,6 +238,11 @@ _ROWS = (
     _made("energy", " ".join(EVERYTHING), symbol="E"),
     _made("routhian", " ".join(EVERYTHING), symbol="R"),
 )
+#: programs beside that of the model by name, as the row that tells what makes them
+PROGRAMS: dict[str, Quantity] = {row.source: row for row in _ROWS if row.by}
+#: those that are formed from a model alone, and from the parts of a tree
+DERIVED = tuple(name for name, row in PROGRAMS.items() if not row.of_parts)
+OF_PARTS = tuple(name for name, row in PROGRAMS.items() if row.of_parts)
 TABLE: dict[str, Quantity] = {row.name: row for row in _ROWS}
 #: what every tree can be asked for in numbers
 QUANTITIES: dict[str, Quantity] = {name: row for name, row in TABLE.items() if row.is_number and not row.only}
@@ -287,8 +263,8 @@ def outputs_of(name: str) -> tuple[str, ...]:
     return (name,) if row is None else row.written or row.outputs
 
 
-def made_of(name: str) -> Derivation | None:
-    """What makes the program of formulas; None of what a model, a part or an analysis has."""
+def made_of(name: str) -> Quantity | None:
+    """The row that tells what makes the program of formulas; None of what a model, a part or an analysis has."""
     row = TABLE.get(name)
     return None if row is None or row.written or not row.is_formula else PROGRAMS.get(row.source)
 
