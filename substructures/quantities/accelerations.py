@@ -15,7 +15,7 @@ from substructures.mechanics.closure_rows import POSITIONS, RowSizes, row_sizes
 from substructures.quantities.closure_columns import row_bounds
 from substructures.quantities.derivatives import FD
 from substructures.quantities.formulas import DYNAMICS
-from substructures.quantities.table import CONDITION
+from substructures.quantities.quantity import CONDITION
 from substructures.tree.model import Model
 
 #: numbers of a block where an intermediate result is larger than the result

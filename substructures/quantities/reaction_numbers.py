@@ -13,9 +13,9 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.mechanics.closure_rows import ranks
 from substructures.quantities.accelerations import Evaluator, closure_sizes
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS
+from substructures.quantities.quantity import REACTIONS
 from substructures.quantities.reactions import OUTPUTS
 from substructures.quantities.states import require
-from substructures.quantities.table import REACTIONS
 from substructures.tree.model import Model
 
 

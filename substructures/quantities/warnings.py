@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.quantities.table import Sources
+from substructures.quantities.sources import Sources
 
 Notice = Mapping[str, str]
 #: warnings about a tree that its parameters decide, so that those given here are looked at instead

@@ -29,7 +29,7 @@ def test_functions_pass_their_self_tests(target: str, tmp_path: Path) -> None:
     parts = {"x": derive(Definition.read(catalogue.load("slider-crank")))}
     model = couple(spec, parts)
     transmitted = reactions(spec, parts)
-    sources = Sources(model, reactions=lambda: transmitted)
+    sources = Sources(model, of_parts=lambda _: transmitted)
     exported = exported_model(sources, interface_of_model(model, "loop@1", "sha256:1"), ["reactions"], "crank")
     (function,) = exported.functions
     assert function.arguments == ("t", "q", "qd", "qdd", "u", "x", "p")

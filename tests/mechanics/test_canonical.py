@@ -15,7 +15,7 @@ from substructures.expr.interpret import interpret
 from substructures.quantities import canonical
 from substructures.quantities.evaluation import check, evaluate
 from substructures.quantities.formulas import derived
-from substructures.quantities.table import Sources
+from substructures.quantities.sources import Sources
 
 NAMES = ["acrobot", "cart-pendulum", "scara", "ur5", "quarter-car"]
 ALL = ["inverse_metric", "christoffel_second_kind", "hamiltonian", "canonical_equations", "power"]

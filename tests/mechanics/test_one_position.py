@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,6 @@ from substructures.compile import compile_program
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import (
     QUANTITIES,
-    REGRESSOR,
     Direction,
     Evaluation,
     Evaluator,
@@ -26,9 +24,8 @@ from substructures.quantities.evaluation import (
     interpreted,
     numbers_per_state,
 )
-from substructures.quantities.powers import powers
-from substructures.quantities.reactions import reactions
-from substructures.quantities.regressor import regressor
+from substructures.quantities.quantity import REGRESSOR
+from substructures.quantities.sources import of_parts
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
@@ -42,9 +39,7 @@ def compiled(program: Program, values: Mapping[str, Any], names: list[str], _sta
 def random_sources(seed: int = 77) -> Sources:
     definition = random_definition(np.random.default_rng(seed), Kind(3, joints=("revolute", "prismatic"), massive=True))
     spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
-    model, transmitted = couple(spec, parts), cache(lambda: reactions(spec, parts))
-    by_load = cache(lambda: powers(spec, parts))
-    return Sources(model, regressor=lambda: regressor(spec, parts), reactions=transmitted, powers=by_load)
+    return Sources(couple(spec, parts), of_parts=of_parts(spec, parts))
 
 
 def random_model() -> Model:

@@ -11,7 +11,8 @@ from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.one_state import OneState, prepared
-from substructures.quantities.table import QUANTITIES, Sources
+from substructures.quantities.quantity import QUANTITIES
+from substructures.quantities.sources import Sources
 from substructures.tree.model import Model
 
 PLAIN = ["metric", "christoffel", "forces", "bias", "kinematics", "inverse_dynamics", "kinetic_energy", "momentum"]

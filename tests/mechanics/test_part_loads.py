@@ -157,7 +157,7 @@ def test_reactions_are_those_of_the_same_loads_of_a_tree() -> None:
     found = []
     for spec, parts in (tree_of(definition_of(5, LOADS), hosted=True), tree_of(definition_of(5, []), LOADS, True)):
         model, transmitted = couple(spec, parts), reactions(spec, parts)
-        sources = Sources(model, reactions=lambda given=transmitted: given)
+        sources = Sources(model, of_parts=lambda _, given=transmitted: given)
         state = {name: x[0] for name, x in random_states(np.random.default_rng(2), 1, model.dof).items()}
         found.append(evaluate(model, ["reactions"], sources=sources, inputs={"x.u": 0.6}, t=0.8, **state)["reactions"])
     for field in ("force", "moment", "force_world", "moment_world"):

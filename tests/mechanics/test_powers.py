@@ -54,7 +54,7 @@ def slide(**more: Any) -> tuple[Model, PowerModel]:
 
 
 def answered(model: Model, by: PowerModel, *others: str, **state: Any) -> Evaluation:
-    return evaluate(model, ["powers", *others], sources=Sources(model, powers=lambda: by), **state)
+    return evaluate(model, ["powers", *others], sources=Sources(model, of_parts=lambda _: by), **state)
 
 
 def rows_of(found: Evaluation) -> dict[str, float]:
@@ -209,7 +209,7 @@ def test_a_power_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_where_they_mean_nothing() -> None:
     model, by = slide()
-    with pytest.raises(InvalidArgument, match="powers need the parts"):
+    with pytest.raises(InvalidArgument, match="'powers' needs the parts"):
         evaluate(model, "powers", [0])
     with pytest.raises(InvalidArgument, match="'powers' means nothing"):
         simulate(model, [0], (0, 1), geodesic=True, powers=by)

@@ -69,7 +69,7 @@ def compare_tree(seed: int) -> float:
     model = couple(spec, parts)
     transmitted = reactions(spec, parts)
     states = random_states(rng, 2, model.dof)
-    sources = Sources(model, reactions=lambda: transmitted)
+    sources = Sources(model, of_parts=lambda _: transmitted)
     answer = evaluate(model, "reactions", **states, inputs={"u": 0.6}, t=0.8, sources=sources)
     worst = 0.0
     for i in range(2):

@@ -212,7 +212,7 @@ def test_parameters_that_the_motion_does_not_feel() -> None:
     }
     spec, parts = of({"name": "t", "instances": [{"name": "x", "definition": definition}]})
     model = couple(spec, parts)
-    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    sources = Sources(model, of_parts=lambda _: regressor(spec, parts))
     assert "x.a" not in model.effective
     request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
     found = evaluate(model, **request, sources=sources)

@@ -26,7 +26,7 @@ from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
 from substructures.mechanics.factorisation import Factors
 from substructures.part import outputs as part_outputs
-from substructures.quantities import derivatives, formulas, regressor
+from substructures.quantities import centroidal, derivatives, formulas, of_parts, regressor
 from substructures.quantities.workspace import Workspace
 
 MASS = {"mass": "m", "com": [0.1, "l", 0.2], "inertia": {"xx": 1, "yy": 1.2, "zz": 0.9, "xy": 0.1}}
@@ -127,10 +127,11 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
     "closed motions": (lambda: work.with_power(model(closed=True), ["metric", "bias"], ["x.u"]), "lost_power"),
     "own inertia": (lambda: part_outputs.with_own_inertia(part(), part().program), ""),
     "regressor": (regressor_of, "regressor"),
+    "mass centre": (lambda: centroidal.centroidal(*tree()[:2]), "mass_centre_position"),
     "base parameters": (lambda: base.base_parameters(regressor.regressor(*tree()[:2]), ["armature"]), "grouping"),
 }  # fmt: skip
 MODULES = (
-    *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, regressor),
+    *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, of_parts),
     *(right_hand_side, routh, steady, work),
 )
 

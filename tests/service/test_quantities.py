@@ -203,7 +203,7 @@ def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypa
 
     limits = store.settings.limits.model_copy(update={"sync_seconds": 0.3})
     monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
-    monkeypatch.setattr("service.operations.models.model_quantity", slow)
+    monkeypatch.setattr("substructures.quantities.sources.Sources.formulas", slow)
     monkeypatch.setattr("service.operations.analyses.printed", slow)
     monkeypatch.setattr("service.operations.models.part_formulas", slow)
     try:

@@ -88,7 +88,8 @@ def quasi_velocity_rows(
         raise InvalidArgument.at(pointer, "wrong-length", message)
     for name in names:
         f.symbols.setdefault(name, Symbol(name, "velocity"))
-        f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration")
+        unit = f.symbols[name].unit
+        f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration", f"{unit}^2" if unit else "")  # rad/s -> rad/s^2
     return names, own
 
 
