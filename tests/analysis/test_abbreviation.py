@@ -8,6 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import catalogue_model
+from in_depth import seeds
 
 from substructures import InvalidArgument, TooLarge, catalogue, couple, derive
 from substructures.abbreviation import abbreviate as module
@@ -19,7 +21,6 @@ from substructures.expr.interpret import interpret
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
-from tests.analysis_models import catalogue_model, seeds
 from tests.random_trees import Kind, model_of, number, random_definition
 
 RANGES = {"velocities": (-2, 3), "accelerations": (-4, 4)}

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import seeds
+from in_depth import seeds
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, vector
 
 from substructures import Definition, InvalidDocument, Model, TreeSpec, catalogue, couple, derive

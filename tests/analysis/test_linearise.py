@@ -7,7 +7,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model, random_model, seeds, values_at
+from analysis_models import catalogue_model, random_model, values_at
+from in_depth import seeds
 from random_trees import Plain, model_of, random_states
 
 from substructures import InvalidInput, Model, Program

@@ -7,7 +7,8 @@ import io
 
 import numpy as np
 import pytest
-from analysis_models import FINE, PERIOD, catalogue_model, defaults, oscillator, random_model, seeds
+from analysis_models import FINE, PERIOD, catalogue_model, defaults, oscillator, random_model
+from in_depth import seeds
 from random_trees import model_of, random_states
 
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_kernel
