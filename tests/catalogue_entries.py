@@ -29,6 +29,6 @@ def all_entries() -> list[Any]:
 
 
 @cache
-def part(name: str) -> Part:
+def shipped_part(name: str) -> Part:
     """A shipped entry with its formulas."""
     return derive(Definition.read(catalogue.load(name)))

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import catalogue_model
+from catalogue_entries import shipped_part
 from in_depth import seeds
 
 from substructures import InvalidArgument, TooLarge, catalogue, couple, derive
@@ -166,7 +167,7 @@ def test_bad_requests(changes: dict[str, Any], pointer: str, code: str) -> None:
 
 
 def test_parameters_without_a_value_need_one() -> None:
-    part = derive(Definition.read(catalogue.load("double-pendulum")))
+    part = shipped_part("double-pendulum")
     tree = {
         "name": "t",
         "gravity": [0, 0, "-g"],

@@ -9,10 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from in_depth import deep, seeds
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
-from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, couple, derive
 from substructures.analysis.equations import dependencies
 from substructures.analysis.identification import base_parameters as base_module
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
@@ -30,7 +31,7 @@ IN_PLANE = (0, "-9.81", 0)
 @cache
 def tree(name: str, gravity: tuple[Any, ...] = UP) -> tuple[TreeSpec, dict[str, Part]]:
     spec = {"name": "t", "gravity": list(gravity), "instances": [{"name": "x", "substructure": name}]}
-    return TreeSpec.read(spec), {"x": derive(Definition.read(catalogue.load(name)))}
+    return TreeSpec.read(spec), {"x": shipped_part(name)}
 
 
 @cache
@@ -54,7 +55,7 @@ def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int
         # 7 N - 4 beta - 2: axis 1 along gravity, beta = 1 link of the first group of parallel axes
         ("puma560", UP, 36),
         ("ur5", UP, 36),
-        ("kuka-iiwa-14", UP, 43),
+        *deep(("kuka-iiwa-14", UP, 43)),
         ("spherical-wrist", UP, 15),
         # 7 N - 4 beta, beta = N = 3: axes across gravity; two less where they are along it
         ("planar-3r", IN_PLANE, 9),

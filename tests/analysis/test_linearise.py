@@ -40,7 +40,7 @@ def slope(model: Model, state: Plain, key: str, name: Any) -> Any:
     return (8 * (ends[1] - ends[2]) - (ends[0] - ends[3])) / (12 * STEP)
 
 
-@pytest.mark.parametrize("number", seeds(4, 8))
+@pytest.mark.parametrize("number", seeds((1, 2), 8))
 def test_state_space_against_differences(number: int) -> None:
     """A and B of random trees with loads and inputs, at states of motion; as formulas and by M, D, K."""
     model = random_model(number)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from catalogue_entries import part
+from catalogue_entries import shipped_part
 
 from substructures import TreeSpec, couple
 from substructures.expr.interpret import constant, interpret
@@ -84,7 +84,7 @@ def deviation() -> Callable[..., float]:
 
 @cache
 def _tree(*instances: tuple[str, str, str]) -> Model:
-    parts = {i: part(entry) for i, entry, _ in instances}
+    parts = {i: shipped_part(entry) for i, entry, _ in instances}
     document = {
         "name": "tree",
         "gravity": [0, 0, "-g"],

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from catalogue_entries import all_entries
+from catalogue_entries import all_entries, shipped_part
 from exported_models import LIMIT, derived_anew, exported_of, tree_of, write
 from run_code import STRICT, agree, by_output, call_c, load_python, octave, octave_call, shared, state, tool
 
-from substructures import Definition, Model, catalogue, derive, evaluate
+from substructures import Model, evaluate
 from substructures.errors import InvalidArgument
 from substructures.export import TARGETS, exported_model, files, interface_of_model, interface_of_part, render
 from substructures.expr.bind import bind
@@ -198,7 +198,7 @@ def test_octave_reads_the_interface(acrobot: Model, tmp_path: Path) -> None:
 
 
 def test_functions_of_parts(tmp_path: Path) -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     interface = interface_of_part(part)
     program = with_own_inertia(part, part.program.select(["metric"]))
     text = render(program, "python", name="arm", interface=interface, quantity="metric")

@@ -107,7 +107,7 @@ def check(number: int, chosen: list[int]) -> float:
     return worst
 
 
-@pytest.mark.parametrize("number", range(len(MECHANISMS)))
+@pytest.mark.parametrize("number", [1, 3, 5, 7, 9, 10])
 def test_some_cuts(number: int) -> None:
     """Each joint alone is not enough: two drawn, and the one into single bodies."""
     size = 2 ** MECHANISMS[number].bodies
