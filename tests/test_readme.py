@@ -45,6 +45,7 @@ def run(text: str, folder: Path) -> str:
     return done.stdout
 
 
+# takes seconds: a server with the whole catalogue, as a reader starts it
 @pytest.mark.skipif(shutil.which("curl") is None, reason="the README's requests need curl")
 def test_requests_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     requests = [line for block in blocks("sh") for line in re.split(r"\n(?=curl)", block.strip()) if line[:4] == "curl"]

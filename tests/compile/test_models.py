@@ -70,6 +70,7 @@ def test_code_for_other_cpus(
     assert all_agree(model, states(model, 37), deviation) < FEW
 
 
+# takes seconds: the largest program that is compiled here, of 34 degrees of freedom, is LLVM's work
 def test_humanoid(tree: Any, states: Any, deviation: Any) -> None:
     model = tree(*HUMANOID)
     values = states(model, 70)

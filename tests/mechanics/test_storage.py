@@ -90,6 +90,7 @@ for text in sys.stdin:
 """
 
 
+# takes seconds: new processes import and derive everything
 def test_digests_are_the_same_in_every_process() -> None:
     """Fingerprints are drawn anew in every process; nothing of them may show in what is stored."""
     lines = [write_json(pair(seed, [0, 0.5, 1][seed % 3])[1]) for seed in range(COUNT)]
