@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, tree_model
+from in_depth import deep
 from random_trees import Plain
 from scipy.integrate import solve_ivp
 
@@ -110,7 +111,7 @@ def weights(a: float) -> float:
     return float(np.array([0.03, 0.015, 0.6]) @ np.abs(levers(a)))
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["partitioning", *deep("projection")])
 def test_a_slider_crank_breaks_away(method: str) -> None:
     """Under a torque that grows: when it is sum of F_s,i |dq_i/da|, not before, and then as it slips."""
     model, a = slider_crank(LAWS), 0.8
@@ -187,7 +188,7 @@ def blocks(model: Model, span: tuple[float, float], **more: Any) -> Trajectory:
     return simulate(model, [0.0] * n, span, qd=[0.7] * n, count=41, friction="exact", **more)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["projection", *deep("partitioning")])
 def test_blocks_in_line_are_one_block(method: str) -> None:
     """A weld of two blocks, of whose six rows five are redundant, is a block with the sum of masses and frictions:
     stick and slip under a spring and a force that grows.
@@ -237,6 +238,7 @@ def test_a_drive_that_waits() -> None:
     np.testing.assert_allclose(motion.series["friction"][3:], [[-0.02, 0.01, 0.5]] * 2, rtol=1e-9)
 
 
+# takes seconds: the forces of joints that stick are a linear program at every step
 def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
     welds = [{"name": f"w{i}", "type": "weld", "from": f"x.b{i}", "to": f"x.b{i + 1}"} for i in (0, 2)]

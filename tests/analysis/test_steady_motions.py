@@ -11,6 +11,7 @@ import pytest
 from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
 from closed_trees import governor, governor_accelerations, lift, resized, tree_model
+from in_depth import deep
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
@@ -306,7 +307,7 @@ def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch)
         np.testing.assert_allclose(motion.qdd, [expected], rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("size", [1e-4, 1e3])
+@pytest.mark.parametrize("size", [1e-4, *deep(1e3)])
 def test_steady_motions_do_not_depend_on_the_unit_of_length(size: float) -> None:
     """A governor with w^2 l / g and k l / (m g) as before stands at the same angles, at 1/10 mm too."""
     model, places = governor(), []

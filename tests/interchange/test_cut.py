@@ -75,9 +75,10 @@ def test_coupled_again_it_is_the_whole(links: list[str], parameters: Any) -> Non
     whole, cut = import_file(TORSO, options), import_file(TORSO, options, cut=links)
     assert cut.tree is not None
     assert [i["name"] for i in cut.tree["instances"]] == ["robot", *links]
-    found = equivalence(side(whole), side(cut))  # coordinates are known by their last names
+    a, b = side(whole), side(cut)
+    found = equivalence(a, b)  # coordinates are known by their last names
     assert found.equal, found
-    assert equivalence(side(whole), side(cut), coordinates(whole, cut)) == found
+    assert equivalence(a, b, coordinates(whole, cut)) == found
     (binding,) = cut.bindings
     names = {"counter": cut.names["joint counter"], "waist": cut.names["joint waist"]}
     assert (binding["coordinate"], binding["of"]) == tuple(names.values())
@@ -97,9 +98,9 @@ def test_loops_go_from_part_to_part(links: list[str]) -> None:
 def test_a_floating_base_is_that_of_the_main_part() -> None:
     options = Options("none", base="floating")
     whole, cut = import_file(TORSO, options), import_file(TORSO, options, cut=["hand"])
-    found = equivalence(side(whole), side(cut), coordinates(whole, cut))
-    assert found.equal
-    assert len(side(cut).names) == 6 + 5
+    a, b = side(whole), side(cut)
+    assert equivalence(a, b, coordinates(whole, cut)).equal
+    assert len(b.names) == 6 + 5
 
 
 @pytest.mark.parametrize(

@@ -7,8 +7,9 @@ from decimal import Decimal
 from typing import Any
 
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, TreeSpec, catalogue, derive
+from substructures import Definition, TreeSpec, derive
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Options
@@ -176,7 +177,7 @@ ROD = {"name": "rod", "type": "rod", "from": "x.tip", "to": "world", "length": 0
     ],
 )
 def test_closures_are_compared(closures: list[dict[str, Any]], quantity: str | None) -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     plain = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "acrobot"}]}
     a, b = (Side.of_tree(TreeSpec.read({**plain, "closures": c}), {"x": part}) for c in ([ROD], closures))
     found = equivalence(a, b)
@@ -185,7 +186,7 @@ def test_closures_are_compared(closures: list[dict[str, Any]], quantity: str | N
 
 
 def test_last_names_are_taken_only_where_they_are_clear() -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     plain: dict[str, Any] = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": []}
     plain["instances"] = [{"name": name, "substructure": "acrobot"} for name in ("one", "two")]
     two = Side.of_tree(TreeSpec.read(plain), {"one": part, "two": part})

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
-from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from damaged import KINDS, as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from in_depth import deep, seeds
 from random_trees import Plain
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
@@ -102,9 +104,10 @@ def two_of(part: Part) -> tuple[TreeSpec, dict[str, Part], Model]:
     return spec, parts, couple(spec, parts)
 
 
+@pytest.mark.parametrize(("elements", "kinds", "every"), [(1, 3, 3), *deep((2, len(KINDS), 1))])
 @pytest.mark.parametrize("law", LAWS)
-def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
-    """In all ways, in the part and in a tree; and every number of the program of the part."""
+def test_damage_of_forces_and_potentials_is_found(law: str, elements: int, kinds: int, every: int) -> None:
+    """In some or all ways, in the part and in a tree; and every third number, or all, of the program of the part."""
     part = part_with(LAWS[law])
     spec, parts, model = two_of(part)
     for certificate, program in ((part.certificate, part.program), (model.certificate, model.program)):
@@ -112,15 +115,15 @@ def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
         assert errors.keys() == program.outputs.keys()
         assert all(error is not None and error <= TOLERANCE for error in errors.values())
     rng = np.random.default_rng(5)
-    for kind, place, wrong in damages(part.program, rng, elements=2):
+    for kind, place, wrong in damages(part.program, rng, elements, kinds):
         name = place.partition("[")[0]
         if name in FORCES:
             assert found_in_part(part, wrong) is not None, (kind, place)
-    for kind, place, wrong in damages(model.program, rng, elements=2):
+    for kind, place, wrong in damages(model.program, rng, elements, kinds):
         if place.partition("[")[0] in FORCES:
             assert found_in_tree(spec, parts, model, wrong) is not None, (kind, place)
     used = set(part.program.reachable(["applied", "potential"]))
-    for kind, place, wrong in nudged_numbers(part.program):
+    for kind, place, wrong in islice(nudged_numbers(part.program), 0, None, every):
         if int(place.removeprefix("operation ")) in used and has_effect(part.program, wrong):
             assert found_in_part(part, wrong) is not None, (kind, place)
 
@@ -223,7 +226,7 @@ def random_law(rng: np.random.Generator) -> str:
     return text.strip()
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.deep) for s in range(10, 400))])
+@pytest.mark.parametrize("seed", seeds(10, 400))
 def test_no_random_law_is_refused(seed: int) -> None:
     rng = np.random.default_rng(seed)
     loads: list[Plain] = [{"type": "joint", "coordinate": c, "force": random_law(rng)} for c in "xyx"]
@@ -255,7 +258,7 @@ def exact_forces(rng: np.random.Generator) -> dict[str, str]:
     return forces
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.deep) for s in range(10, 400))])
+@pytest.mark.parametrize("seed", seeds(10, 400))
 def test_potentials_of_trigonometric_polynomials_are_decided(seed: int) -> None:
     """Right ones are certified, whatever is a gradient of them; one that is zero or off by a constant is not."""
     rng = np.random.default_rng(seed)
