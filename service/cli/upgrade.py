@@ -10,7 +10,7 @@ import typer
 from service.cli.options import Json, Store, settings
 from service.cli.output import print_json
 from service.database.connections import Database
-from service.operations.upgrade import OPERATOR
+from service.operations.renewal import OPERATOR
 from service.operations.upgrade import upgrade as upgraded
 
 

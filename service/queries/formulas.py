@@ -10,7 +10,7 @@ import orjson
 from sqlalchemy import Connection, select
 
 from service.database.tables import parts
-from service.integrity import reading
+from service.integrity import damaged, digest_of, reading
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +43,13 @@ def packed(rows: Sequence[FormulaRow]) -> dict[str, str]:
         )
         for row in rows
     ]
-    return {"outputs": _json(common), "formulas": _json(own)}
+    texts = {"outputs": _json(common), "formulas": _json(own)}
+    return {**texts, "index_digest": index_digest(**texts)}
+
+
+def index_digest(outputs: str, formulas: str) -> str:
+    """The digest of both columns, which the seal of the part covers."""
+    return digest_of(f"{outputs}\n{formulas}".encode())
 
 
 def list_formulas(
@@ -57,9 +63,12 @@ def list_formulas(
 
     Raises Refused (``damaged-content``).
     """
-    stored = connection.execute(select(parts.c.outputs, parts.c.formulas).where(parts.c.digest == part)).first()
+    columns = parts.c.outputs, parts.c.formulas, parts.c.index_digest
+    stored = connection.execute(select(*columns).where(parts.c.digest == part)).first()
     if stored is None:
         return []
+    if index_digest(stored.outputs, stored.formulas) != stored.index_digest:
+        raise damaged("the index of the formulas of a part", part, "it is another one than was stored")
     with reading("the index of the formulas of a part", part):
         rows = _unpacked(orjson.loads(stored.outputs), orjson.loads(stored.formulas))
     return [

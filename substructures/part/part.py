@@ -211,15 +211,17 @@ def derive(
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+    is_stored: bool = False,
 ) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
     ``admit`` is told how many operations to expect before the work begins, and may raise instead. ``coupled``: what is
-    known of a part that was coupled of others, given how it is read and whether it is large.
+    known of a part that was coupled of others, given how it is read and whether it is large. ``is_stored``: the
+    definition was accepted once, so that contradictions of its units, which were texts in older versions, are warnings.
     Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
-    m, units, result = _derived(definition, max_nodes, admit, coupled)
+    m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
     return Part(definition, result, _certificate(m, result, units, perf_counter() - start))
 
 
@@ -234,8 +236,9 @@ def _derived(
     max_nodes: int,
     admit: Callable[[int], None] | None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+    is_stored: bool = False,
 ) -> tuple[Mechanism, UnitCheck, Program]:
-    m, units, entries = _opened(definition)
+    m, units, entries = _opened(definition, is_stored)
     if admit is not None:
         admit(expected_operations([(j.parent, j.s) for j in m.topology.joints]))
     known = None if coupled is None else lambda: coupled(m, entries.is_large)
@@ -246,10 +249,11 @@ def _derived(
     return m, units, result
 
 
-def _opened(definition: Definition) -> tuple[Mechanism, UnitCheck, Entries]:
+def _opened(definition: Definition, is_stored: bool) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
     units = check_units(definition, m.topology)
-    units.require()
+    if not is_stored:
+        units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
     entries = entries_of([(j.parent, j.s) for j in m.topology.joints])
     entries.require("the mechanism")

@@ -29,7 +29,7 @@ from substructures.documents import write_json
 from substructures.part.certificate import plain
 from substructures.part.definition import Definition
 
-from .conftest import PENDULUM, SLIDER, make_client
+from .conftest import PENDULUM, SLIDER, copied, make_client
 
 ZIP = {"Content-Type": "application/zip"}
 BUNDLES = "/v1/bundles"
@@ -50,7 +50,7 @@ def opened(folder: Path, **settings: Any) -> Iterator[TestClient]:
 def source(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server that knows pendulum and slider."""
     path = tmp_path_factory.mktemp("source") / "store.db"
-    path.write_bytes(template.read_bytes())
+    copied(template, path)
     with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store, make_client(store) as client:
         yield client
 
