@@ -107,14 +107,20 @@ def stored_definitions(connection: Connection, spec: TreeSpec) -> Mapping[str, D
 
 
 def renew_part(database: Database, digest: str, max_nodes: int = MAX_NODES, viewer: Viewer = OPERATOR) -> PartContent:
-    """Derive a part anew, and write it over what is stored under its digest. Raises as :func:`part_anew`."""
+    """Derive a part anew, and write it over what is stored under its digest. Raises as :func:`part_anew`.
+
+    The old program stays under its digest, for items of jobs that are queued with it, if this server derived it.
+    """
     with database.read() as connection:
-        before = content.get_row(connection, digest)["program"]
+        row = content.get_row(connection, digest)
+        before, is_ours = row["program"], row["seal"] == content.seal_of_part(connection, row)
         made = part_anew(connection, digest, max_nodes)[1]
     with database.write() as connection:
         mend_part(connection, made)
         catalogue.show_again(connection, digest)
         if made.row["program"] != before:
+            if not is_ours:
+                content.forget_program(connection, before)
             audit.note(connection, viewer, "substructure.renew", digest, program=made.row["program"], was=before)
     return made
 
@@ -129,7 +135,8 @@ def renew_tree(
     for digest in _stale_parts_of(database, name, revision):
         renew_part(database, digest, max_nodes, viewer)
     with database.read() as connection:
-        before = read_tree(connection, name, revision)[0].program
+        was = read_tree(connection, name, revision)[0]
+        before = was.program
         found = tree_anew(connection, name, revision, max_nodes)
     packed, nodes = pack(found.program), len(found.program)
     with database.write() as connection:
@@ -137,6 +144,8 @@ def renew_tree(
         trees.replace_model(connection, found.tree)
         trees.put_parts(connection, name, revision, found.parts)
         if found.program.digest != before:
+            if not was.is_derived:
+                content.forget_program(connection, before)
             told = {"program": found.program.digest, "was": before}
             audit.note(connection, viewer, "tree.renew", f"{name}@{revision}", **told)
     return found

@@ -17,7 +17,7 @@ from service.derivation import software
 from service.integrity import checked
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
 from service.queries import catalogue, content, trees
-from service.queries.formulas import FormulaRow, list_formulas
+from service.queries.formulas import FormulaRow, read_index
 from service.refusals import Refused
 from service.viewer import ANYBODY
 from substructures.documents import read_json
@@ -115,7 +115,7 @@ def _check_part(connection: Connection, digest: str) -> None:
     wrong = [name for name in made.row if name not in APART and row[name] != made.row[name]]
     if _lasting(read_json(row["certificate"].encode())) != _lasting(read_json(made.row["certificate"].encode())):
         wrong.append("certificate")
-    if list_formulas(connection, digest) != [FormulaRow(*values) for values in made.formulas]:
+    if read_index(row["outputs"], row["formulas"]) != [FormulaRow(*values) for values in made.formulas]:
         wrong.append("index of formulas")
     _require_none(wrong)
     _require_own(stored.software, stored.is_derived)

@@ -6,11 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, RowMapping, bindparam, func, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, update
 
 from service.database.packed import unpack
 from service.database.seals import seal
-from service.database.tables import parts, programs
+from service.database.tables import parts, programs, trees
 from service.derivation import software
 from service.integrity import checked, missing, reading
 from service.queries.common import insert_missing, now
@@ -90,6 +90,12 @@ def replace_program(connection: Connection, digest: str, content: bytes, nodes: 
     """Store a packed program in the place of what is there."""
     put_program(connection, digest, content, nodes)
     connection.execute(update(programs).where(programs.c.digest == digest).values(content=content, nodes=nodes))
+
+
+def forget_program(connection: Connection, digest: str) -> None:
+    """Remove a program that no part and no tree has any more, and that this server did not derive."""
+    used = exists().where(parts.c.program == digest) | exists().where(trees.c.program == digest)
+    connection.execute(delete(programs).where(programs.c.digest == digest, ~used))
 
 
 def program_of(connection: Connection, digest: str) -> tuple[str | None, str]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import orjson
 from sqlalchemy import Connection, select
@@ -70,7 +69,7 @@ def list_formulas(
     if index_digest(stored.outputs, stored.formulas) != stored.index_digest:
         raise damaged("the index of the formulas of a part", part, "it is another one than was stored")
     with reading("the index of the formulas of a part", part):
-        rows = _unpacked(orjson.loads(stored.outputs), orjson.loads(stored.formulas))
+        rows = read_index(stored.outputs, stored.formulas)
     return [
         row
         for row in rows
@@ -80,10 +79,11 @@ def list_formulas(
     ]
 
 
-def _unpacked(outputs: list[list[Any]], formulas: list[list[Any]]) -> list[FormulaRow]:
-    common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in outputs]
+def read_index(outputs: str, formulas: str) -> list[FormulaRow]:
+    """The formulas out of both columns. Raises ValueError, TypeError, IndexError for what :func:`packed` does not make."""
+    common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in orjson.loads(outputs)]
     rows = []
-    for position, (number, body, coordinate, entry, operations) in enumerate(formulas):
+    for position, (number, body, coordinate, entry, operations) in enumerate(orjson.loads(formulas)):
         quantity, output, shape, symmetry = common[number]
         place = position, quantity, body, coordinate
         rows.append(FormulaRow(*place, shape, symmetry, operations, output, _json(entry)))

@@ -105,6 +105,11 @@ def test_a_store_from_elsewhere(case: str, is_in_background: bool, template: Pat
             assert Renewal(store).all() == 0
             assert [each for each in verify_all(store.database) if each.fault] == []
         served(make_client(store))
+        with store.database.read() as connection:
+            kept = set(
+                connection.exec_driver_sql("SELECT program FROM parts UNION SELECT program FROM trees").scalars()
+            )
+            assert set(connection.exec_driver_sql("SELECT digest FROM programs").scalars()) == kept
 
 
 @pytest.mark.parametrize("case", [case for case in DONE if case != "nothing"])

@@ -322,8 +322,8 @@ def added_to_metric(program: Any, *operations: list[Any]) -> None:
 
 def bump(program: Any) -> None:
     """metric + 1000 exp(-1e8 (q - 1/2)^2): nothing but near to q = 1/2."""
-    program["symbols"].append({"name": "q", "kind": "coordinate", "unit": ""})
-    n, q = len(program["operations"]), len(program["symbols"]) - 1
+    q = next(k for k, symbol in enumerate(program["symbols"]) if symbol["kind"] == "coordinate")
+    n = len(program["operations"])
     exponent = [["sym", q], ["rat", "1", "2"], ["sub", n, n + 1], ["powi", n + 2, 2], ["int", "-100000000"]]
     more = [["mul", n + 3, n + 4], ["exp", n + 5], ["int", "1000"], ["mul", n + 6, n + 7]]
     added_to_metric(program, *exponent, *more)

@@ -16,6 +16,7 @@ from service.app import open_store
 from service.cli.main import main
 from service.database.packed import pack, unpack
 from service.integrity import digest_of
+from service.operations.verification import verify_all
 from service.settings import Settings
 from substructures.expr.program import Program
 
@@ -357,6 +358,24 @@ def test_what_is_served_is_derived_anew(template: Path, tmp_path: Path, damage: 
         assert client.get("/v1/substructures/slider").status_code == 200
         assert all(each["derived_here"] for kind in ("substructures", "trees") for each in _items(client, kind))
         assert main(["verify", "--database", f"sqlite:///{tmp_path / 'store.db'}"]) == 0
+
+
+@pytest.mark.parametrize("is_asked", [True, False])
+def test_a_tree_whose_row_points_to_the_program_of_another(filled: TestClient, is_asked: bool) -> None:
+    """Both programs are valid, of trees of like structure: the numbers are those of the tree, and verify names it."""
+    store = filled.app.state.store  # type: ignore[attr-defined]
+    for name, mass in (("dmg14", 3), ("dmg15", 4)):
+        arm = {"name": "arm", "substructure": "pendulum", "parameters": {"m": mass}}
+        assert filled.post("/v1/trees", json={"name": name, "instances": [arm]}).status_code == 201
+    with store.database.write() as connection:
+        connection.exec_driver_sql(
+            "UPDATE trees SET program = (SELECT program FROM trees WHERE name = 'dmg15') WHERE name = 'dmg14'"
+        )
+    if is_asked:
+        answer = filled.post("/v1/trees/dmg14/evaluations", json=EVALUATION)
+        assert (answer.status_code, answer.json()["metric"]) == (200, [[pytest.approx(3.3, rel=1e-15)]])
+    faults = {finding.what: finding.fault for finding in verify_all(store.database) if finding.fault}
+    assert list(faults) == ([] if is_asked else ["tree dmg14@1"])
 
 
 def _items(client: TestClient, kind: str) -> list[dict[str, Any]]:

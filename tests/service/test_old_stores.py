@@ -66,7 +66,9 @@ def store(path: Path) -> Iterator[Store]:
 
 
 def test_there_is_one_of_each_schema() -> None:
-    assert [f"{number:04}" for number in range(1, int(NEWEST))] == OLD
+    """0010 came with 0011: no version has had it."""
+    schemas = [f"{number:04}" for number in range(1, int(NEWEST))]
+    assert [name for name in schemas if name != "0010"] == OLD
 
 
 def _is_right(client: TestClient | Client) -> None:
