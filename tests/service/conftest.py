@@ -66,6 +66,13 @@ TREE: dict[str, Any] = {
 HAND: dict[str, Any] = {"name": "hand", "substructure": "pendulum", "at": "arm.tip", "parameters": {"m": "arm.m/4"}}
 
 
+def copied(template: Path, path: Path) -> Path:
+    """A copy of a store with the key of its seals, as the server knows it that made it."""
+    shutil.copy(template, path)
+    shutil.copy(f"{template}.key", f"{path}.key")
+    return path
+
+
 def make_client(store: Store) -> TestClient:
     """A client of an app around the store; the app must never raise into the server."""
     return TestClient(create_app(store), base_url="http://localhost", raise_server_exceptions=True)
@@ -118,7 +125,7 @@ def settings(tmp_path: Path) -> Settings:
 def store(settings: Settings, request: pytest.FixtureRequest, tmp_path: Path) -> Iterator[Store]:
     """The store of ``client``, and of ``filled`` when the test asks for that."""
     if "filled" in request.fixturenames:
-        shutil.copy(request.getfixturevalue("template"), tmp_path / "store.db")
+        copied(request.getfixturevalue("template"), tmp_path / "store.db")
     with open_store(settings) as opened:
         yield opened
 

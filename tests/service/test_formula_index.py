@@ -63,6 +63,9 @@ def rows_of(connection: sa.Connection, part: str) -> list[FormulaRow]:
     return [FormulaRow(*row) for row in connection.execute(query)]
 
 
+LATER = ("source", "mass", "software", "recipe")  # columns that came after
+
+
 def old_store(address: str, contents: list[PartContent]) -> None:
     """A store of revision 0007 with these parts."""
     engine = sa.create_engine(address)
@@ -71,7 +74,7 @@ def old_store(address: str, contents: list[PartContent]) -> None:
         for content in contents:
             program = {"digest": content.row["program"], "content": content.program, "nodes": content.nodes}
             connection.execute(sa.insert(metadata.tables["programs"]).values(**program, created="then"))
-            row = {name: value for name, value in content.row.items() if name not in ("source", "mass")}
+            row = {name: value for name, value in content.row.items() if name not in LATER}
             old = sa.table("parts", *map(sa.column, (*row, "created")))
             connection.execute(sa.insert(old).values(**row, created="then"))
             rows = [{"part": content.digest, **dict(zip(COLUMNS, row, strict=True))} for row in content.formulas]
@@ -141,8 +144,11 @@ def test_an_older_store_is_carried_over_as_a_whole(address: str, contents: list[
         assert "formulas" not in sa.inspect(connection).get_table_names()
         for content in contents:
             assert rows_of(connection, content.digest) == expected(content)
-            assert list_formulas(connection, content.digest) == expected(content)
             written: Any = connection.exec_driver_sql("SELECT created FROM parts").scalars().all()
             assert written == ["then"] * len(contents)
-    assert [finding.fault for finding in verify_all(database)] == [""] * len(contents)
+    assert all("has not derived it" in finding.fault for finding in verify_all(database))
+    assert all(finding.is_sound for finding in verify_all(database, repair=True))
+    with database.read() as connection:
+        for content in contents:
+            assert list_formulas(connection, content.digest) == expected(content)
     database.close()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator
@@ -23,7 +22,7 @@ from service.database.connections import Database, DatabaseError
 from service.settings import Settings
 from service.store import Store
 
-from .conftest import PENDULUM, SLIDER, make_client
+from .conftest import PENDULUM, SLIDER, copied, make_client
 from .farm import Server, running
 
 
@@ -98,7 +97,7 @@ Damage = Callable[[bytes], bytes]
 
 def damaged(template: Path, tmp_path: Path, damage: Damage = random_bytes) -> tuple[Path, bytes]:
     path = tmp_path / "store.db"
-    shutil.copy(template, path)
+    copied(template, path)
     with closing(sqlite3.connect(path)) as connection:
         size = connection.execute("PRAGMA page_size").fetchone()[0]
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
@@ -137,7 +136,7 @@ def test_damage_of_a_large_store_is_found_while_it_answers(
 
 
 def test_a_sound_large_store_is_closed_at_once(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shutil.copy(template, tmp_path / "store.db")
+    copied(template, tmp_path / "store.db")
     monkeypatch.setattr("service.database.file.LARGE", 0)
     for _ in range(5):
         with closing(Database(f"sqlite:///{tmp_path / 'store.db'}")) as database, database.write() as connection:
