@@ -8,6 +8,7 @@ import io
 import numpy as np
 import pytest
 from analysis_models import FINE, PERIOD, catalogue_model, defaults, oscillator, random_model
+from exported_models import derived_anew
 from in_depth import seeds
 from random_trees import model_of, random_states
 
@@ -39,7 +40,7 @@ def test_the_right_hand_side_is_forward_dynamics(number: int) -> None:
 
 
 def test_kernels_are_reused() -> None:
-    one, two = catalogue_model("acrobot"), catalogue_model("acrobot")
+    one, two = derived_anew("acrobot"), derived_anew("acrobot")
     assert one is not two
     assert forward_kernel(one) is forward_kernel(two)
 
