@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from substructures.loads.pairs import Place
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -19,7 +20,6 @@ from substructures.mechanics.kinematics import (
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Rotation, Turn, Vector, add, apply, cross, transpose
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
-from substructures.part.pairs import Place
 
 
 @dataclass(frozen=True)

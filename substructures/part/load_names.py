@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from substructures.documents.fields import in_si
 from substructures.expr.graph import Expr
 from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
-from substructures.expr.syntax import ExpressionError, read
+from substructures.loads.scope import Lookup, Scope
 from substructures.part.definition import Definition
 from substructures.part.parameters import si_unit
-from substructures.part.scope import Lookup, Scope
 from substructures.part.topology import Topology
-
-NONE: frozenset[str] = frozenset()
 
 
 def load_names(scope: Scope, definition: Definition, topology: Topology) -> Lookup:
@@ -47,15 +42,6 @@ def load_names(scope: Scope, definition: Definition, topology: Topology) -> Look
         return None
 
     return lookup
-
-
-def names_in(value: Any) -> frozenset[str]:
-    """The names in a number or expression; none in one that cannot be read, which is told where it is evaluated."""
-    text = in_si(value)
-    try:
-        return frozenset(str(step.value) for step in read(text) if step.op == "name") if isinstance(text, str) else NONE
-    except ExpressionError:
-        return NONE
 
 
 def velocities(topology: Topology) -> frozenset[str]:
