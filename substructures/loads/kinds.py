@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Annotated, Any
 
 from pydantic import Field, RootModel
@@ -34,3 +35,9 @@ LoadOfTree = Annotated[
 
 class AnyTreeLoad(RootModel[LoadOfTree]):
     """One load of a tree, by its type."""
+
+
+def acts_on(given: Mapping[str, Any]) -> list[str]:
+    """What a load of a tree acts on, from its document: its frames one after the other, or a coordinate."""
+    load = AnyTreeLoad.model_validate(given, context={"stored": True}).root
+    return [end.frame for end in load.ends("")] or [given[name] for name in ("coordinate",) if name in given]
