@@ -52,6 +52,15 @@ class Between(ABC):
     def ends(self, load: Plain) -> tuple[Frame, Frame]:
         """The frames between which a load acts."""
 
+    @abstractmethod
+    def stretch(self, load: Plain, length: Ball, changes: Slopes) -> None:
+        """Q_a = -(k (l - l0) + c l') dl/dq^a of a spring and damper along a length l,   V = k (l - l0)^2 / 2."""
+
+    def law(self, load: Plain) -> tuple[Ball, Ball, Ball]:
+        """Its stiffness, damping and rest length."""
+        k, c, l0 = (self.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
+        return k, c, l0
+
     def turns(self, frame: Frame) -> dict[int, Matrix]:
         """w_a of all joints that carry a frame."""
         return {a: self.bodies.joints[a].w for a in self.bodies.path(frame.carrier)}
@@ -69,9 +78,7 @@ class Between(ABC):
         kind, start, end = measured(name) or ("", "", "")
         A, B = self.frame(start), self.frame(end)
         if kind == "distance":
-            d, changes = B.p - A.p, difference(self.moves(B, B.p), self.moves(A, A.p))
-            length = dot(d, d).sqrt()
-            return length, {a: dot(d, u) / length for a, u in changes.items()}
+            return distance(self, A, A.p, B, B.p)
         # tan(angle) = y / x of the first axis of B
         axis, turn, other = column(B.A, 0), self.turns(B), self.turns(A)
         x, y = (dot(axis, column(A.A, i)) for i in range(2))
@@ -103,6 +110,13 @@ class MeasuredNames(Mapping[str, Ball]):
 
     def __contains__(self, name: object) -> bool:
         return name in self.names or (isinstance(name, str) and measured(name) is not None)
+
+
+def distance(found: Between, A: Frame, x: Matrix, B: Frame, y: Matrix) -> tuple[Ball, Slopes]:
+    """Of two points of frames, with its changes: e . (u_B - u_A)."""
+    d = y - x
+    length = dot(d, d).sqrt()
+    return length, {a: dot(d, u) / length for a, u in difference(found.moves(B, y), found.moves(A, x)).items()}
 
 
 def difference(x: Mapping[int, Matrix], y: Mapping[int, Matrix]) -> dict[int, Matrix]:
