@@ -12,6 +12,5 @@ units        dimensions of their places
 kinds        all types of loads, of parts and of trees
 ===========  =======================================================================================================
 
-The laws are :mod:`.spring`, :mod:`.bushing`, :mod:`.vectors` (forces and torques), :mod:`.joint`, :mod:`.potential` and
-:mod:`.friction`. A new one is a file, and a line in :mod:`.kinds`.
+Every other file is a law (``vectors``: forces and torques); a new one is a file, and a line in :mod:`.kinds`.
 """
