@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, fmpq
@@ -146,6 +147,21 @@ def bushing(found: Between, load: Plain) -> None:
             found.keep(k[i] * d_i * d_i * HALF, -k[i] * d_i, along)
         if found.is_steady(*load.get("angular_stiffness", NONE)):
             found.keep(h * (1 - dot(axis, other)), h, parallel)
+
+
+def cable(found: Between, load: Plain) -> None:
+    """A spring and damper along the sum of the distances of consecutive points."""
+    given = [{"frame": x} if isinstance(x, str) else x for x in load["along"]]
+    frames = [found.frame(x["frame"]) for x in given]
+    points = [F.p + F.A * found.numbers.vector(x.get("at", NONE)) for F, x in zip(frames, given, strict=True)]
+    total, changes = arb(0), dict[int, Ball]()
+    for (A, x), (B, y) in pairwise(zip(frames, points, strict=True)):
+        length, of_leg = distance(found, A, x, B, y)
+        total += length
+        changes = {a: changes.get(a, arb(0)) + of_leg.get(a, arb(0)) for a in {**changes, **of_leg}}
+    if load.get("slack"):
+        total = total.max(found.numbers.read(load.get("length", 0)))
+    found.stretch(load, total, changes)
 
 
 def in_world(found: Between, load: Plain) -> Matrix:

@@ -15,6 +15,7 @@ from substructures.certificate.between import (
     MeasuredNames,
     Slopes,
     bushing,
+    cable,
     distance,
     force_changes,
     in_world,
@@ -359,6 +360,7 @@ LOADS: dict[str, Callable[[Forces, Plain], None]] = {
     "torque": _torque,
     "spring": _spring,
     "bushing": lambda found, load: bushing(found.between, load),
+    "cable": lambda found, load: cable(found.between, load),
     "potential": _potential,
     "friction": _friction_load,
 }

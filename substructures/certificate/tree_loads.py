@@ -16,6 +16,7 @@ from substructures.certificate.between import (
     MeasuredNames,
     Slopes,
     bushing,
+    cable,
     distance,
     force_changes,
     in_world,
@@ -135,6 +136,7 @@ def _potential(found: TreeForces, load: Plain) -> None:
 LOADS: dict[str, Callable[[TreeForces, Plain], None]] = {
     "spring": _spring,
     "bushing": bushing,
+    "cable": cable,
     "force": _force,
     "torque": _torque,
     "joint": _joint_load,

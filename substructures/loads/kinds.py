@@ -9,6 +9,7 @@ from pydantic import Field, RootModel
 
 from substructures.documents.fields import BY_TYPE
 from substructures.loads.bushing import Bushing, BushingLoad
+from substructures.loads.cable import CableLoad, TreeCable
 from substructures.loads.friction import FrictionLoad, TreeFriction
 from substructures.loads.joint import JointLoad, TreeJointLoad
 from substructures.loads.potential import PotentialLoad, TreePotential
@@ -22,12 +23,12 @@ def _without_mapping(schema: dict[str, Any]) -> None:
 
 
 LoadOfPart = Annotated[
-    ForceOfPart | TorqueOfPart | SpringLoad | BushingLoad | JointLoad | PotentialLoad | FrictionLoad,
+    ForceOfPart | TorqueOfPart | SpringLoad | BushingLoad | CableLoad | JointLoad | PotentialLoad | FrictionLoad,
     Field(discriminator="type", json_schema_extra=_without_mapping),
     BY_TYPE,
 ]
 LoadOfTree = Annotated[
-    TreeSpring | Bushing | TreeForce | TreeTorque | TreeJointLoad | TreePotential | TreeFriction,
+    TreeSpring | Bushing | TreeCable | TreeForce | TreeTorque | TreeJointLoad | TreePotential | TreeFriction,
     Field(discriminator="type"),
     BY_TYPE,
 ]
