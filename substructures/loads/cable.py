@@ -9,25 +9,21 @@ p = max(0, L - L0) = (x + |x|)/2, x = L - L0 and |x| = sqrt(x^2), as end stops d
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from itertools import pairwise
-from typing import Any, ClassVar, Literal
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number, NumberVector
-from substructures.documents.units import Dimension
-from substructures.expr.graph import Expr
-from substructures.loads.document import Load, LoadFormulas
+from substructures.documents.fields import Name, NumberVector
+from substructures.loads.document import LoadFormulas
 from substructures.loads.ends import NONE, FrameOfTree, OfTree
-from substructures.loads.names import End, Names
+from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import Reach, rate, scaled
-from substructures.loads.units import DAMPING, LENGTH, STIFFNESS
+from substructures.loads.spring import ElasticLoad
 
-NUMBERS = ("stiffness", "damping", "length")
 MOST = 100
 _ALONG = "from end to end: frames, or points of frames"
 
@@ -45,19 +41,14 @@ class PointOfTree(PointOfPart):
     frame: FrameOfTree
 
 
-class CableLoad(Load):
+class CableLoad(ElasticLoad):
     """A cable, belt or tendon along bodies and ports: its tension is k (L - length) + c L' of its whole length L."""
 
-    dimensions: ClassVar[Mapping[str, Dimension]] = {"stiffness": STIFFNESS, "damping": DAMPING, "length": LENGTH}
     frames: ClassVar[tuple[str, ...]] = ("along",)
-    is_elastic: ClassVar[bool] = True
 
     type: Literal["cable"]
     along: tuple[Name | PointOfPart, ...] = Field(min_length=2, max_length=MOST, description=_ALONG)
-    stiffness: Number = Field(0, description="N/m; of the whole length")
-    damping: Number = Field(0, description="N s/m; not of one that can be slack")
-    length: Number = Field(0, description="m; unstretched")
-    slack: bool = Field(False, description="whether it pulls only, and is slack where it is shorter")
+    slack: bool = Field(False, description="whether it pulls only, and is slack where it is shorter; without damping")
 
     def ends(self, pointer: str) -> tuple[End, ...]:
         """All points."""
@@ -65,12 +56,11 @@ class CableLoad(Load):
 
     def law(self, names: Names, pointer: str) -> CableLaw | None:
         """Its points and numbers."""
-        ends = [names.end(end) for end in self.ends(pointer)]
-        k, c, l0 = names.numbers(self, NUMBERS, pointer)
-        if self.slack and not c.is_zero:
+        found = self.read(names, pointer)
+        if self.slack and found is not None and not found.damping.is_zero:
             message = f"the {self.called} can be slack: its force would jump with damping, which it has none of"
             names.scope.fault(f"{pointer}/damping", "damping-of-slack", message)
-        return None if None in ends else CableLaw(self, pointer, ends, k, c, l0)
+        return None if found is None else CableLaw(found, self.slack, self.called)
 
 
 class TreeCable(OfTree, CableLoad):
@@ -87,26 +77,23 @@ def _end(given: str | PointOfPart, pointer: str) -> End:
 
 @dataclass(frozen=True)
 class CableLaw:
-    """Its points, stiffness, damping and rest length."""
+    """Its points and numbers, whether it pulls only, and what messages call it."""
 
-    load: CableLoad
-    pointer: str
-    ends: list[Any]
-    stiffness: Expr
-    damping: Expr
-    length: Expr
+    given: Elastic
+    slack: bool
+    called: str
 
     def acts(self, names: Names, found: LoadFormulas) -> None:
         """Force and potential."""
         whole = self._whole(names)
         if whole is None:
             return
-        k, c, reach = self.stiffness, self.damping, whole.forces
-        stretch = whole.potential - self.length
-        if self.load.slack:
+        k, c, reach = self.given.stiffness, self.given.damping, whole.forces
+        stretch = whole.potential - self.given.length
+        if self.slack:
             stretch = (stretch + names.graph.sqrt(stretch * stretch)) * Fraction(1, 2)
-        pull, given, law = k * stretch, (self.load.stiffness, self.load.length), (k, self.length)
-        energy = names.elastic(pull * stretch, given, law, lambda: scaled(reach, -pull), self.pointer)
+        pull = k * stretch
+        energy = names.elastic(self.given, pull * stretch, lambda: scaled(reach, -pull))
         tension = pull if c.is_zero else pull + c * rate(names.graph, reach, names.rates)
         found.add(reach, -tension)
         found.keep(energy * Fraction(1, 2))
@@ -114,11 +101,11 @@ class CableLaw:
     def _whole(self, names: Names) -> LoadFormulas | None:
         """Its length, as the potential of a tension of 1, and dL/dq^a; None after a fault."""
         whole = LoadFormulas(Reach({}), names.graph.zero)
-        for i, ends in enumerate(pairwise(self.ends)):
+        for i, ends in enumerate(pairwise(self.given.ends)):
             reach, length2 = names.stretch(ends)
             if length2.is_zero:
-                message = f"the points {i + 1} and {i + 2} of the {self.load.called} are one and the same point"
-                names.scope.fault(f"{self.pointer}/along/{i + 1}", "coincident-ends", message)
+                message = f"the points {i + 1} and {i + 2} of the {self.called} are one and the same point"
+                names.scope.fault(f"{self.given.pointer}/along/{i + 1}", "coincident-ends", message)
                 return None
             length = names.graph.sqrt(length2)
             whole.add(reach, 1 / length)

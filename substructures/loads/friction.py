@@ -22,7 +22,7 @@ from substructures.loads.ends import CoordinateOfTree, OfTree
 from substructures.loads.names import Names
 from substructures.loads.pairs import Reach
 from substructures.loads.scope import Lookup, Scope
-from substructures.loads.units import EFFORT, RATE
+from substructures.loads.units import EFFORT, RATE, fields_of, of_kind
 
 #: dimensions of its numbers, of a revolute and of a prismatic coordinate
 FRICTION: dict[str, tuple[Dimension, Dimension]] = {
@@ -51,9 +51,8 @@ class FrictionLoad(FrictionLaw, Load):
 
     def places(self, pointer: str, kinds: Mapping[str, int]) -> Iterator[Place]:
         """By the coordinate."""
-        for name, dimensions in FRICTION.items() if self.coordinate in kinds else ():
-            if getattr(self, name) is not None:
-                yield f"{pointer}/{name}", getattr(self, name), dimensions[kinds[self.coordinate]]
+        if self.coordinate in kinds:
+            yield from fields_of(pointer, self, of_kind(FRICTION, kinds[self.coordinate]))
 
 
 class TreeFriction(OfTree, FrictionLoad):

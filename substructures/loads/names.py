@@ -11,9 +11,9 @@ from substructures.documents.fields import in_si
 from substructures.errors import SOUGHT, listed, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.syntax import ExpressionError, measured, read
-from substructures.loads.measures import Measures
-from substructures.loads.pairs import Pair, Place, Reach
-from substructures.loads.scope import ExprVector, Scope
+from substructures.loads.measures import MEASURES, Measure
+from substructures.loads.pairs import Pair, Place, Reach, rate
+from substructures.loads.scope import ExprVector, Lookup, Scope
 from substructures.mechanics.linear3 import ZERO, Vector
 
 NONE: frozenset[str] = frozenset()
@@ -43,6 +43,18 @@ class End:
     is_body: bool = False
 
 
+@dataclass(frozen=True)
+class Elastic:
+    """A spring and damper along ``ends``, read; ``given``: stiffness and rest length as written."""
+
+    pointer: str
+    ends: Sequence[Any]
+    given: tuple[Any, Any]
+    stiffness: Expr
+    damping: Expr
+    length: Expr
+
+
 class Names(ABC):
     """The names of expressions, the frames and the coordinates (``coordinates``: index by name)."""
 
@@ -51,7 +63,8 @@ class Names(ABC):
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
         self.graph: Graph = scope.graph
-        self.measures = Measures(scope, self._origin, self.plain, lambda: self.rates)
+        #: those that are known; each is formed once
+        self._measures: dict[str, Measure] = {}
 
     @property
     @abstractmethod
@@ -74,10 +87,6 @@ class Names(ABC):
     def place(self, anchor: Any) -> Place:
         """Where it is."""
 
-    def _origin(self, name: str, pointer: str) -> Place | None:
-        anchor = self.anchor(End(name, pointer), ZERO)
-        return None if anchor is None else self.place(anchor)
-
     def end(self, end: End) -> Any:
         """The anchor of an end, and of its point; None after a fault."""
         point = self.scope.vector(end.at, end.at_pointer, self.constant) if end.at else ZERO
@@ -96,16 +105,46 @@ class Names(ABC):
 
     def read(self, value: Any, pointer: str) -> Expr:
         """A number, or an expression that may name measures."""
-        return self.scope.read(value, pointer, self.measures.at(pointer))
+        return self.scope.read(value, pointer, self.lookup(pointer))
+
+    def lookup(self, pointer: str) -> Lookup:
+        """What the names of the expression at a pointer stand for, measures among them."""
+
+        def found(name: str) -> Expr | None:
+            """Zero after a fault of a measure."""
+            if measured(name) is None:
+                return self.plain(name)
+            measure = self.measure(name, pointer)
+            if measure is None:
+                return self.graph.zero
+            return rate(self.graph, measure.slopes, self.rates) if "'" in name else measure.value
+
+        return found
+
+    def standing_in(self, name: str) -> Expr | None:
+        """The same, with symbols of their names in the place of measures."""
+        return self.plain(name) if measured(name) is None else self.graph.symbol(name)
+
+    def measure(self, name: str, pointer: str) -> Measure | None:
+        """A measure by its name, without the mark of a rate; a fault, and None, where there is none."""
+        kind, start, end = measured(name.replace("'", "")) or ("", "", "")
+        key = f"{kind}({start}, {end})"
+        if key not in self._measures:
+            anchors = [self.anchor(End(frame, pointer), ZERO) for frame in (start, end)]
+            if None in anchors:
+                return None
+            form, code, message = MEASURES[kind]
+            found = form(self.pair(anchors))
+            if found is None:
+                self.scope.fault(pointer, code, f"{key}: {message}")
+                return None
+            self._measures[key] = found
+        return self._measures[key]
 
     def vector(self, values: Sequence[Any], pointer: str) -> ExprVector:
         """Three of them."""
         x, y, z = (self.read(value, f"{pointer}/{i}") for i, value in enumerate(values))
         return x, y, z
-
-    def numbers(self, load: Any, fields: Sequence[str], pointer: str) -> list[Expr]:
-        """Numbers of a load by their fields."""
-        return [self.read(getattr(load, name), f"{pointer}/{name}") for name in fields]
 
     def coordinate(self, name: str, pointer: str) -> int | None:
         """The index of a coordinate; a fault, and None, where there is none."""
@@ -147,20 +186,13 @@ class Names(ABC):
         """Tell of a force whose potential is left out."""
         self.scope.notices.append({"pointer": pointer, "code": "no-potential", "message": message})
 
-    def elastic(
-        self,
-        energy: Expr,
-        given: Sequence[Any],
-        law: Sequence[Expr],
-        pulls: Callable[[], Mapping[int, Expr]],
-        pointer: str,
-    ) -> Expr:
-        """The potential of a spring: ``energy``, if what it is ``given`` by does not move.
+    def elastic(self, spring: Elastic, energy: Expr, pulls: Callable[[], Mapping[int, Expr]]) -> Expr:
+        """The potential of a spring: ``energy``, if what it is given by does not move.
 
-        ``law``: the same, read; ``pulls``: what it does to coordinates without damping.
+        ``pulls``: what it does to coordinates without damping.
         """
-        del law, pulls
-        return self.kept(energy, self.is_steady(*given), pointer)
+        del pulls
+        return self.kept(energy, self.is_steady(*spring.given), spring.pointer)
 
     def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:
         """A force that is given as a formula, and its terms, if a potential of them is looked for."""

@@ -33,7 +33,7 @@ class PotentialLoad(Load):
     def law(self, names: Names, pointer: str) -> PotentialLaw | None:
         """V(q, s, u, t); a velocity in it is a fault, since then -d_a V would not be the force."""
         place, before = f"{pointer}/potential", len(names.scope.faults)
-        energy = names.scope.read(self.potential, place, names.measures.standing_in)
+        energy = names.scope.read(self.potential, place, names.standing_in)
         if len(names.scope.faults) > before:
             return None
         used = sorted(name for name in names_in(self.potential) if names.moves(name))
@@ -41,7 +41,7 @@ class PotentialLoad(Load):
             if "'" in name:
                 message = f"a potential depends on coordinates, not on velocities: '{name}' is one"
                 names.scope.fault(place, "velocity-in-potential", message)
-        found = {name: names.measures.measure(name, place) for name in used if measured(name) is not None}
+        found = {name: names.measure(name, place) for name in used if measured(name) is not None}
         measures = {name: each for name, each in found.items() if each is not None}
         return None if len(names.scope.faults) > before else PotentialLaw(place, energy, used, measures)
 

@@ -8,37 +8,45 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
-from typing import Any, ClassVar, Literal
+from functools import partial
+from typing import ClassVar, Literal
 
 from pydantic import Field
 
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Number, NumberVector
 from substructures.documents.units import Dimension
-from substructures.expr.graph import Expr
 from substructures.loads.document import Load, LoadFormulas
 from substructures.loads.ends import NONE, EndsOfTree
-from substructures.loads.names import End, Names
+from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import rate, scaled
 from substructures.loads.units import DAMPING, LENGTH, STIFFNESS
 
-NUMBERS = ("stiffness", "damping", "length")
 
+class ElasticLoad(Load):
+    """Springs and dampers along a length."""
 
-class _Spring(Load):
     dimensions: ClassVar[Mapping[str, Dimension]] = {"stiffness": STIFFNESS, "damping": DAMPING, "length": LENGTH}
     is_elastic: ClassVar[bool] = True
 
-    type: Literal["spring"]
     stiffness: Number = Field(0, description="N/m")
     damping: Number = Field(0, description="N s/m")
     length: Number = Field(0, description="m; unstretched")
 
+    def read(self, names: Names, pointer: str) -> Elastic | None:
+        """Its ends and numbers; None after a fault of an end."""
+        ends = [names.end(end) for end in self.ends(pointer)]
+        k, c, l0 = (names.read(getattr(self, field), f"{pointer}/{field}") for field in self.dimensions)
+        return None if None in ends else Elastic(pointer, ends, (self.stiffness, self.length), k, c, l0)
+
+
+class _Spring(ElasticLoad):
+    type: Literal["spring"]
+
     def law(self, names: Names, pointer: str) -> SpringLaw | None:
         """Its ends and numbers."""
-        ends = [names.end(end) for end in self.ends(pointer)]
-        k, c, l0 = names.numbers(self, NUMBERS, pointer)
-        return None if None in ends else SpringLaw(self, pointer, ends, k, c, l0)
+        found = self.read(names, pointer)
+        return None if found is None else SpringLaw(found, self.called)
 
 
 class Point(DocumentPart):
@@ -73,23 +81,19 @@ class TreeSpring(EndsOfTree, _Spring):
 
 @dataclass(frozen=True)
 class SpringLaw:
-    """Its ends, stiffness, damping and rest length."""
+    """Its ends and numbers, and what messages call it."""
 
-    load: _Spring
-    pointer: str
-    ends: list[Any]
-    stiffness: Expr
-    damping: Expr
-    length: Expr
+    given: Elastic
+    called: str
 
     def acts(self, names: Names, found: LoadFormulas) -> None:
         """Force and potential."""
-        graph, k, c, l0 = names.graph, self.stiffness, self.damping, self.length
+        graph, k, c, l0 = names.graph, self.given.stiffness, self.given.damping, self.given.length
         # w_a = d . (u_Ba - u_Aa),   l l' = w_a q'^a
-        reach, length2 = names.stretch(self.ends)
+        reach, length2 = names.stretch(self.given.ends)
         if length2.is_zero:
-            message = f"the ends of the {self.load.called} are one and the same point"
-            names.scope.fault(self.pointer, "coincident-ends", message)
+            message = f"the ends of the {self.called} are one and the same point"
+            names.scope.fault(self.given.pointer, "coincident-ends", message)
             return
         # of a spring without rest length: k, and 2 V = k l^2
         factor, energy = k, k * length2
@@ -97,8 +101,7 @@ class SpringLaw:
             # k (1 - l0/l) in place of k, and 2 V = k (l - l0)^2
             length = graph.sqrt(length2)
             factor, energy = k - k * l0 / length, k * (length - l0) ** 2
-        given, law, pull = (self.load.stiffness, self.load.length), (k, l0), factor
-        energy = names.elastic(energy, given, law, lambda: scaled(reach, -pull), self.pointer)
+        energy = names.elastic(self.given, energy, partial(scaled, reach, -factor))
         if not c.is_zero:
             # c l'/l = c (l l') / l^2
             factor = factor + c * rate(graph, reach, names.rates) / length2

@@ -31,6 +31,11 @@ def vector(pointer: str, values: Sequence[Any], dimension: Dimension | None) -> 
         yield f"{pointer}/{i}", value, dimension
 
 
+def of_kind(fields: Mapping[str, tuple[Dimension, Dimension]], kind: int) -> dict[str, Dimension]:
+    """Dimensions by field, of a revolute (0) or prismatic (1) coordinate."""
+    return {name: dimensions[kind] for name, dimensions in fields.items()}
+
+
 def fields_of(pointer: str, given: DocumentPart, fields: Mapping[str, Dimension]) -> Iterator[Place]:
     """The numbers and vectors of a part of a document that have one dimension each."""
     for name, expected in fields.items():

@@ -78,7 +78,7 @@ def point_kinematics(k: Kinematics, carrier: int, at: Vector) -> PointKinematics
     return PointKinematics(add(k.poses[carrier].r, apply(back, z)), u)
 
 
-def own_place(k: Kinematics, frame: Frame, at: Vector = ZERO) -> Place:
-    """A point of a frame of the part."""
-    link = frame_link(k, frame.placed(IDENTITY, at))
+def own_place(k: Kinematics, frame: Frame) -> Place:
+    """The origin of a frame of the part."""
+    link = frame_link(k, frame)
     return Place(k, link.parent, from_body(k.links, link), k.pose(link.parent).beyond(link))

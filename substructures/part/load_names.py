@@ -49,14 +49,9 @@ def velocities(topology: Topology) -> frozenset[str]:
     return frozenset(f"{name}'" for name in topology.coordinates)
 
 
-def state(topology: Topology) -> frozenset[str]:
-    """The names of all coordinates and velocities."""
-    return velocities(topology) | frozenset(topology.coordinates)
-
-
 def depends_on_state(topology: Topology, *exprs: Expr) -> bool:
     """Whether one of the expressions contains a coordinate or a velocity."""
-    return not symbols_of(exprs).isdisjoint(state(topology))
+    return any(name.removesuffix("'") in topology.coordinates for name in symbols_of(exprs))
 
 
 def velocity_in(topology: Topology, exprs: Iterable[Expr]) -> str | None:

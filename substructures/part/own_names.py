@@ -8,7 +8,7 @@ from typing import Any
 
 from substructures.errors import among, meant
 from substructures.expr.graph import Expr
-from substructures.loads.names import LEFT_OUT, End, Names
+from substructures.loads.names import LEFT_OUT, Elastic, End, Names
 from substructures.loads.pairs import Place, Reach
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Vector, dot, sub
 from substructures.part.frames import Frame
@@ -74,25 +74,18 @@ class OwnNames(Names):
         reach = {a: self.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in both}
         return Reach(reach), self.graph.lift(dot(x, x))
 
-    def elastic(
-        self,
-        energy: Expr,
-        given: Sequence[Any],
-        law: Sequence[Expr],
-        pulls: Callable[[], Mapping[int, Expr]],
-        pointer: str,
-    ) -> Expr:
+    def elastic(self, spring: Elastic, energy: Expr, pulls: Callable[[], Mapping[int, Expr]]) -> Expr:
         """Where the spring depends on the state, 2 V of what is found of its force."""
-        if self.measures_in(*given):
-            return self.kept(energy, False, pointer)
-        if not depends_on_state(self.m.topology, *law):
+        if self.measures_in(*spring.given):
+            return self.kept(energy, False, spring.pointer)
+        if not depends_on_state(self.m.topology, spring.stiffness, spring.length):
             return energy
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
-        return 2 * spring_potential(self.m, pulls(), pointer)
+        return 2 * spring_potential(self.m, pulls(), spring.pointer)
 
     def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:
         """What measures frames is a force without potential."""
-        lookup = self.measures.at(pointer)
+        lookup = self.lookup(pointer)
         force = self.scope.read(value, pointer, lookup)
         if not self.measures_in(value):
             return force, self.scope.terms(value, pointer, lookup)

@@ -25,6 +25,8 @@ from substructures.loads.units import (
     RATE,
     STIFFNESS,
     dimension,
+    fields_of,
+    of_kind,
     vector,
 )
 from substructures.part.angles import angle_warnings
@@ -145,15 +147,9 @@ def _laws(
         if isinstance(given, tuple):
             law, place = (given[step], f"{pointer}/{step}") if step < len(given) else (None, pointer)
         if law is not None:
-            yield from _fields(place, law, fields, s)
+            yield from fields_of(place, law, of_kind(fields, s))
             if getattr(law, "load", None) is not None:
-                yield from _fields(f"{place}/load", law.load, FRICTION_LOAD, s)
-
-
-def _fields(pointer: str, law: Any, fields: Mapping[str, tuple[Dimension, Dimension]], s: int) -> Iterator[Place]:
-    for name, dimensions in fields.items():
-        if getattr(law, name) is not None:
-            yield f"{pointer}/{name}", getattr(law, name), dimensions[s]
+                yield from fields_of(f"{place}/load", law.load, of_kind(FRICTION_LOAD, s))
 
 
 def _by_coordinate(
