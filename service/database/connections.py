@@ -128,7 +128,9 @@ def _engine(url: URL, *, writer: bool) -> Engine:
         try:
             return _postgres(url)
         except ImportError:
-            raise DatabaseError("PostgreSQL needs the extra: pip install 'substructures[postgres]'") from None
+            raise DatabaseError(
+                "PostgreSQL needs the extra: pip install 'substructures[postgres]' (in a clone: pip install -e '.[postgres]')"
+            ) from None
     engine = create_engine(
         url,
         pool_size=1 if writer else READERS,

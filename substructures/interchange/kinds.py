@@ -72,6 +72,9 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
+    if kind is None and not is_xml(data):
+        heads = "a table of D-H rows begins with the line a,alpha,d,theta, XML with <, a SYMORO file with Type = ..."
+        raise InvalidDocument.at("", "unknown-format", f"not one of {', '.join(KINDS)}: {heads}")
     root = read_xml(data)
     found = _ROOTS.get(root.tag)
     if found is None:
