@@ -18,6 +18,8 @@ from substructures.interchange.urdf import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
 _CELLS = re.compile(rb"[,;\t]")
+#: a row of a table without its head
+_ROW = re.compile(rb"\s*[-+.*/()\w ]+([,;\t][-+.*/()\w ]*){2,}\r?\n")
 #: what reads a root element, with the contents of included files by name
 Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 #: by the root element of XML formats
@@ -72,9 +74,8 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
-    if kind is None and not is_xml(data):
-        heads = "a table of D-H rows begins with the line a,alpha,d,theta, XML with <, a SYMORO file with Type = ..."
-        raise InvalidDocument.at("", "unknown-format", f"not one of {', '.join(KINDS)}: {heads}")
+    if kind is None and _ROW.match(data):
+        raise InvalidDocument.at("", "unknown-format", "a table of D-H rows begins with its head: a,alpha,d,theta")
     root = read_xml(data)
     found = _ROOTS.get(root.tag)
     if found is None:

@@ -50,7 +50,7 @@ def test_a_body_that_is_too_large_has_a_way_out(client: TestClient) -> None:
 
 
 def test_a_table_without_a_head_is_no_xml() -> None:
-    with pytest.raises(InvalidDocument, match="a table of D-H rows begins with the line a,alpha,d,theta"):
+    with pytest.raises(InvalidDocument, match="a table of D-H rows begins with its head: a,alpha,d,theta"):
         read_robot(b"0.1,0,0,0\n0.2,pi/2,0,0\n")
 
 
