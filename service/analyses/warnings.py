@@ -1,4 +1,4 @@
-"""Warnings about requests for analyses: impossible bodies, parameters without effect, joint limits that are left."""
+"""Warnings about requests for analyses: impossible bodies, parameters without effect, limits and relations left."""
 
 from __future__ import annotations
 
@@ -26,4 +26,7 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     notices = value_warnings(source.sources, given, inputs, states)
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
+    # a model with its definitions has told of relations itself
+    if motion is not None and source.model.plausibility is None and sources.judge is not None:
+        notices += sources.judge.apart(motion.coordinates, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

@@ -86,7 +86,8 @@ class OneState:
                 return False
             if not np.isfinite(array).all():
                 return False
-        return self._judge is None or not self._judge.left(self._model.coordinates, self._state["q"][None], {})
+        names, q, judge = self._model.coordinates, self._state["q"][None], self._judge
+        return judge is None or not (judge.left(names, q, {}) or judge.apart(names, q))
 
     def _bound(
         self, sources: Sources, kernel: Callable[[Program, list[str]], Kernel]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from random_trees import Kind, model_of, random_definition, random_states, tree_
 
 from substructures import Definition, Model, couple, derive
 from substructures.array import Array
-from substructures.compile import compile_program
+from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import (
     QUANTITIES,
@@ -31,11 +32,18 @@ N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
 
 
+_kernels: dict[tuple[str, ...], Kernel] = {}
+
+
 def compiled(program: Program, values: Mapping[str, Any], names: list[str], _states: int) -> dict[str, Array]:
-    """The engine that compiles what it is asked for."""
-    return compile_program(program, names).evaluate(values)
+    """The engine that compiles what it is asked for, once."""
+    key = program.digest, *names
+    if key not in _kernels:
+        _kernels[key] = compile_program(program, names)
+    return _kernels[key].evaluate(values)
 
 
+@cache
 def random_sources(seed: int = 77) -> Sources:
     definition = random_definition(np.random.default_rng(seed), Kind(3, joints=("revolute", "prismatic"), massive=True))
     spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}

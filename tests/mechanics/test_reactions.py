@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from closed_trees import slider_crank
 from random_trees import Kind, random_definition, random_states, tree_of
 
@@ -169,7 +170,7 @@ def test_a_motion_that_does_not_begin_has_none() -> None:
     closure = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     one = {"name": "x", "substructure": "slider-crank"}
     spec = TreeSpec.read({"name": "l", "gravity": DOWN, "instances": [one], "closures": [closure]})
-    transmitted = reactions(spec, {"x": derive(Definition.read(catalogue.load("slider-crank")))})
+    transmitted = reactions(spec, {"x": shipped_part("slider-crank")})
     far = {"x.crank": "0.3", "x.piston": "9"}
     motion = simulate(slider_crank((0, -9.81, 0)), [0, 0, 0], (0, 1), prescribed=far, reactions=transmitted)
     assert motion.status == "failed"

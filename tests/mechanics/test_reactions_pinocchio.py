@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_depth import seeds
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from random_trees import Plain, random_states  # noqa: E402 -- the engine is optional
@@ -82,7 +83,7 @@ def compare_tree(seed: int) -> float:
     return worst
 
 
-@pytest.mark.parametrize("block", range(2))
+@pytest.mark.parametrize("block", seeds(1, 2))
 def test_random_trees_with_loads(block: int) -> None:
     for seed in range(6 * block, 6 * block + 6):
         assert compare_tree(seed) < TOLERANCE, f"seed {seed}"

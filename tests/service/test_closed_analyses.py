@@ -17,6 +17,9 @@ from substructures.documents import read_json, write_json
 from substructures.formats.arrays import as_answer, view_npz
 
 from .jobs_library import MemoryLibrary
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 G = 9.81
 DOWN = np.pi / 2
@@ -46,11 +49,11 @@ TREE: dict[str, Any] = {
 HANGING = [-DOWN, -DOWN, DOWN]
 
 
-@pytest.fixture
-def swing(client: TestClient) -> TestClient:
-    made = client.post("/v1/trees", json=TREE)
+@pytest.fixture(scope="module")
+def swing(filled: TestClient) -> TestClient:
+    made = filled.post("/v1/trees", json=TREE)
     assert made.status_code == 201, made.text
-    return client
+    return filled
 
 
 def ask(client: TestClient, what: str, **request: Any) -> Any:
