@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 
 from service.analyses.binding import Parameters, bound, bound_names
+from service.analyses.exporting import NAME
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.analyses.source import Source
 from service.refusals import not_found
@@ -29,8 +30,6 @@ from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
-#: prefix of functions where none is given
-NAME = "model"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"
 #: formats that have a title
 DOCUMENTS = ("latex-document", "mathml")
