@@ -266,13 +266,15 @@ def stories(root: Path) -> dict[str, Any]:
 
 def summary(figures: Mapping[str, Any]) -> dict[str, str]:
     """What matters most, a line each."""
-    folders, chains, stories_ = figures["rooms"], figures["chains of modules"], figures["stories"].values()
+    folders, chains, stories_ = figures["rooms"], figures["chains of modules"], figures["stories"]
     root = {name: f"{folders[name]['rooms']} / {folders[name]['floors']}" for name in PACKAGES}
     return {
         "science, root: rooms / floors": root["substructures"],
         "service, root: rooms / floors": root["service"],
         "longest chain of modules, science / service": " / ".join(str(chains[p]["floors"]) for p in PACKAGES),
-        "modules one opens: g / Gamma over HTTP / a job item": " / ".join(str(len(each)) for each in stories_),
+        "modules one opens: g / Gamma over HTTP / a job item": "failed"
+        if "failed" in stories_
+        else " / ".join(str(len(each)) for each in stories_.values()),
         "files that one new quantity touches": str(max(map(len, figures["files of a quantity"].values()))),
         "comment lines in part, tree": f"{figures['comments']['part and tree']['percent']} %",
         "lines of source / tests": " / ".join(str(figures["lines"][what]) for what in ("source", "tests")),
