@@ -196,7 +196,9 @@ def _base_text(base: BaseParameters, interface: Interface, model: Model, style: 
 
 
 def _notes(members: Mapping[str, Any]) -> Iterator[str]:
-    """What is said for people about first integrals."""
+    """What is said for people about first integrals and quasi-velocities."""
+    for warning in members.get("warnings", ()):
+        yield f"Warning: {warning['message']}"
     for each in members.get("integrals", ()):
         yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
 
