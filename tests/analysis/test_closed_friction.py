@@ -81,7 +81,7 @@ def own_stop(a: float, w: float) -> tuple[float, float]:
             return t, a
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["partitioning", *deep("projection")])
 def test_a_slider_crank_comes_to_rest(method: str) -> None:
     """Where and when an own integration of the angle has it stop; all joints stop together and stay, held by forces
     within their limits; the energy of the start is work of friction.
@@ -239,6 +239,7 @@ def test_a_drive_that_waits() -> None:
 
 
 # takes seconds: the forces of joints that stick are a linear program at every step
+@pytest.mark.deep  # 4 s: several loops at once
 def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
     welds = [{"name": f"w{i}", "type": "weld", "from": f"x.b{i}", "to": f"x.b{i + 1}"} for i in (0, 2)]
@@ -257,6 +258,7 @@ def test_loops_beside_each_other_stick_one_by_one() -> None:
     np.testing.assert_allclose(held[late, :2], [[-3, -4]] * late.sum(), rtol=1e-12)
 
 
+@pytest.mark.deep  # 3 s: a mechanism on a carriage
 def test_a_carriage_that_holds_its_mechanism() -> None:
     """Two degrees of freedom, one of which sticks: crank and piston move as on the ground, to and fro."""
     joint: Plain = {"type": "prismatic", "coordinate": "c", "placement": {"position": [0, 0, 0]}, "axis": [1, 0, 0]}
@@ -320,7 +322,7 @@ def test_who_breaks_away_when_not_all_can() -> None:
         assert (np.abs(f) <= most * (1 + 1e-12)).all()
 
 
-@pytest.mark.parametrize("fault", ["EDGE", "lost_power"])
+@pytest.mark.parametrize("fault", ["lost_power", *deep("EDGE")])
 def test_faults_are_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Joints that stick with more than they can, and the work of the smooth law."""
     if fault == "EDGE":
@@ -375,7 +377,7 @@ def held_bar() -> Model:
 
 
 @pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("torque", [0, 1, 4.9, -4.999])
+@pytest.mark.parametrize("torque", [1, *deep(0, 4.9, -4.999)])
 def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
     """5 N m hold what is less: no energy is there, and none is the scale of another."""
     model = held_bar()
