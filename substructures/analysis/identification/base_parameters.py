@@ -24,23 +24,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
+
+from flint import arb, ctx
 
 from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.regressed import base_outputs
 from substructures.certificate.states import states_between
+from substructures.certificate.stored import operations_in_balls
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
 from substructures.expr.bind import bind
 from substructures.expr.direct import ball
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.modular import Field, NoSquareRoot
-from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.program import Formulas, Program, Symbol, array, operands, program
 from substructures.expr.replay import replay
 from substructures.expr.walk import transfer
 from substructures.printers import entries
@@ -59,6 +62,8 @@ DRIVE_UNITS = {
 MAX_FIELDS = 10_000
 #: terms of a coefficient that is written in its canonical form
 READABLE = 50
+#: bits of numbers that are written
+DIGITS = 256
 
 #: a formula, or a value in the field
 X = TypeVar("X", Expr, int)
@@ -99,12 +104,35 @@ class BaseParameters:
         return tuple(self.standard[i] for i in self.base)
 
     def combinations(self) -> dict[str, dict[str, str]]:
-        """Every base parameter as a sum: coefficient (text) by standard parameter. Raises TooLarge for long ones."""
+        """Every base parameter as a sum: coefficient (text) by standard parameter; long ones without parameters, as
+        lengths and angles in decimals make them, are numbers of 17 digits. Raises TooLarge for other long ones.
+        """
+        whole = self.program.select(["grouping"])
+        output, numbers = whole.outputs["grouping"], _long_numbers(whole)
+        texts = {i: repr(numbers[k]) for i, k in zip(output.index, output.entries, strict=True) if k in numbers}
+        left = [(i, k) for i, k in zip(output.index, output.entries, strict=True) if k not in numbers]
+        short = replace(output, index=tuple(i for i, _ in left), entries=tuple(k for _, k in left))
+        told = entries(replace(whole, outputs={"grouping": short}), "grouping", "text")
+        texts |= {tuple(each["index"]): str(each["formula"]) for each in told}
         found: dict[str, dict[str, str]] = {name: {} for name in self.names}
-        for entry in entries(self.program, "grouping", "text"):
-            b, i = entry["index"]
-            found[self.names[b]][self.standard[i]] = str(entry["formula"])
+        for b, i in output.index:
+            found[self.names[b]][self.standard[i]] = texts[b, i]
         return found
+
+
+def _long_numbers(given: Program) -> dict[int, float]:
+    """The values of operations without symbols that are long when they stand alone, by their numbers."""
+    constant, size = list[bool](), list[int]()
+    for operation in given.operations:
+        used = operands(operation)
+        constant.append(operation[0] != "sym" and all(constant[i] for i in used))
+        size.append(1 + sum(size[i] for i in used))
+    long = [i for i, n in enumerate(size) if constant[i] and n > READABLE]
+    if not long:
+        return {}
+    with ctx.workprec(DIGITS):
+        values = operations_in_balls(given, {symbol.name: arb(0) for symbol in given.symbols})
+    return {i: float(values[i]) for i in long}
 
 
 def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:
