@@ -1,13 +1,18 @@
-"""Base parameters of an arm whose axes lie obliquely, by decimals: coefficients are numbers, not formulas of decimals."""
+"""Base parameters of an arm whose axes lie obliquely, by decimals: coefficients are numbers, not long formulas."""
 
 from __future__ import annotations
 
+import numpy as np
 import pytest
 from random_trees import Plain
 
 from substructures import Definition, TreeSpec, derive
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
+from substructures.analysis.identification.told import base_symbols
+from substructures.export import render
 from substructures.expr.interpret import interpret
+from substructures.expr.program import Program
+from substructures.printers.definitions import Definitions
 from substructures.quantities.regressor import regressor
 
 
@@ -65,3 +70,12 @@ def test_combinations_are_numbers(base: BaseParameters) -> None:
         numbers += 1
         assert value == pytest.approx(grouping[b, i], rel=1e-9, abs=1e-12)
     assert numbers > len(written) / 2
+
+
+def test_people_read_them(base: BaseParameters) -> None:
+    symbols, called, notes = base_symbols(base)
+    text = render(Program(called, (), {}), "text", "readable", definitions=Definitions(symbols, notes))
+    assert "Jxx_b3 = " in text
+    assert len(text) < 20_000
+    made, exact = (interpret(p, {s.name: 0.7 for s in p.symbols}, None) for p in (symbols, base.program))
+    np.testing.assert_allclose([made[s.name] for s in called], exact["base_parameters"], rtol=1e-12)

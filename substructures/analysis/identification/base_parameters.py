@@ -107,21 +107,17 @@ class BaseParameters:
         """Every base parameter as a sum: coefficient (text) by standard parameter; long ones without parameters, as
         lengths and angles in decimals make them, are numbers of 17 digits. Raises TooLarge for other long ones.
         """
-        whole = self.program.select(["grouping"])
-        output, numbers = whole.outputs["grouping"], _long_numbers(whole)
-        texts = {i: repr(numbers[k]) for i, k in zip(output.index, output.entries, strict=True) if k in numbers}
-        left = [(i, k) for i, k in zip(output.index, output.entries, strict=True) if k not in numbers]
-        short = replace(output, index=tuple(i for i, _ in left), entries=tuple(k for _, k in left))
-        told = entries(replace(whole, outputs={"grouping": short}), "grouping", "text")
-        texts |= {tuple(each["index"]): str(each["formula"]) for each in told}
         found: dict[str, dict[str, str]] = {name: {} for name in self.names}
-        for b, i in output.index:
-            found[self.names[b]][self.standard[i]] = texts[b, i]
+        for entry in entries(with_short_numbers(self.program.select(["grouping"])), "grouping", "text"):
+            b, i = entry["index"]
+            found[self.names[b]][self.standard[i]] = str(entry["formula"])
         return found
 
 
-def _long_numbers(given: Program) -> dict[int, float]:
-    """The values of operations without symbols that are long when they stand alone, by their numbers."""
+def with_short_numbers(given: Program) -> Program:
+    """The program for people, with numbers of 17 digits for operations without symbols that are long when they stand
+    alone.
+    """
     constant, size = list[bool](), list[int]()
     for operation in given.operations:
         used = operands(operation)
@@ -129,10 +125,14 @@ def _long_numbers(given: Program) -> dict[int, float]:
         size.append(1 + sum(size[i] for i in used))
     long = [i for i, n in enumerate(size) if constant[i] and n > READABLE]
     if not long:
-        return {}
+        return given
     with ctx.workprec(DIGITS):
         values = operations_in_balls(given, {symbol.name: arb(0) for symbol in given.symbols})
-    return {i: float(values[i]) for i in long}
+    operations = list(given.operations)
+    for i in long:
+        number = Fraction(repr(float(values[i])))
+        operations[i] = ("rat", str(number.numerator), str(number.denominator))
+    return replace(given, operations=tuple(operations)).select(list(given.outputs))
 
 
 def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:
