@@ -32,7 +32,7 @@ from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Server, with_more, with_server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
-from substructures.client.connection import step
+from substructures.client.steps import step
 from substructures.errors import meant
 from substructures.export import interface_of_model
 from substructures.printers import FORMS
