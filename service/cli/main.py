@@ -52,7 +52,7 @@ COMMANDS = (
     Command("couple", "trees", "couple a part onto a tree, which makes a new revision", TREES),
     Command("rm", "trees", "remove trees with all their revisions", TREES),
     Command("evaluate", "evaluate", "numbers at a state: metric, christoffel, forces, ...", TREES),
-    Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals", TREES),
+    Command("simulate", "simulate", "simulate a tree and judge the motion by its first integrals", TREES),
     Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion", TREES),
     Command("publish", "versions", "make a part of a tree", TREES),
     Command("jobs", "jobs", "submit, watch and read batch jobs", TREES),
