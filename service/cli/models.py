@@ -13,7 +13,7 @@ from substructures.interchange.content import is_foreign
 if TYPE_CHECKING:
     from substructures.interchange.importing import Imported
 
-ROBOTS = "service.cli.robots"
+ROBOTS = "service.cli.commands.robots"
 
 
 def read_definition(path: Path) -> Any:

@@ -34,7 +34,7 @@ def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
 
 def test_a_server_starts_without_what_few_requests_need() -> None:
     late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
-    program = "import sys, service.cli.server; print(*sys.modules)"
+    program = "import sys, service.cli.commands.server; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not late & set(done.stdout.split())
 
