@@ -9,7 +9,7 @@ from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr.exact import MAX_BITS
-from substructures.expr.generators import Angle, Basis, Generators, Product, Sum, is_function
+from substructures.expr.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
 from substructures.expr.graph import Expr
 from substructures.expr.laurent import Laurent, Quotient, Ring
 
@@ -37,18 +37,8 @@ class RingEvaluator:
     def _plain(self, nodes: list[Expr], forms: list[Angle | Product]) -> list[int]:
         """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
         g = self.generators
-        used = {g.symbol(n) for n in nodes if n.op == "sym"}
-        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
-        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
-            used.update(g.root(self.graph, n) for n in (2, 3))
-        stack = list(used)
-        while stack:
-            square = g.squares.get(stack.pop())
-            if isinstance(square, Sum):
-                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
-                used |= new
-                stack.extend(new)
-        sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
+        used = g.plain(self.graph, nodes, forms)
+        sums = g.sums(used)
         numbers = sorted(i for i in used if isinstance(g.squares.get(i), int))
         return [*sums, *numbers, *sorted(used - set(sums) - set(numbers), key=lambda i: g.order[i])]
 
@@ -96,26 +86,10 @@ class RingEvaluator:
                 result = self.ring.mul(result, self.ring.generator(self.place[i]))
             return result
         multiples = [int(form.atoms.get(i, 0) / self.units[i]) for i in self.angles]
-        cosine, sine = self.ring.cosine_sine(self._turned(form.turns), multiples)
+        cosine, sine = self.ring.cosine_sine(turned(form.turns, self.ring.context.constant, self._root), multiples)
         if node.op == "tan":
             return self.ring.div(sine, cosine)
         return cosine if node.op == "cos" else sine
-
-    def _turned(self, turns: Fraction) -> tuple[Any, Any]:
-        """(cos, sin) of turns * pi, a multiple of pi/12, as polynomials in sqrt(2) and sqrt(3)."""
-        c = self.ring.context.constant
-        n = int(turns * 12)
-        # n/12 = a/4 + b/6
-        a, b = n % 2, (n - 3 * (n % 2)) // 2
-        re, im = [(c(1), c(0)), (c(0), c(1)), (c(-1), c(0)), (c(0), c(-1))][b // 3 % 4]
-        if b % 3:
-            small, root = c(1) / 2, self._root(3) / 2
-            x, y = (root, small) if b % 3 == 1 else (small, root)
-            re, im = re * x - im * y, re * y + im * x
-        if a:
-            half = self._root(2) / 2
-            re, im = (re - im) * half, (re + im) * half
-        return re, im
 
     def _root(self, n: int) -> Any:
         return self.ring.context.gen(self.place[self.generators.keys["root", n]])

@@ -14,6 +14,8 @@ import secrets
 from fractions import Fraction
 from hashlib import blake2b
 
+from substructures.expr.circle import point_of
+
 _ROOTS = (2, 3, 5, 7)
 _WITNESSES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
 
@@ -61,30 +63,11 @@ _points: dict[object, tuple[int, int]] = {}
 
 
 def circle_point(key: object) -> tuple[int, int]:
-    """(cos, sin) of the angle with this key: ((1 - t^2)/(1 + t^2), 2t/(1 + t^2)) with random t."""
+    """(cos, sin) of the angle with this key: a random point of the circle."""
     found = _points.get(key)
     if found is None:
-        t = keyed("angle", key)
-        inverse = pow(1 + t * t, -1, PRIME)
-        found = ((1 - t * t) * inverse % PRIME, 2 * t * inverse % PRIME)
+        found = point_of(keyed("angle", key), PRIME)
         if len(_points) > 100_000:
             _points.clear()
         _points[key] = found
     return found
-
-
-def add_angles(a: tuple[int, int], b: tuple[int, int]) -> tuple[int, int]:
-    """(cos, sin) of a sum of angles, by the addition theorem."""
-    return (a[0] * b[0] - a[1] * b[1]) % PRIME, (a[0] * b[1] + a[1] * b[0]) % PRIME
-
-
-def multiply_angle(point: tuple[int, int], n: int) -> tuple[int, int]:
-    """(cos, sin) of n times an angle, n any integer."""
-    if n < 0:
-        point, n = (point[0], -point[1] % PRIME), -n
-    result = (1, 0)
-    while n:
-        if n & 1:
-            result = add_angles(result, point)
-        point, n = add_angles(point, point), n >> 1
-    return result

@@ -6,7 +6,7 @@ Functions are recognised by the canonical form of their arguments, so that equal
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import gcd
@@ -148,6 +148,25 @@ class Generators:
         names = tuple((self.order[i], -power) for i, power in basis.monomial)
         return degree, bool(basis.trig), names, tuple((self.order[i], c) for i, c in basis.angle), basis.trig
 
+    def plain(self, graph: Any, nodes: Iterable[Expr], forms: Sequence[Angle | Product]) -> set[int]:
+        """Numbers of the generators that are no angles: of symbols, functions, and roots with what is in them."""
+        used = {self.symbol(n) for n in nodes if n.op == "sym"}
+        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
+        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
+            used.update(self.root(graph, n) for n in (2, 3))
+        stack = list(used)
+        while stack:
+            square = self.squares.get(stack.pop())
+            if isinstance(square, Sum):
+                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
+                used |= new
+                stack.extend(new)
+        return used
+
+    def sums(self, used: Iterable[int]) -> list[int]:
+        """Those that are roots of sums, a root before what is in it."""
+        return sorted((i for i in used if isinstance(self.squares.get(i), Sum)), reverse=True)
+
     def units(self, angles: Iterable[Angle]) -> dict[int, Fraction]:
         """For every angle atom the largest angle of which all occurring ones are multiples."""
         result: dict[int, Fraction] = {}
@@ -157,6 +176,22 @@ class Generators:
                 common = gcd(u.numerator * c.denominator, c.numerator * u.denominator)
                 result[i] = Fraction(common, u.denominator * c.denominator)
         return result
+
+
+def turned(turns: Fraction, constant: Callable[[int], Any], root: Callable[[int], Any]) -> tuple[Any, Any]:
+    """(cos, sin) of turns * pi, a multiple of pi/12, in a ring that has numbers and the roots of 2 and 3."""
+    n = int(turns * 12)
+    # n/12 = a/4 + b/6
+    a, b = n % 2, (n - 3 * (n % 2)) // 2
+    re, im = (constant(x) for x in [(1, 0), (0, 1), (-1, 0), (0, -1)][b // 3 % 4])
+    if b % 3:
+        small, large = constant(1) / 2, root(3) / 2
+        x, y = (large, small) if b % 3 == 1 else (small, large)
+        re, im = re * x - im * y, re * y + im * x
+    if a:
+        half = root(2) / 2
+        re, im = (re - im) * half, (re + im) * half
+    return re, im
 
 
 def natural(text: str) -> tuple[Any, ...]:

@@ -15,10 +15,10 @@ from math import lcm
 
 from flint import fmpz
 
+from substructures.expr.circle import Point, added, multiplied, point_of
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 
-ModularPoint = tuple[int, int]
 #: an angle as multiples of what its sine and cosine are built from, and of pi
 AngleForm = tuple[dict[int, Fraction], Fraction]
 BITS = 100
@@ -40,7 +40,7 @@ class Field:
 
     def __init__(self, programs: Iterable[Program] = ()) -> None:
         self.prime = _prime(number for program in programs for number in _radicands(program))
-        self.points: dict[object, ModularPoint] = {}
+        self.points: dict[object, Point] = {}
         root2, root6, quarter = self.root(2), self.root(6), pow(4, -1, self.prime)
         self.points["pi/12"] = (root6 + root2) * quarter % self.prime, (root6 - root2) * quarter % self.prime
 
@@ -61,37 +61,22 @@ class Field:
             raise ZeroDivisionError("division by zero in the field")
         return pow(x, -1, self.prime)
 
-    def circle(self, angle: AngleForm) -> ModularPoint:
+    def circle(self, angle: AngleForm) -> Point:
         """(cos, sin) of an angle."""
         terms, turns = angle
         twelfths = turns * 12
         base = self.points["pi/12"] if twelfths.denominator == 1 else self._point(("pi", turns.denominator))
-        result = self._times(base, twelfths.numerator if twelfths.denominator == 1 else turns.numerator)
+        result = multiplied(base, twelfths.numerator if twelfths.denominator == 1 else turns.numerator, self.prime)
         for atom, factor in terms.items():
             common = PARTS if PARTS % factor.denominator == 0 else factor.denominator
             n = factor.numerator * (common // factor.denominator)
-            result = self._sum(result, self._times(self._point((atom, common)), n))
+            result = added(result, multiplied(self._point((atom, common)), n, self.prime), self.prime)
         return result
 
-    def _point(self, key: object) -> ModularPoint:
+    def _point(self, key: object) -> Point:
         if key not in self.points:
-            t = self.draw()
-            inverse = self.inverse((1 + t * t) % self.prime)
-            self.points[key] = (1 - t * t) * inverse % self.prime, 2 * t * inverse % self.prime
+            self.points[key] = point_of(self.draw(), self.prime)
         return self.points[key]
-
-    def _sum(self, a: ModularPoint, b: ModularPoint) -> ModularPoint:
-        return (a[0] * b[0] - a[1] * b[1]) % self.prime, (a[0] * b[1] + a[1] * b[0]) % self.prime
-
-    def _times(self, point: ModularPoint, n: int) -> ModularPoint:
-        """(cos, sin) of n times an angle."""
-        point, n = (point[0], -point[1] if n < 0 else point[1]), abs(n)
-        result = (1, 0)
-        while n:
-            if n & 1:
-                result = self._sum(result, point)
-            point, n = self._sum(point, point), n >> 1
-        return result
 
     def evaluate(self, program: Program, values: Mapping[str, int], name: str) -> dict[tuple[int, ...], int]:
         """The independent elements of an output. Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol."""

@@ -16,7 +16,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from substructures.expr.expand import classified
-from substructures.expr.generators import Angle, Generators, Product, Sum, is_function
+from substructures.expr.generators import Angle, Generators, Product, is_function, turned
 from substructures.expr.graph import Expr
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
@@ -50,18 +50,8 @@ class Field:
     def _plain(self, nodes: Iterable[Expr], forms: Mapping[Expr, Angle | Product]) -> list[int]:
         """Generators that are no angles; roots first, those of sums before those in the sums."""
         g = self.generators
-        used = {g.symbol(n) for n in nodes if n.op == "sym"}
-        used.update(i for f in forms.values() if isinstance(f, Product) for i in f.ids)
-        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms.values()):
-            used.update(g.root(next(iter(forms)).graph, n) for n in (2, 3))
-        stack = list(used)
-        while stack:
-            square = g.squares.get(stack.pop())
-            if isinstance(square, Sum):
-                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
-                used |= new
-                stack.extend(new)
-        sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
+        used = g.plain(next(iter(forms)).graph if forms else None, nodes, tuple(forms.values()))
+        sums = g.sums(used)
         return [*sums, *sorted(used - set(sums), key=lambda i: (i not in g.squares, g.order[i]))]
 
     def _square(self, generator: int, n: int) -> Any:
@@ -100,7 +90,7 @@ class Field:
             for i in form.ids:
                 result *= self.context.gen(self.place[i])
             return self._reduced(result), self.one
-        re, im = self._turned(form.turns)
+        re, im = turned(form.turns, self.context.constant, self._root)
         below = self.one
         for n, i in enumerate(self.angles):
             k = int(form.atoms.get(i, 0) / self.units[i])
@@ -117,21 +107,6 @@ class Field:
                 raise ZeroDivisionError("tangent of a right angle")
             return self.lowest(im, re)
         return self.lowest(self._reduced(re if node.op == "cos" else im), below)
-
-    def _turned(self, turns: Fraction) -> tuple[Any, Any]:
-        """cos and sin of turns * pi, a multiple of pi/12: of pi/4 or nothing, and of pi/6."""
-        steps = int(turns * 12)
-        sixths = (steps - 3 * (steps % 2)) // 2 % 12
-        re, im = [(1, 0), (0, 1), (-1, 0), (0, -1)][sixths // 3]
-        x, y = self.context.constant(re), self.context.constant(im)
-        if sixths % 3:
-            small, root = self.one / 2, self._root(3) / 2
-            c, s = (root, small) if sixths % 3 == 1 else (small, root)
-            x, y = x * c - y * s, x * s + y * c
-        if steps % 2:
-            half = self._root(2) / 2
-            x, y = (x - y) * half, (x + y) * half
-        return x, y
 
     def _root(self, n: int) -> Any:
         return self.context.gen(self.place[self.generators.keys["root", n]])
