@@ -35,6 +35,7 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
+from substructures.analysis.from_fields import control_arguments, motion_arguments, sensitivity_arguments
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.progress import ProgressReport
@@ -101,7 +102,8 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
     if isinstance(request, SimulationRequest) and request.friction == "loaded":
         rest["bearings"] = _reactions(source, "/friction")
     tools: dict[str, Any] = {"progress": report, "folder": source.folder}
-    return simulate(model, request.q, **rest, reactions=transmitted, powers=by_load, **tools)
+    rest = motion_arguments(model, **rest, reactions=transmitted, powers=by_load, **tools)
+    return simulate(model, request.q, **rest)
 
 
 def _powers(source: Source, request: SpanRequest) -> PowerModel | None:
@@ -149,7 +151,8 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     columns = len(request.by) + (2 * n if request.of_start else 0)
     _check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
     rest = _without(given, "q", "events", "fixed_step", "series", "reactions", "powers", "friction", "geodesic")
-    return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
+    rest = sensitivity_arguments(**rest, progress=report, folder=source.folder)
+    return sensitivities(source.model, request.q, **rest)
 
 
 def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
@@ -178,7 +181,7 @@ def _optimal_control(source: Source, read: OptimalControlRequest, report: Progre
         """The share of the iterations that are done at most."""
         report(min(1.0, iteration / read.iterations))
 
-    return optimal_control(source.model, **arguments(read), progress=told)
+    return optimal_control(source.model, **control_arguments(**arguments(read)), progress=told)
 
 
 def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> Any:
@@ -239,7 +242,7 @@ ANALYSES: dict[str, Analysis] = {
     "curvatures": Analysis(CurvatureRequest, _curvature, "Riemann's tensor of the configuration space, Ricci, scalar"),
     "cost-gradients": Analysis(
         GradientRequest,
-        lambda source, read, _: cost_gradient(source.model, **arguments(read)),
+        lambda source, read, _: cost_gradient(source.model, **control_arguments(**arguments(read))),
         "The cost of a motion under given controls and its gradient by the adjoint",
         TRAJECTORY,
     ),

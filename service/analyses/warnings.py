@@ -27,6 +27,6 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
     # a model with its definitions has told of relations itself
-    if motion is not None and source.model.plausibility is None and sources.judge is not None:
-        notices += sources.judge.apart(motion.coordinates, motion.q)
+    if motion is not None and source.model.plausibility is None and source.sources.judge is not None:
+        notices += source.sources.judge.apart(motion.coordinates, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

@@ -52,7 +52,7 @@ LONGEST = 1000
 INLINE_LIMIT = 20_000
 
 
-def render(
+def write(
     program: Program,
     format: str,  # noqa: A002 -- the name in the contract
     form: str = "compact",
@@ -61,7 +61,7 @@ def render(
     definitions: Definitions | None = None,
     glossary: Program | None = None,
 ) -> str:
-    """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
+    """A program in one of FORMATS; :func:`substructures.export.render` writes it in languages, too.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
     ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
@@ -130,7 +130,7 @@ def _readable(
 ) -> str:
     """The textbook form where it fits, otherwise the compact one with the reason."""
     if format == "json" or not LANGUAGES[format].is_for_people:
-        return render(program, format, "compact", name, limit, definitions, glossary)
+        return write(program, format, "compact", name, limit, definitions, glossary)
     said = _Said(program, definitions, limit)
     found = readable(
         lambda: _spoken(said.program, format)[1],
@@ -221,7 +221,7 @@ def entries(
     """The independent non-zero elements of one output: ``[{"index": [a, b, c], "formula": text}]``.
 
     Indices count from 0. Every formula stands alone (no temporaries). All other elements follow from the symmetry
-    (:func:`symmetry_rule`) or are zero. Raises KeyError for an unknown output, TooLarge like :func:`render`.
+    (:func:`symmetry_rule`) or are zero. Raises KeyError for an unknown output, TooLarge like :func:`write`.
     """
     part = program.select([output])
     if format not in LANGUAGES:

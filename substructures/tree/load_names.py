@@ -18,8 +18,8 @@ from substructures.part.pairs import Place
 from substructures.part.parameters import si_unit
 from substructures.part.scope import Lookup
 from substructures.tree.assembly import Assembly
+from substructures.tree.frame_points import place
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import place
 
 #: of a revolute and of a prismatic coordinate
 UNITS = ("rad", "m")

@@ -23,9 +23,9 @@ from substructures.part.pair_laws import BushingLaw, Measures, bushing_forces, p
 from substructures.part.pairs import Acting, Pair, Place, Reach, axes_in_world
 from substructures.part.scope import ExprVector
 from substructures.tree.assembly import Assembly
+from substructures.tree.frame_points import place_of
 from substructures.tree.load_names import LoadNames
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import place_of
 
 
 def loads_of_parts(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Iterator[Acting]:

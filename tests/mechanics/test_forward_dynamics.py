@@ -154,18 +154,14 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
         return forward_dynamics(model, 3) if name == "forward_dynamics" else derived(model, name)
 
     monkeypatch.setattr("substructures.quantities.accelerations.BLOCK", 2 * model.dof**2)
-    found = evaluate(model, **request, sources=Sources(model, small))
+    found = evaluate(Sources(model, small), **request)
     np.testing.assert_allclose(found["forward_dynamics"], expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
     assert cost(Sources(model, small), ["forward_dynamics"])[1] == model.dof
     for name in DERIVED:
         with pytest.raises(TooLarge):
             derived(model, name, 3)
     with pytest.raises(TooLarge, match="kinetic_energy"):
-        evaluate(
-            model,
-            **(request | {"quantities": ["kinetic_energy"]}),
-            sources=Sources(model, lambda m, n: derived(m, n, 3)),
-        )
+        evaluate(Sources(model, lambda m, n: derived(m, n, 3)), **request | {"quantities": ["kinetic_energy"]})
 
 
 def test_cholesky_leaves_the_other_states_alone() -> None:

@@ -18,6 +18,7 @@ from substructures.quantities.evaluation import (
     QUANTITIES,
     Direction,
     Evaluation,
+    EvaluationOptions,
     Evaluator,
     Sources,
     cost,
@@ -73,8 +74,8 @@ def test_one_position_stands_for_all(engine: Evaluator, batched: str) -> None:
     one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES, "sources": sources}
     one["along"] = Direction(q=x["qd"][1], inputs={f"tau.{model.coordinates[0]}": 1.0})
     one |= {name: (x | given)[name] for name in batched.split()}
-    found = evaluate(model, **one, evaluator=engine)
-    rows = evaluate(model, **(one | {"q": x["q"][:1]}), evaluator=engine)
+    found = evaluate(model, **one, options=EvaluationOptions(evaluator=engine))
+    rows = evaluate(model, **one | {"q": x["q"][:1]}, options=EvaluationOptions(evaluator=engine))
     repeated = evaluate(model, **(one | {"q": np.repeat(x["q"][:1], N, axis=0)}))
     assert found.count == rows.count == N
     for name, expected in leaves(repeated).items():
@@ -98,7 +99,7 @@ def test_the_size_of_an_answer_is_known_before() -> None:
     x = random_states(np.random.default_rng(1), 1, model.dof)
     state: dict[str, Any] = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
     for name in QUANTITIES:
-        found = evaluate(model, **(state | {"quantities": [name]}), sources=sources)[name]
+        found = evaluate(sources, **state | {"quantities": [name]})[name]
         size = sum(np.size(array) for array in (found.values() if isinstance(found, dict) else [found]))
         assert cost(sources, [name])[1] == size <= numbers_per_state([name], model.dof, len(model.frames)), name
     assert cost(sources, ["metric", "momentum"])[1] == model.dof**2 + 6

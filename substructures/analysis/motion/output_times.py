@@ -19,21 +19,22 @@ COUNT = 101
 
 
 @dataclass(frozen=True)
-class OutputTimes:
-    """``span`` (start, end) [s] and at most one of: ``times`` (K,) [s]; a time every ``step`` [s] and the end;
-    ``count`` times of equal distance (default 101). Raises InvalidArgument.
+class OutputGrid:
+    """Where results are wanted, at most one of: ``times`` (K,) [s]; a time every ``step`` [s] and the end; ``count``
+    times of equal distance (default 101). Raises InvalidArgument.
     """
 
-    span: tuple[float, float]
     times: Numbers | None = None
     step: float | None = None
     count: int | None = None
 
     def __post_init__(self) -> None:
-        start, end = self._span()
-        object.__setattr__(self, "span", (start, end))
         if self.times is not None:
             object.__setattr__(self, "times", reals(self.times, "/times"))
+            if len(self.times) > MAX_OUTPUTS:
+                raise InvalidArgument.at("/times", "too-long", "more than a million results; take fewer 'times'")
+            if len(self.times):
+                require_increasing(self.times)
         if self.step is not None:
             object.__setattr__(self, "step", positive(self.step, "step"))
         if self.count is not None:
@@ -41,12 +42,30 @@ class OutputTimes:
         if sum(x is not None for x in (self.times, self.step, self.count)) > 1:
             given = "times" if self.times is not None else "step"
             raise InvalidArgument.at(f"/{given}", "one-grid", "give one of 'times', 'step' and 'count'")
+
+
+#: no grid is asked for
+EVEN = OutputGrid()
+
+
+@dataclass(frozen=True)
+class OutputTimes:
+    """The span of a motion (start, end) [s], and where in it results are wanted. Raises InvalidArgument."""
+
+    span: tuple[float, float]
+    outputs: OutputGrid = EVEN
+
+    def __post_init__(self) -> None:
+        start, end = self._span()
+        object.__setattr__(self, "span", (start, end))
         if end <= start:
             raise InvalidArgument.at("/span", "empty-span", "the span must end after it begins")
-        if self.step is not None and (end - start) / self.step > MAX_OUTPUTS:
+        step, times = self.outputs.step, self.outputs.times
+        if step is not None and (end - start) / step > MAX_OUTPUTS:
             message = "more than a million results; take a larger 'step'"
             raise InvalidArgument.at("/step", "too-many-outputs", message)
-        self._check_times()
+        if times is not None and len(times) and not start <= times[0] <= times[-1] <= end:
+            raise InvalidArgument.at("/times", "outside", "'times' must lie in the span")
 
     def _span(self) -> tuple[float, float]:
         given: Any = self.span
@@ -55,24 +74,14 @@ class OutputTimes:
             raise InvalidArgument.at("/span", "wrong-length", f"a start and an end are needed, found {len(span)} times")
         return span[0], span[1]
 
-    def _check_times(self) -> None:
-        times = self.times
-        if times is None or not len(times):
-            return
-        if len(times) > MAX_OUTPUTS:
-            raise InvalidArgument.at("/times", "too-long", "more than a million results; take fewer 'times'")
-        require_increasing(times)
-        if not self.span[0] <= times[0] <= times[-1] <= self.span[1]:
-            raise InvalidArgument.at("/times", "outside", "'times' must lie in the span")
-
     def grid(self) -> Array:
         """The times where states are wanted (K,) [s]."""
-        start, end = self.span
-        if self.times is not None:
-            return np.array(self.times, dtype=np.float64)
-        if self.step is not None:
+        (start, end), step = self.span, self.outputs.step
+        if self.outputs.times is not None:
+            return np.array(self.outputs.times, dtype=np.float64)
+        if step is not None:
             # t_k = start + k h; the end is one of them where rounding alone keeps it off the grid
-            most = math.floor((end - start) / self.step * (1 + 1e-12))
-            grid = start + self.step * np.arange(most + 1)
-            return np.minimum(grid, end) if end - grid[-1] < 1e-9 * self.step else np.append(grid, end)
-        return np.linspace(start, end, self.count or COUNT)
+            most = math.floor((end - start) / step * (1 + 1e-12))
+            grid = start + step * np.arange(most + 1)
+            return np.minimum(grid, end) if end - grid[-1] < 1e-9 * step else np.append(grid, end)
+        return np.linspace(start, end, self.outputs.count or COUNT)

@@ -12,7 +12,7 @@ import numpy as np
 import scipy
 
 from substructures.analysis.motion.steppers import Stepper, roughly_within, within
-from substructures.analysis.motion.turns import turns
+from substructures.analysis.motion.turning_points import turns
 from substructures.array import Array
 
 #: where a watched quantity turns this near to its level, beside how far it is from it before and after, the turn is

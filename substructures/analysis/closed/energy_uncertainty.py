@@ -26,7 +26,7 @@ UNITS = 16
 NEAR, FEW = 0.03, 8
 
 
-def energy_doubt(s: Constrained, rank: int, t: Array, x: Array, ends: Array) -> Array:
+def energy_uncertainty(s: Constrained, rank: int, t: Array, x: Array, ends: Array) -> Array:
     """What T + V is uncertain by at times t (K,), in order, and states (q, q') = x (K, 2 n): (K,) [J], never falling.
 
     ``ends``: of the steps of the integrator, in order: an error at the end of a step is in all of its results.

@@ -9,12 +9,12 @@ import pytest
 from closed_motions import METHODS
 from closed_trees import at, closed_entry
 from in_depth import deep
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import simulate
 from substructures.analysis.verdict import Check
 
 PIN = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
@@ -31,7 +31,7 @@ def moved(reduction: str, speed: float = -3.0, **more: Any) -> tuple[Trajectory,
     """Towards the singular position, and the verdict on its energy."""
     model = parallelogram()
     start = at(model, crank=0.5, coupler=-0.5, rocker=0.5)
-    motion = simulate(model, start, (0, 1), qd=at(model, crank=speed), fixed=["x.crank"], reduction=reduction, **more)
+    motion = simulated(model, start, (0, 1), qd=at(model, crank=speed), fixed=["x.crank"], reduction=reduction, **more)
     return motion, next(check for check in motion.checks if check.name == "energy")
 
 
