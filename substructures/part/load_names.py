@@ -6,8 +6,8 @@ from collections.abc import Iterable
 from typing import Any
 
 from substructures.documents.fields import in_si
+from substructures.expr.calculus.integrate import symbols_of
 from substructures.expr.graph import Expr
-from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
 from substructures.expr.syntax import ExpressionError, read
 from substructures.part.definition import Definition

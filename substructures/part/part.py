@@ -13,7 +13,7 @@ from substructures.errors import InvalidArgument, InvalidDocument, TooLarge, amo
 from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Formulas, Program, program
-from substructures.expr.unit_check import UnitCheck
+from substructures.expr.units.unit_check import UnitCheck
 from substructures.part.certificate import certify_part, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas

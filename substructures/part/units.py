@@ -12,9 +12,9 @@ from typing import Any
 
 from substructures.documents import DocumentPart
 from substructures.documents.units import NUMBER, Dimension, read_unit
-from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.syntax import measured
-from substructures.expr.unit_check import Place, UnitCheck, dimension_of
+from substructures.expr.units.dimensions import Dimensioned, Inferred
+from substructures.expr.units.unit_check import Place, UnitCheck, dimension_of
 from substructures.part.angles import angle_warnings
 from substructures.part.definition import (
     Definition,

@@ -8,13 +8,13 @@ from math import prod
 from typing import Any, NamedTuple
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.expand import LIMIT as TERMS
-from substructures.expr.expand import Expander
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import MAX_ELEMENTS
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import LIMIT as TERMS
+from substructures.expr.rings.expand import Expander
 from substructures.printers.definitions import Definitions, defined, joined
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
@@ -64,7 +64,7 @@ def write(
     """A program in one of FORMATS; :func:`substructures.export.render` writes it in languages, too.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
-    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
+    ``expanded``: every element as canonical sum (:mod:`substructures.expr.rings.expand`); ``textbook``: every element
     collected, factored and cancelled (:mod:`substructures.textbook`); ``readable``: ``textbook`` in formats for people
     where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it;
     ``definitions``: of symbols that stand for formulas, which are printed first (not in JSON); ``glossary``: what

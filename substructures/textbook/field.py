@@ -15,9 +15,9 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from substructures.expr.expand import classified
-from substructures.expr.generators import Angle, Generators, Product, is_function, turned
 from substructures.expr.graph import Expr
+from substructures.expr.rings.expand import classified
+from substructures.expr.rings.generators import Angle, Generators, Product, is_function, turned
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
 

@@ -18,11 +18,11 @@ from random_trees import Kind, Plain, model_of, random_definition, with_paramete
 from substructures import InvalidInput, Model, TooLarge
 from substructures.analysis.equations.curvature import curvature, curvature_values, independent_elements
 from substructures.compile import compile_program
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import is_zero
 from substructures.quantities.evaluation import EvaluationOptions, evaluate, interpreted
 
 

@@ -18,11 +18,11 @@ from substructures.analysis.equations.quasi_velocities import QuasiVelocities, q
 from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Outputs, Rolling, simulate
 from substructures.export import Interface, render
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import is_zero
 from substructures.quantities.evaluation import evaluate
 
 

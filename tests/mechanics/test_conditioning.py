@@ -164,7 +164,7 @@ def test_accelerations_by_numbers_are_judged_like_those_by_formulas() -> None:
 
     model, q = ball(), [[0.3, 0.2, 0.1], [0.3, np.pi / 2 - 1e-6, 0.4], [0.3, np.pi / 2, 0.4]]
     for sources in (None, Sources(model, small)):
-        found = evaluate(sources, FD, q=q, qd=[0.1, 0.2, 0.3])
+        found = evaluate(sources or model, FD, q=q, qd=[0.1, 0.2, 0.3])
         assert [warning["state"] for warning in found.warnings] == [1]
         assert [failure.state for failure in found.failures] == [2]
 

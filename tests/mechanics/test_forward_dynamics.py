@@ -18,7 +18,7 @@ from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
 from substructures.quantities.derivatives import SingularMetric, forward_dynamics
-from substructures.quantities.evaluation import Direction, Sources, cost, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, Sources, cost, evaluate
 from substructures.quantities.formulas import DERIVED, derived
 
 N = 5
@@ -114,7 +114,7 @@ def test_singular_in_every_state() -> None:
     with pytest.raises(SingularMetric, match="singular"):
         derived(model, "forward_dynamics")
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    request = {"quantities": quantities, "q": np.zeros((2, 2)), "along": Direction(q=[1, 0])}
+    request = {"quantities": quantities, "q": np.zeros((2, 2)), "options": EvaluationOptions(along=Direction(q=[1, 0]))}
     answer = evaluate(model, **request)
     assert [f.quantity for f in answer.failures] == [q for q in quantities[:2] for _ in range(2)]
     assert issubclass(SingularMetric, InvalidDocument)
@@ -208,7 +208,7 @@ def test_models_stored_before_inverse_dynamics_was_an_output() -> None:
     older = Model.load(model.summary(), model.program.select(kept).to_bytes())
     x = random_states(np.random.default_rng(4), N, model.dof)
     names = ["inverse_dynamics", "forward_dynamics", "inverse_dynamics_derivative", "forward_dynamics_derivative"]
-    request = x | {"quantities": names, "along": Direction(q=x["qd"]), "t": 0.3}
+    request = x | {"quantities": names, "options": EvaluationOptions(along=Direction(q=x["qd"])), "t": 0.3}
     found, expected = evaluate(older, **request), evaluate(model, **request)
     for name in names:
         atol = 1e-9 * max(1, np.abs(expected[name]).max())

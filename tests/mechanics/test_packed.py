@@ -119,10 +119,8 @@ def test_single_precision(given: tuple[Model, NumericTree], engine: str) -> None
     tau = np.zeros(7)
     tau[4] = 1e39
     arguments: dict[str, Any] = {"q": q, "inputs": {f"tau.{model.coordinates[0]}": tau}}
-    arguments["evaluator"] = engines(model, numeric)[engine]
-    double, single = (
-        evaluate(model, ["metric", "forces"], **arguments, options=EvaluationOptions(float32=x)) for x in (False, True)
-    )
+    ways = [EvaluationOptions(float32=x, evaluator=engines(model, numeric)[engine]) for x in (False, True)]
+    double, single = (evaluate(model, ["metric", "forces"], **arguments, options=way) for way in ways)
     np.testing.assert_array_equal(single["metric"], double["metric"].astype(np.float32))
     assert double.failures == ()
     assert [(x.state, x.quantity, x.code) for x in single.failures] == [(4, "forces", "overflow")]

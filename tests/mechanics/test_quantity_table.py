@@ -11,7 +11,7 @@ from closed_trees import four_bar, slider_crank
 from random_trees import Kind, random_definition, random_states, tree_of
 
 from substructures import Definition, Model, couple, derive
-from substructures.certificate.served import SERVED
+from substructures.certificate.derived.model_formulas import SERVED
 from substructures.client.numbers import Evaluation as Answer
 from substructures.errors import InvalidArgument
 from substructures.export import exported_model, interface_of_model

@@ -15,7 +15,7 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
 from substructures.errors import among
-from substructures.expr.corners import corners, inner
+from substructures.expr.calculus.corners import corners, inner
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret

@@ -16,7 +16,7 @@ from substructures.analysis.motion.problem import Start
 from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
 from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
-from substructures.certificate.powers import OUTPUT as POWERS
+from substructures.certificate.derived.powers import OUTPUT as POWERS
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks

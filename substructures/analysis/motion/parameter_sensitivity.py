@@ -33,7 +33,7 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.certificate.perturbed import by_parameters, varied
+from substructures.certificate.derived.perturbed import by_parameters, varied
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr

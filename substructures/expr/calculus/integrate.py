@@ -2,7 +2,7 @@
 
 Polynomials and trigonometric polynomials in the coordinates are integrated, with whatever does not depend on them as
 coefficients. A potential is handed out only when its derivatives are the forces exactly, by the zero test of
-:mod:`substructures.expr.expand`, so that there is none whose gradient is something else.
+:mod:`substructures.expr.rings.expand`, so that there is none whose gradient is something else.
 
 >>> graph = Graph()
 >>> k, x, y = (graph.symbol(name) for name in "kxy")
@@ -19,9 +19,9 @@ from collections.abc import Set as AbstractSet
 
 from substructures.errors import TooLarge
 from substructures.expr.differentiate import derivative
-from substructures.expr.expand import Expanded, Term, expand, is_zero
-from substructures.expr.generators import times_power
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.rings.expand import Expanded, Term, expand, is_zero
+from substructures.expr.rings.generators import times_power
 from substructures.expr.trigonometry import cos, sin
 from substructures.expr.walk import reachable, transfer
 

@@ -3,7 +3,7 @@
 Fingerprints do not know that sqrt(11)^2 = 11 or atan2(0, 1) = 0; the value at a point does. A ball without zero proves
 that the formula is not zero. Balls with zero are evidence that it is, where they are small against the terms that make
 them up, at points of both signs and of all magnitudes, and stay so with many more digits; less than that is unknown,
-unless the canonical form (:mod:`substructures.expr.expand`) proves it.
+unless the canonical form (:mod:`substructures.expr.rings.expand`) proves it.
 
 >>> graph = Graph()
 >>> x = graph.symbol("x")
@@ -24,8 +24,8 @@ from typing import Any
 import flint
 
 from substructures.errors import TooLarge
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.rings.expand import is_zero
 from substructures.expr.walk import reachable
 
 #: points, and at how many of them a formula must have a value to be called zero

@@ -2,7 +2,7 @@
 
 Numbers fold, like terms are collected, signs move outwards and numbers to the front: the structures that
 ``Expr.__add__`` and its like build. ``fp`` is the fingerprint of the result, for which there is no node, or one that
-may not stand for it (:mod:`substructures.expr.stand_in`).
+may not stand for it (:mod:`substructures.expr.construction.equivalent_nodes`).
 """
 
 from __future__ import annotations
@@ -10,8 +10,8 @@ from __future__ import annotations
 from fractions import Fraction
 from typing import Any, Protocol, TypeVar
 
-from substructures.expr.fingerprint import PRIME
-from substructures.expr.patterns import Node, coefficient, constant, has_number, square_of_root
+from substructures.expr.construction.fingerprint import PRIME
+from substructures.expr.construction.patterns import Node, coefficient, constant, has_number, square_of_root
 
 
 class Term(Node, Protocol):

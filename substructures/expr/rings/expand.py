@@ -25,9 +25,9 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 from substructures.errors import TooLarge
-from substructures.expr.canonical import RingEvaluator
-from substructures.expr.generators import Basis, Generators, is_function, times_power
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.rings.canonical import RingEvaluator
+from substructures.expr.rings.generators import Basis, Generators, is_function, times_power
 from substructures.expr.trigonometry import cos, sin
 from substructures.expr.walk import reachable, transfer
 

@@ -11,11 +11,11 @@ from typing import Any
 
 from flint import arb, arb_mat
 
+from substructures.certificate.derived.model_at import Index, ModelAt, dot, solve, total
+from substructures.certificate.derived.model_formulas import Expectation, power, symmetric_of, vector_of
 from substructures.certificate.linear import Ball
-from substructures.certificate.model_at import Index, ModelAt, dot, solve, total
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.served import Expectation, power, symmetric_of, vector_of
 from substructures.certificate.slopes import tangents
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed

@@ -17,8 +17,8 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import combinations
 
+from substructures.expr.calculus.vanish import Vanishing
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.vanish import Vanishing
 from substructures.expr.walk import build, reachable
 
 #: sides that are looked at, at most
@@ -61,7 +61,7 @@ def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Exp
 
 
 class VanishingOnAllSides:
-    """The test of :class:`substructures.expr.vanish.Vanishing` for formulas that may have corners, of one graph."""
+    """The test of :class:`~substructures.expr.calculus.vanish.Vanishing` for formulas of one graph with corners."""
 
     def __init__(self, graph: Graph) -> None:
         self.smooth = Vanishing(graph)

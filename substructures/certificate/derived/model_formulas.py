@@ -12,8 +12,8 @@ from functools import partial
 
 from flint import arb
 
+from substructures.certificate.derived.model_at import ModelAt, dot, times, total
 from substructures.certificate.linear import Ball, Matrix
-from substructures.certificate.model_at import ModelAt, dot, times, total
 from substructures.certificate.outputs import Outputs
 
 #: what one quantity has to be at a state

@@ -8,11 +8,11 @@ from typing import Any
 
 from flint import arb, arb_mat
 
+from substructures.certificate.derived.model_at import ModelAt, times, total
+from substructures.certificate.derived.model_formulas import columns_of, symmetric_of, vector_of
 from substructures.certificate.linear import Ball, Matrix, cross, dot, unit, vector, with_third_axis
-from substructures.certificate.model_at import ModelAt, times, total
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.served import columns_of, symmetric_of, vector_of
 from substructures.certificate.stored import Stored
 from substructures.certificate.texts import slope
 

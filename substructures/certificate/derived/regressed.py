@@ -8,12 +8,12 @@ from dataclasses import dataclass
 from flint import arb
 
 from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame, Moments, in_order, mass_of, massless, theta_of
+from substructures.certificate.derived.model_at import total
+from substructures.certificate.derived.model_formulas import columns_of, vector_of
 from substructures.certificate.dynamics import motions, required
 from substructures.certificate.linear import Ball, dot, vector, zeros
-from substructures.certificate.model_at import total
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.served import columns_of, vector_of
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.certificate.tree_outputs import built
 from substructures.errors import VerificationFailed

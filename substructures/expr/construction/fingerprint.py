@@ -14,7 +14,7 @@ import secrets
 from fractions import Fraction
 from hashlib import blake2b
 
-from substructures.expr.circle import point_of
+from substructures.expr.construction.circle import point_of
 
 _ROOTS = (2, 3, 5, 7)
 _WITNESSES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)

@@ -3,7 +3,7 @@
 Equality of functions does not suffice: (q^2 - 1)/(q - 1) has no value at 1, and (q + 4)(q + 9) - (q + 2)(q + 11) is 0
 at q = 1e9. What a value of a node **asks** for is a set of bits: the symbols that occur in it, the factors of its
 divisors whatever their signs and powers, the operands of its roots and of other partial functions. How large its
-rounding errors can become is its **size** (:mod:`substructures.expr.bounds`).
+rounding errors can become is its **size** (:mod:`substructures.expr.construction.bounds`).
 
 Both depend on the structure of a node alone. Most nodes are never compared with another structure, or only with one in
 which operands are exchanged or signs stand elsewhere; asks and sizes of a node are found when they are first needed.
@@ -13,11 +13,11 @@ from __future__ import annotations
 
 from typing import Generic
 
-from substructures.expr import bounds
-from substructures.expr.bounds import ZERO, Values, is_as_accurate, larger, product
-from substructures.expr.exact import nearest_float
-from substructures.expr.fingerprint import PRIME
-from substructures.expr.patterns import N, is_combination
+from substructures.expr.construction import bounds
+from substructures.expr.construction.bounds import ZERO, Values, is_as_accurate, larger, product
+from substructures.expr.construction.exact import nearest_float
+from substructures.expr.construction.fingerprint import PRIME
+from substructures.expr.construction.patterns import N, is_combination
 
 #: operations that have no value for some operands (division: see StandIns._divisors)
 PARTIAL = frozenset(("sqrt", "log", "asin", "acos", "tan", "atan2"))
@@ -119,7 +119,7 @@ class StandIns(Generic[N]):
         return bounds.partial(op, None if args[0].is_number else a, self._points(args[0]))
 
     def _points(self, node: N) -> Values:
-        """The values of a node at the points of :mod:`substructures.expr.bounds`."""
+        """The values of a node at the points of :mod:`substructures.expr.construction.bounds`."""
         known, stack = self._values, [node]
         while stack:
             top = stack[-1]

@@ -8,17 +8,17 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
-from substructures.certificate.linear import Ball
-from substructures.certificate.model_at import ModelAt, total
-from substructures.certificate.numbers import Numbers
-from substructures.certificate.outputs import Outputs
-from substructures.certificate.served import (
+from substructures.certificate.derived.model_at import ModelAt, total
+from substructures.certificate.derived.model_formulas import (
     Expectation,
     columns_of,
     inverse_dynamics_jacobians,
     symmetric_of,
     vector_of,
 )
+from substructures.certificate.linear import Ball
+from substructures.certificate.numbers import Numbers
+from substructures.certificate.outputs import Outputs
 from substructures.certificate.stored import operations_in_balls
 from substructures.certificate.texts import slope
 

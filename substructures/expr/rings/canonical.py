@@ -8,10 +8,10 @@ from math import gcd, lcm
 from typing import Any
 
 from substructures.errors import TooLarge
-from substructures.expr.exact import MAX_BITS
-from substructures.expr.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
+from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.graph import Expr
-from substructures.expr.laurent import Laurent, Quotient, Ring
+from substructures.expr.rings.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
+from substructures.expr.rings.laurent import Laurent, Quotient, Ring
 
 Terms = tuple[tuple[Basis, Fraction], ...]
 
