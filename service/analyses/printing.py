@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 
 from service.analyses.binding import Parameters, bound, bound_names
+from service.analyses.exporting import NAME
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.analyses.source import Source
 from service.refusals import not_found
@@ -29,8 +30,6 @@ from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
-#: prefix of functions where none is given
-NAME = "model"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"
 #: formats that have a title
 DOCUMENTS = ("latex-document", "mathml")
@@ -197,7 +196,9 @@ def _base_text(base: BaseParameters, interface: Interface, model: Model, style: 
 
 
 def _notes(members: Mapping[str, Any]) -> Iterator[str]:
-    """What is said for people about first integrals."""
+    """What is said for people about first integrals and quasi-velocities."""
+    for warning in members.get("warnings", ()):
+        yield f"Warning: {warning['message']}"
     for each in members.get("integrals", ()):
         yield f"{each['name']} in {each['unit']}, {each['rule']}: {each['reason']}"
 

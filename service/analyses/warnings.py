@@ -27,6 +27,7 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
     # a model with its definitions has told of relations itself
-    if motion is not None and source.model.plausibility is None and source.sources.judge is not None:
-        notices += source.sources.judge.apart(motion.coordinates, motion.q)
+    judge = source.sources.judge if motion is not None and source.model.plausibility is None else None
+    if motion is not None and judge is not None:
+        notices += judge.apart(motion.coordinates, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

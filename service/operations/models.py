@@ -9,18 +9,7 @@ from typing import Any
 
 import orjson
 
-from service.analyses.binding import bound
-from service.analyses.printing import (
-    Style,
-    check_quantity,
-    described,
-    names_of_steps,
-    options_of_quantity,
-    source_glossary,
-    text_of,
-    with_numbers,
-    with_options,
-)
+from service.analyses.printing import Style, text_of
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.queries.formulas import FormulaRow
@@ -29,21 +18,6 @@ from substructures.export import Interface
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
 from substructures.quantities.quantity import outputs_of
-
-__all__ = [
-    "Style",
-    "Wanted",
-    "bound",
-    "check_quantity",
-    "described",
-    "names_of_steps",
-    "options_of_quantity",
-    "part_formulas",
-    "printed",
-    "source_glossary",
-    "with_numbers",
-    "with_options",
-]
 
 
 @dataclass(frozen=True, slots=True)

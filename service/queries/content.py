@@ -23,6 +23,8 @@ SEALED = (
     *("bodies", "ports", "parameters", "operations", "certificate", "index_digest"),
 )
 
+AT_A_TIME = 500  # rows that are looked at
+
 
 @dataclass(frozen=True, slots=True)
 class StoredPart:
@@ -134,13 +136,14 @@ def get_recipe(connection: Connection, digest: str) -> str | None:
 
 def stale_parts(connection: Connection) -> list[str]:
     """The digests of all parts that other software has derived, or that are not as this server stored them."""
-    rows = connection.execute(select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest))
-    ours = software()
-    return [
-        row["digest"]
-        for row in rows.mappings()
-        if row["software"] != ours or row["seal"] != seal_of_part(connection, row)
-    ]
+    columns = select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest).limit(AT_A_TIME)
+    ours, last, found = software(), "", list[str]()
+    while rows := connection.execute(columns.where(parts.c.digest > last)).mappings().all():
+        last = rows[-1]["digest"]
+        found += [
+            row["digest"] for row in rows if row["software"] != ours or row["seal"] != seal_of_part(connection, row)
+        ]
+    return found
 
 
 def count_parts(connection: Connection) -> tuple[int, int]:

@@ -220,7 +220,7 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
     model, wanted = sources.model, list(outputs_of(quantity))
     if made_of(quantity) is not None:
         found = sources.program(TABLE[quantity].source)
-        return found if {*wanted} == {*found.outputs} else found.select(wanted)
+        return found.select([name for name in found.outputs if name in wanted])
     if quantity == "christoffel":
         require_stored(model.program, wanted)
     if any(name not in model.program.outputs for name in wanted):

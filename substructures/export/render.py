@@ -99,7 +99,7 @@ def render(
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)
     if made_of(quantity) is not None:  # without what tells whether it could be computed
-        program = program.select([name for name in outputs_of(quantity) if name in program.outputs])
+        program = program.select([name for name in program.outputs if name in outputs_of(quantity)])
     function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
     function.require_signature()
     exported = Exported(check_name(name), interface, (function,), form)

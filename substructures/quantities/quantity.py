@@ -226,7 +226,7 @@ _ROWS = (
         of_parts=True,
     ),
     _row("centroidal_momentum_matrix", "q p", "momenta coordinates", source="centroidal", symbol="A"),
-    # groups of formulas, outputs of parts, and what analyses make
+    # groups of formulas, outputs of parts, and what analyses make, or exports in two stages
     _stored("closures", "q qd p", arrays=(), written=_CLOSURES, is_number=False),
     _row("interface", "q p", source=PART, arrays=(), written=_INTERFACE, is_number=False),
     *(_row(name, "q p", source=PART, is_number=False) for name in ("R", "r", "E", "Z", "tau", *_INTERFACE)),
@@ -235,6 +235,7 @@ _ROWS = (
     _made("christoffel_second", "q p", symbol=r"\Gamma", raised=1),
     _made("base_regressor", "q qd qdd p"),
     _made("base_parameters", "p"),
+    _made("prepare", "p"),
     _made("energy", " ".join(EVERYTHING), symbol="E"),
     _made("routhian", " ".join(EVERYTHING), symbol="R"),
 )

@@ -23,6 +23,8 @@ from substructures.textbook.work import Work
 FACTORED = 60
 #: terms of a sum that may be a product but for one term, the fewest and the most
 FEWEST, MOST = 4, 13
+#: steps for every term of a sum in all ways in which it is gathered
+WAYS = 32
 #: terms, and the monomial where they belong
 Placed = tuple[Monomial, list[Term]]
 
@@ -86,6 +88,7 @@ class Collector:
         plain = self.plain(polynomial)
         if len(polynomial) < 2:
             return plain
+        self.work.steps(WAYS * len(polynomial))
         number, parts = factored(polynomial, Fraction(1), self.work)
         if sum(n for part, n in parts if len(part) > 1) > 1:
             factors: list[tuple[Factor, int]] = [(self(part), n) for part, n in parts]

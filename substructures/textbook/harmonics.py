@@ -104,7 +104,8 @@ def _multiple(k: int) -> tuple[tuple[tuple[int, int], int, int], ...]:
 
 def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction, work: Work) -> None:
     """Add a cos(k.q) + b sin(k.q): real and imaginary part of the product of (c_i + i s_i)^k_i."""
-    work.steps(prod(abs(k) + 1 for k in mode))
+    # binomial coefficients of k have about k digits
+    work.steps(prod(abs(k) + 1 + k * k // 64 for k in mode))
     terms: list[tuple[Powers, int, int]] = [((), 1, 0)]
     for k in mode:
         terms = [((*powers, p), c * d, (m + n) % 4) for powers, c, m in terms for p, d, n in _multiple(k)]

@@ -14,7 +14,7 @@ from typing import Any
 
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
-from substructures.textbook.collect import Collector, common_number, content, factored, is_fraction, length
+from substructures.textbook.collect import WAYS, Collector, common_number, content, factored, is_fraction, length
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, Wave, Waves, angle_key, normal, shortest, wave_key
@@ -139,6 +139,7 @@ class Layout:
 
     def _best(self, functions: Functions) -> Sum:
         """The shortest of gathered by motion, by functions, by cosines and sines, and by rates."""
+        self.work.steps(WAYS * sum(map(len, functions.values())))
         moving = {i for function in functions.values() for places, _ in function for i, _ in places}
         # of equal lengths C*(p' + cos(q)*r') with rates, else term by term
         key = length if any(self.atoms.is_rate(self.atoms.exprs[i]) for i in moving) else len

@@ -9,7 +9,7 @@ from analysis_models import catalogue_model
 from substructures import InvalidArgument, InvalidInput
 from substructures.documents.grouped import take
 from substructures.quantities.evaluation import QUANTITIES, Direction, Evaluation, EvaluationOptions, evaluate
-from substructures.quantities.quantity import OF_PARTS, TABLE
+from substructures.quantities.quantity import needs_parts
 
 
 def test_one_quantity_by_its_name() -> None:
@@ -76,9 +76,8 @@ def test_what_is_wrong_is_an_argument(arguments: dict[str, object], pointer: str
 
 def test_every_quantity_of_a_tree_has_an_array() -> None:
     model = catalogue_model("planar-2r")
-    names = [name for name in QUANTITIES if TABLE[name].source not in OF_PARTS]
-    found = evaluate(
-        model, names, np.zeros((2, 2)), qdd=np.zeros((2, 2)), options=EvaluationOptions(along=Direction(q=[1, 0]))
-    )
+    names = [name for name in QUANTITIES if not needs_parts(name)]
+    options = EvaluationOptions(along=Direction(q=[1, 0]))
+    found = evaluate(model, names, np.zeros((2, 2)), qdd=np.zeros((2, 2)), options=options)
     assert list(found.quantities) == names
     assert not found.failures
