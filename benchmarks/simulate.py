@@ -24,7 +24,7 @@ from benchmarks.kane import derive_by_kane
 from benchmarks.report import keep, options
 from substructures import couple, derive
 from substructures.analysis.from_fields import motion_arguments
-from substructures.analysis.motion.problem import TAYLOR
+from substructures.analysis.motion.problems.problem import TAYLOR
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
 from substructures.analysis.simulate import FixedStep, Integrator, Outputs, simulate
 from substructures.compile import compile_program

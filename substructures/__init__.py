@@ -55,8 +55,8 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.analysis.control.optimal_control import optimal_control
     from substructures.analysis.control.problem import ControlProblem, Cost
     from substructures.analysis.equations.first_integrals import first_integrals
-    from substructures.analysis.motion.outputs import Outputs, SensitivityOutputs
     from substructures.analysis.motion.parameter_sensitivity import sensitivities
+    from substructures.analysis.motion.problems.outputs import Outputs, SensitivityOutputs
     from substructures.analysis.simulate import (
         Closed,
         ClosedMotion,
@@ -155,7 +155,7 @@ _WHERE = {
     "analysis.control.optimal_control": ("optimal_control",),
     "analysis.control.problem": ("ControlProblem", "Cost"),
     "analysis.equations.first_integrals": ("first_integrals",),
-    "analysis.motion.outputs": ("Outputs", "SensitivityOutputs"),
+    "analysis.motion.problems.outputs": ("Outputs", "SensitivityOutputs"),
     "analysis.motion.parameter_sensitivity": ("sensitivities",),
     "analysis.simulate": (
         *("Closed", "ClosedMotion", "ConstrainedMotion", "Event", "FixedStep", "Geodesic", "Integrator"),

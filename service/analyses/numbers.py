@@ -37,8 +37,8 @@ from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.from_fields import control_arguments, motion_arguments, sensitivity_arguments
 from substructures.analysis.identification.fit import excitation, identify
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
-from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise

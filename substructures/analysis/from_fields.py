@@ -12,9 +12,15 @@ from typing import Any
 
 from substructures.analysis.control.nonlinear_program import Demands
 from substructures.analysis.control.problem import ControlProblem
-from substructures.analysis.motion.kinds import ClosedMotion, ConstrainedMotion, Geodesic, MotionKind, TreeMotion
-from substructures.analysis.motion.outputs import Outputs, SensitivityOutputs
-from substructures.analysis.motion.problem import Integrator
+from substructures.analysis.motion.problems.kinds import (
+    ClosedMotion,
+    ConstrainedMotion,
+    Geodesic,
+    MotionKind,
+    TreeMotion,
+)
+from substructures.analysis.motion.problems.outputs import Outputs, SensitivityOutputs
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.documents.grouped import take
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.model import Model

@@ -7,17 +7,23 @@ from typing import Any
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
 from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
-from substructures.analysis.motion.events import Event
-from substructures.analysis.motion.fixed_step import FixedStep
 from substructures.analysis.motion.geodesics import without_forces
-from substructures.analysis.motion.kinds import ClosedMotion, ConstrainedMotion, Geodesic, MotionKind, TreeMotion
+from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.load_powers import with_powers
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.outputs import Outputs
-from substructures.analysis.motion.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.kinds import (
+    ClosedMotion,
+    ConstrainedMotion,
+    Geodesic,
+    MotionKind,
+    TreeMotion,
+)
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.outputs import Outputs
+from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.signals import Signal, Table
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
-from substructures.analysis.motion.signals import Signal, Table
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.transmitted import with_reactions

@@ -10,8 +10,8 @@ from random_trees import Plain
 from simulated import simulated
 
 from substructures import InvalidInput
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.simulate import Closed, Event, Linear, Table, simulate
 

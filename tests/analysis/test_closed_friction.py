@@ -18,7 +18,7 @@ from substructures.analysis.closed import dry_friction
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
 from substructures.analysis.closed.sticking_forces import bounded
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 

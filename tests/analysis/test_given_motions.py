@@ -11,7 +11,7 @@ from scipy.interpolate import CubicSpline, make_interp_spline
 
 from substructures import InvalidArgument, Model, simulate
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.motion.signals import Curve, Table
+from substructures.analysis.motion.problems.signals import Curve, Table
 from substructures.analysis.simulate import ClosedMotion, Outputs
 
 TIMES = [0.0, 1.0, 2.0, 3.0]

@@ -12,8 +12,8 @@ from substructures import InvalidInput, Model
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.problem import ControlProblem, Cost
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.motion.outputs import SensitivityOutputs
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.simulate import ClosedMotion, Event, Integrator, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.quantities.evaluation import evaluate

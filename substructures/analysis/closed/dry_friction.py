@@ -26,7 +26,7 @@ from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.closed.sticking_forces import RANK, bounded, holding, unit_rows
 from substructures.analysis.motion.dry_friction import EDGE, REST, FrictionLaws, Signs, friction_laws
 from substructures.analysis.motion.dry_run import DryRun
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 
 #: a joint has no lever where it moves by less than this part of the motion

@@ -10,7 +10,7 @@ import scipy
 
 from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.closed.kinks import require_smooth, require_smooth_table
-from substructures.analysis.motion.signals import Signal, Table, polynomials, require_covered
+from substructures.analysis.motion.problems.signals import Signal, Table, polynomials, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape

@@ -20,11 +20,11 @@ from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.dry_friction import friction_laws
 from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import energy_balance, unbalanced
-from substructures.analysis.motion.kinds import ClosedMotion
-from substructures.analysis.motion.problem import MotionProblem
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.kinds import ClosedMotion
+from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings

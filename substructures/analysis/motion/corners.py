@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.equations.kernels import Known
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.calculus.corners import corners, inner, on_side

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.right_hand_side import RightHandSide
-from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret

@@ -19,15 +19,15 @@ from substructures.analysis.equations.formulas import ModelFormulas, require_tre
 from substructures.analysis.equations.kernels import Known, program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import Conditions, state_names
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge
 from substructures.analysis.motion.limits import with_limits
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.outputs import SensitivityOutputs
-from substructures.analysis.motion.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
+from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.second_run import accurate, halves, second_run
-from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.varying_inputs import VaryingInputs

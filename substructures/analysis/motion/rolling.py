@@ -14,15 +14,15 @@ from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
-from substructures.analysis.motion.kinds import ConstrainedMotion
-from substructures.analysis.motion.problem import MotionProblem
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion
+from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.reduced_motion import ReducedMotion
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
-from substructures.analysis.motion.steppers import METHODS
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.velocity_choices import VelocityChoices
 from substructures.analysis.verdict import Check

@@ -6,10 +6,10 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from substructures.analysis.motion.integration import IntegratedMotion
-from substructures.analysis.motion.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.problem import Integrator, MotionProblem
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
 from substructures.analysis.motion.second_run import accurate, at_end, second_run
 from substructures.analysis.motion.single_steps import Groups, steps_again
 from substructures.analysis.verdict import Check

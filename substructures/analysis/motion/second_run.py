@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from substructures.analysis.motion.integration import IntegratedMotion
-from substructures.analysis.motion.problem import Integrator
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 

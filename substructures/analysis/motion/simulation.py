@@ -14,17 +14,17 @@ from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.fixed_step import march
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.fixed_step import march
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
-from substructures.analysis.motion.kinds import TreeMotion
 from substructures.analysis.motion.loaded_friction import LoadedRightHandSide
-from substructures.analysis.motion.problem import TAYLOR, MotionProblem
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.kinds import TreeMotion
+from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
-from substructures.analysis.motion.steppers import Stepper
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check

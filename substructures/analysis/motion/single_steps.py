@@ -13,9 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from substructures.analysis.motion.fixed_step import FixedStep
-from substructures.analysis.motion.integration import IntegratedMotion
-from substructures.analysis.motion.problem import TAYLOR, Integrator
+from substructures.analysis.motion.integrators.fixed_step import FixedStep
+from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array

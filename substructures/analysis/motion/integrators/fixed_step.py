@@ -11,7 +11,7 @@ from typing import Literal
 import numpy as np
 
 from substructures.analysis.arguments import one_of, positive
-from substructures.analysis.motion.integration import Function, IntegratedMotion, TimeReport
+from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion, TimeReport
 from substructures.array import Array
 
 StepMethod = Callable[[Function, float, Array, float], Array]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.arguments import Numbers, positive, reals, whole
-from substructures.analysis.motion.signals import require_increasing
+from substructures.analysis.motion.problems.signals import require_increasing
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 

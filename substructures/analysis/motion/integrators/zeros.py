@@ -11,8 +11,8 @@ from typing import Any, Protocol
 import numpy as np
 import scipy
 
-from substructures.analysis.motion.steppers import Stepper, roughly_within, within
-from substructures.analysis.motion.turning_points import turns
+from substructures.analysis.motion.integrators.steppers import Stepper, roughly_within, within
+from substructures.analysis.motion.integrators.turning_points import turns
 from substructures.array import Array
 
 #: where a watched quantity turns this near to its level, beside how far it is from it before and after, the turn is

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from substructures.analysis.motion.integration import TimeReport
+from substructures.analysis.motion.integrators.integration import TimeReport
 
 #: told (time reached - start) / span; False stops
 ProgressReport = Callable[[float], bool | None]

@@ -8,9 +8,8 @@ from typing import Literal
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.velocity_constraints import Constraint
-from substructures.analysis.motion.problem import StateVector
-from substructures.analysis.motion.reduced_motion import FORMS
-from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.problems.problem import StateVector
+from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
 from substructures.quantities.reactions import ReactionModel
 
@@ -73,7 +72,7 @@ class ConstrainedMotion:
     def __post_init__(self) -> None:
         if not self.constraints:
             raise InvalidArgument.at("/constraints", "too-short", "at least one constraint is needed, found none")
-        one_of(self.form, "form", tuple(FORMS))
+        one_of(self.form, "form", ("voronets", "boltzmann-hamel"))
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ from typing import Any, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.steppers import Stepper
-from substructures.analysis.motion.zeros import Dense, Watch, zeros_of
+from substructures.analysis.motion.integrators.steppers import Stepper
+from substructures.analysis.motion.integrators.zeros import Dense, Watch, zeros_of
 from substructures.array import Array
 
 Function = Callable[[float, Array], Array]

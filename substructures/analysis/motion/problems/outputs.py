@@ -6,8 +6,8 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.analysis.arguments import NumberOrExpression
-from substructures.analysis.motion.events import Event
-from substructures.analysis.motion.output_times import OutputGrid
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.quantities.powers import PowerModel
 from substructures.quantities.reactions import ReactionModel
 

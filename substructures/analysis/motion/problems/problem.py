@@ -8,12 +8,12 @@ from pathlib import Path
 from typing import Any
 
 from substructures.analysis.arguments import NumberOrExpression, Numbers, in_range, one_of, positive, whole
-from substructures.analysis.motion.events import Event
-from substructures.analysis.motion.fixed_step import FixedStep
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.progress import ProgressReport
-from substructures.analysis.motion.signals import Signal
-from substructures.analysis.motion.steppers import METHODS, Stepper, scipy_stepper
+from substructures.analysis.motion.integrators.fixed_step import FixedStep
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.integrators.steppers import METHODS, Stepper, scipy_stepper
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
 from substructures.quantities.states import with_input_defaults
 from substructures.tree.model import Model
