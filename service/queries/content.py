@@ -106,11 +106,6 @@ def program_of(connection: Connection, digest: str) -> tuple[str | None, str]:
     return (None, "") if found is None else (found.program, found.software)
 
 
-def has_part(connection: Connection, digest: str) -> bool:
-    """Whether a part is stored."""
-    return connection.execute(select(parts.c.digest).where(parts.c.digest == digest)).first() is not None
-
-
 def get_part(connection: Connection, digest: str) -> StoredPart | None:
     """A part, ready to be decoded. Raises Refused (``damaged-content``, ``missing-content``)."""
     row = connection.execute(_STORED, {"of_digest": digest}).mappings().first()

@@ -24,7 +24,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
 from substructures.expr.syntax import ExpressionError
-from substructures.part.scope import no_names
+from substructures.loads.scope import no_names
 from substructures.quantities.measured import PlaceUnits, numeric, si_values
 from substructures.tree.model import Model
 

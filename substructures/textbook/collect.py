@@ -7,10 +7,11 @@ geometry or by masses, whichever is shorter, and equal sums that result are gath
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from math import gcd, lcm
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
@@ -302,11 +303,16 @@ def factored(polynomial: Polynomial, number: Fraction, work: Work) -> tuple[Frac
     number *= Fraction(int(c.p), int(c.q))
     found: list[tuple[Polynomial, int]] = []
     for part, n in parts:
-        inner = {
-            tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): Fraction(int(x.p), int(x.q))
-            for k, x in part.to_dict().items()
-        }
+        inner = _read_polynomial(part, used)
         sign = -1 if inner[min(inner, key=monomial_key)] < 0 else 1
-        number *= Fraction(sign) ** int(n)
-        found.append(({m: x * sign for m, x in inner.items()}, int(n)))
+        number *= sign**n
+        found.append(({m: x * sign for m, x in inner.items()}, n))
     return number, sorted(found, key=lambda item: sorted(map(monomial_key, item[0])))
+
+
+def _read_polynomial(poly: Any, used: Sequence[int]) -> Polynomial:
+    """A polynomial of FLINT, whose variables are the atoms ``used``."""
+    return {
+        tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): Fraction(int(x.p), int(x.q))
+        for k, x in poly.to_dict().items()
+    }
