@@ -17,7 +17,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
 from substructures.expr.rings.expand import classified
-from substructures.expr.rings.generators import Angle, Generators, Product, is_function, turned
+from substructures.expr.rings.generators import Angle, Generators, Product, Sum, is_function, turned
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
 
@@ -38,7 +38,7 @@ class Field:
         units = self.generators.units(f for f in forms.values() if isinstance(f, Angle))
         self.units = {i: unit_of([unit]) for i, unit in units.items()}
         self.angles = sorted(self.units, key=lambda i: self.generators.order[i])
-        self.plain = self._plain(nodes, forms)
+        self.plain = self._plain(nodes)
         self.context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(len(self.plain) + len(self.angles))], Ordering.lex)
         self.place = {g: n for n, g in enumerate(self.plain)}
         self.one = self.context.constant(1)
@@ -47,11 +47,11 @@ class Field:
         for node in nodes:
             self.values[node] = self._value(node, forms)
 
-    def _plain(self, nodes: Iterable[Expr], forms: Mapping[Expr, Angle | Product]) -> list[int]:
+    def _plain(self, nodes: Sequence[Expr]) -> list[int]:
         """Generators that are no angles; roots first, those of sums before those in the sums."""
         g = self.generators
-        used = g.plain(next(iter(forms)).graph if forms else None, nodes, tuple(forms.values()))
-        sums = g.sums(used)
+        used = g.plain(nodes)
+        sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
         return [*sums, *sorted(used - set(sums), key=lambda i: (i not in g.squares, g.order[i]))]
 
     def _square(self, generator: int, n: int) -> Any:

@@ -25,7 +25,7 @@ class RingEvaluator:
         forms = [generators.forms[n] for n in nodes if is_function(n)]
         self.units = generators.units(f for f in forms if isinstance(f, Angle))
         self.angles = sorted(self.units, key=lambda i: generators.order[i])
-        plain = self._plain(nodes, forms)
+        plain = self._plain(nodes)
         self.place = {i: n for n, i in enumerate(plain)}
         self.plain = plain
         self.ring = Ring(len(plain) + 1, len(self.angles), limit)
@@ -34,11 +34,11 @@ class RingEvaluator:
         for node in nodes:
             self.values[node] = self._value(node)
 
-    def _plain(self, nodes: list[Expr], forms: list[Angle | Product]) -> list[int]:
+    def _plain(self, nodes: list[Expr]) -> list[int]:
         """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
         g = self.generators
-        used = g.plain(self.graph, nodes, forms)
-        sums = g.sums(used)
+        used = g.plain(nodes)
+        sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
         numbers = sorted(i for i in used if isinstance(g.squares.get(i), int))
         return [*sums, *numbers, *sorted(used - set(sums) - set(numbers), key=lambda i: g.order[i])]
 

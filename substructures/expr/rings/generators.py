@@ -88,6 +88,22 @@ class Generators:
         self.squares[i] = n
         return i
 
+    def plain(self, nodes: Sequence[Expr]) -> set[int]:
+        """What nodes consist of but angles: symbols, functions, and roots with what they are roots of."""
+        forms = [self.forms[n] for n in nodes if is_function(n)]
+        used = {self.symbol(n) for n in nodes if n.op == "sym"}
+        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
+        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
+            used.update(self.root(nodes[0].graph, n) for n in (2, 3))
+        stack = list(used)
+        while stack:
+            square = self.squares.get(stack.pop())
+            if isinstance(square, Sum):
+                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
+                used |= new
+                stack.extend(new)
+        return used
+
     def classify(self, node: Expr, args: list[Sum]) -> None:
         """Enter a function node, given the canonical forms of its arguments."""
         if node.op in ANGULAR:
@@ -147,25 +163,6 @@ class Generators:
         degree = sum(power for i, power in basis.monomial if self.order[i][0] > 0)
         names = tuple((self.order[i], -power) for i, power in basis.monomial)
         return degree, bool(basis.trig), names, tuple((self.order[i], c) for i, c in basis.angle), basis.trig
-
-    def plain(self, graph: Any, nodes: Iterable[Expr], forms: Sequence[Angle | Product]) -> set[int]:
-        """Numbers of the generators that are no angles: of symbols, functions, and roots with what is in them."""
-        used = {self.symbol(n) for n in nodes if n.op == "sym"}
-        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
-        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
-            used.update(self.root(graph, n) for n in (2, 3))
-        stack = list(used)
-        while stack:
-            square = self.squares.get(stack.pop())
-            if isinstance(square, Sum):
-                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
-                used |= new
-                stack.extend(new)
-        return used
-
-    def sums(self, used: Iterable[int]) -> list[int]:
-        """Those that are roots of sums, a root before what is in it."""
-        return sorted((i for i in used if isinstance(self.squares.get(i), Sum)), reverse=True)
 
     def units(self, angles: Iterable[Angle]) -> dict[int, Fraction]:
         """For every angle atom the largest angle of which all occurring ones are multiples."""
