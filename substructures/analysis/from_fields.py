@@ -1,4 +1,4 @@
-"""Arguments of analyses from flat documents: the fields of a request over HTTP, of an item of a job, of a file.
+"""Arguments of motions from flat documents: the fields of a request over HTTP, of an item of a job, of a file.
 
 A field has the name that it has in the class that takes it (``method``: of Integrator, ``series``: of Outputs, ...);
 only ``fixed_step`` is a method. What is no field of them, as ``q``, stays as it is.
@@ -10,8 +10,6 @@ from collections.abc import Sized
 from dataclasses import fields
 from typing import Any
 
-from substructures.analysis.control.nonlinear_program import Demands
-from substructures.analysis.control.problem import ControlProblem
 from substructures.analysis.motion.problems.kinds import (
     ClosedMotion,
     ConstrainedMotion,
@@ -56,14 +54,6 @@ def sensitivity_arguments(**given: Any) -> dict[str, Any]:
     """Arguments of sensitivities."""
     rest = dict(given)
     return {"integrator": take(Integrator, rest), "outputs": take(SensitivityOutputs, rest), **rest}
-
-
-def control_arguments(**given: Any) -> dict[str, Any]:
-    """Arguments of cost_gradient and of optimal_control."""
-    rest = dict(given)
-    problem = take(ControlProblem, rest)
-    demanded = {field.name for field in fields(Demands)} & set(rest)
-    return {"problem": problem, **({"demands": take(Demands, rest)} if demanded else {}), **rest}
 
 
 def _kind(model: Model, given: dict[str, Any]) -> type[MotionKind]:

@@ -14,9 +14,9 @@ from scipy.integrate import solve_ivp
 from substructures import InvalidInput, MissingValue, Model
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import ControlProblem, Cost, initial_state, inputs_of
 from substructures.analysis.control.shooting import Shooting
-from substructures.analysis.from_fields import control_arguments
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import Direction, EvaluationOptions, evaluate

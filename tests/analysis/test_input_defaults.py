@@ -12,10 +12,11 @@ from simulated import simulated
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.routh import routh
-from substructures.analysis.from_fields import control_arguments, sensitivity_arguments
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import KnifeEdge, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria

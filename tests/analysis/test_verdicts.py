@@ -17,10 +17,11 @@ from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed import loops
 from substructures.analysis.closed.loops import least_multipliers, loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
-from substructures.analysis.from_fields import control_arguments, sensitivity_arguments
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification import fit
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.identification.fit import identify

@@ -12,9 +12,9 @@ from substructures import Definition, Model, TreeSpec, couple, derive, equilibri
 from substructures import simulate as motion
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.perturbation import state_space
-from substructures.analysis.from_fields import control_arguments
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, sensitivity_formulas
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.errors import InvalidInput

@@ -12,7 +12,7 @@ from flat_arguments import flat_arguments
 from random_trees import Plain
 from rolling_bodies import sleigh
 
-from service.analyses.formulas import velocity_equations_of
+from service.analyses.formulas.constraints import velocity_equations_of
 from service.analyses.numbers import ANALYSES
 from service.analyses.requests import arguments, read_request
 from service.analyses.results import plain
