@@ -13,7 +13,7 @@ from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Number, NumberVector
 from substructures.documents.units import Dimension
 from substructures.expr.graph import Expr
-from substructures.expr.unit_check import Place
+from substructures.expr.units.unit_check import Place
 from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import Reach
 from substructures.loads.units import DAMPING, LENGTH, STIFFNESS, fields_of, vector

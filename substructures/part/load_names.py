@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping
 
+from substructures.expr.calculus.integrate import symbols_of
 from substructures.expr.graph import Expr
-from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
 from substructures.loads.scope import Lookup, Scope
 

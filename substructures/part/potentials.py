@@ -11,10 +11,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from substructures.errors import TooLarge
+from substructures.expr.calculus.integrate import LIMIT, filtered, from_zero, needed, potential, symbols_of
 from substructures.expr.differentiate import derivative
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr
-from substructures.expr.integrate import LIMIT, filtered, from_zero, needed, potential, symbols_of
+from substructures.expr.rings.expand import is_zero
 from substructures.expr.walk import transfer
 from substructures.loads.names import LEFT_OUT
 from substructures.loads.scope import Scope

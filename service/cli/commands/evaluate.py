@@ -17,6 +17,8 @@ from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.tree_files import local_source
 from service.cli.values import values
 from substructures.client.steps import step
+from substructures.documents.grouped import take
+from substructures.quantities.evaluation import EvaluationOptions
 from substructures.quantities.evaluation import evaluate as evaluated
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
 from substructures.quantities.states import STATE, wrong_length
@@ -74,10 +76,9 @@ def evaluate(
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
     source = local_source(path)
     _check_lengths(request, source.model.coordinates)
-    sources = source.sources
     given = {"q": np.zeros(source.model.dof), **request}
-    quantities = given.pop("quantities")
-    result = evaluated(source.model, quantities, **given, sources=sources)
+    quantities, options = given.pop("quantities"), take(EvaluationOptions, given)
+    result = evaluated(source.sources, quantities, **given, options=options)
     plain: dict[str, Any] = orjson.loads(orjson.dumps(result.plain(), option=orjson.OPT_SERIALIZE_NUMPY))
     return plain
 
