@@ -35,8 +35,9 @@ class Computed:
 
 class Runtime:
     """``computed``: keys of computations; ``threads``: for requests that may be given up, by task; ``deriving``: where
-    they derive; ``wake``: set when there is something new for the supervisor of this process; ``stopping``: set when
-    the server stops, so that answers without an end are ended.
+    they derive; ``renewing``: held while something stored is derived anew; ``wake``: set when there is something new
+    for the supervisor of this process; ``stopping``: set when the server stops, so that answers without an end are
+    ended.
     """
 
     def __init__(self, key_seconds: float) -> None:
@@ -44,6 +45,7 @@ class Runtime:
         self.computed = Computed()
         self.threads = {task: SharedThreads(count, task) for task, count in THREADS.items()}
         self.deriving = SharedThreads(DERIVING, "deriving")
+        self.renewing = Lock()
         self.wake = Event()
         self.stopping = Event()
 

@@ -125,8 +125,8 @@ def test_links_lead_somewhere(page: Path) -> None:
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))
 def test_lines_can_be_read(page: Path) -> None:
     """But for tables and what is copied to a terminal."""
-    text = re.sub(r"^```.*?^```$", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
-    assert not [line for line in text.splitlines() if len(line) > 120 and not line.startswith("|")]
+    text = re.sub(r"^ *```.*?^ *```$", "", page.read_text(), flags=re.DOTALL | re.MULTILINE)
+    assert not [line for line in text.splitlines() if len(line) > 120 and not line.startswith(("|", "    "))]
 
 
 def test_the_index_names_every_page() -> None:
@@ -142,6 +142,13 @@ def test_the_readme_is_read_in_two_minutes() -> None:
 def test_reference_pages_are_true(name: str) -> None:
     """``python tests/reference_pages.py`` writes them."""
     assert (reference_pages.FOLDER / name).read_text() == reference_pages.PAGES[name]()
+
+
+def test_help_of_a_command_that_is_kept_is_shown_at_once() -> None:
+    command = [sys.executable, "-m", "service.cli.main", "serve", "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    assert "Usage: substructures serve" in done.stdout
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: str(page.relative_to(ROOT)))

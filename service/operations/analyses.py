@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from functools import partial
 from time import perf_counter
 from typing import Any
 
@@ -17,7 +16,7 @@ from service.analyses.source import Source
 from service.answers import Answer
 from service.negotiation import MEDIA_TYPES
 from service.operations import trees
-from service.operations.sources import grouped_model, sources_of, tree_parts
+from service.operations.sources import sources_of, tree_parts
 from service.queries.trees import Tree
 from service.store import Store
 from service.viewer import Viewer
@@ -27,11 +26,8 @@ from substructures.tree.model import Model
 
 def source_of(store: Store, tree: Tree, model: Model) -> Source:
     """What analyses of a stored tree work on."""
-    sources = sources_of(store, tree, model)
     tools = store.settings.limits, store.kernels.folder, store.kernels
-    kept = sources.plausibility, sources.reactions, sources.powers
-    more = partial(grouped_model, store, tree), lambda: tree_parts(store, tree)
-    return Source(model, tree.digest, sources.columns, *tools, *kept, *more)
+    return Source(sources_of(store, tree, model), tree.digest, *tools, lambda: tree_parts(store, tree))
 
 
 def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:

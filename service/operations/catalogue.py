@@ -27,7 +27,7 @@ SUBMITTED = Origin()
 @dataclass(frozen=True, slots=True)
 class PartSubmission:
     """A definition ready to be stored; ``content`` is None when that is stored already. ``is_mended``: what is stored
-    is damaged, and the content takes its place."""
+    is damaged, or was not derived here, and the content takes its place."""
 
     name: str
     digest: str
@@ -44,8 +44,10 @@ def prepare(
     entry: PartEntry,
     origin: Origin = SUBMITTED,
     made: Callable[[], Part] | None = None,
+    recipe: str | None = None,
 ) -> PartSubmission:
-    """Derive, verify and certify a definition unless its content is known and sound; ``made``: what does so.
+    """Derive, verify and certify a definition unless its content is known and sound; ``made``: what does so, by a
+    ``recipe`` (:mod:`service.derivation`).
 
     Raises InvalidDocument, TooLarge, LongWork, Refused 403 for a name of others, 409, 422.
     """
@@ -55,13 +57,17 @@ def prepare(
             owners.wanted(connection, viewer, "substructure", definition.name, entry)
         derived_from(connection, viewer, entry)
         try:
-            if content.get_part(connection, definition.digest) is not None:
-                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
+            known = content.get_part(connection, definition.digest)
         except Refused:  # damaged, or gone in part
             is_mended = True
+        else:
+            if known is not None and known.is_derived:
+                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
+            is_mended = known is not None
     part = made() if made else derive(definition, store.settings.limits.program_nodes, store.admit)
     store.remember_part(part)
-    return PartSubmission(definition.name, definition.digest, part_content(part), is_mended, entry, origin)
+    made_of = part_content(part, recipe)
+    return PartSubmission(definition.name, definition.digest, made_of, is_mended, entry, origin)
 
 
 def _is_there(connection: Connection, viewer: Viewer, name: str, digest: str) -> bool:

@@ -8,7 +8,9 @@ from typing import Any
 
 from service.addresses import tree_path, version_path
 from service.database.connections import Connection
+from service.database.packed import unpack
 from service.improvement import Improvement
+from service.integrity import checked
 from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import ENTRY
 from service.operations import catalogue, trees
@@ -19,7 +21,7 @@ from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
 from service.schemas.entries import Entry, PartEntry
-from service.summaries import PartContent, float_of
+from service.summaries import UNKNOWN, PartContent, float_of
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
@@ -68,9 +70,9 @@ def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outco
     files, told = outcome.files, outcome.summary
     inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
     figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
-    coupled = trees.TreeContent(
-        told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline
-    )
+    made = files["summary"], told["parts"], inline, told.get("software", UNKNOWN)
+    checked("the program of a tree", told["program"], unpack(files["program"]))
+    coupled = trees.TreeContent(told["name"], files["spec"], files["program"], *figures, *made)
     tree, _ = trees.store(connection, viewer, coupled, _entry(item), item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 

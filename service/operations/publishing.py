@@ -7,9 +7,11 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.database.connections import Connection
+from service.derivation import recipe_of
 from service.operations import catalogue, owners, trees
 from service.operations.provenance import Origin
 from service.operations.sources import tree_parts
+from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree
 from service.refusals import Refused
@@ -31,6 +33,7 @@ class Module:
     parts: Mapping[str, Part]
     entry: PartEntry
     origin: Origin
+    recipe: str
 
     def document(self) -> dict[str, Any]:
         """As it would be submitted."""
@@ -48,10 +51,11 @@ def module(store: Store, viewer: Viewer, text: str, wanted: PublishRequest) -> M
         spec, parts = tree_parts(store, tree)
         uses = {instance: part.definition.digest for instance, part in parts.items()}
         _require_visible(connection, viewer, tree, name, entry, uses)
-    about = {"name": name, **wanted.about()}
-    found = published(spec, parts, Publication(about, wanted.ports, tuple(wanted.free), wanted.defaults))
+        recipes = {instance: content.get_recipe(connection, digest) for instance, digest in uses.items()}
+    how = Publication({"name": name, **wanted.about()}, wanted.ports, tuple(wanted.free), wanted.defaults)
+    found = published(spec, parts, how)
     origin = Origin("tree", tree.name, tree.revision, uses)
-    return Module(found, parts, entry, origin)
+    return Module(found, parts, entry, origin, recipe_of(spec, parts, recipes, how))
 
 
 def _require_visible(
@@ -76,4 +80,4 @@ def prepare(store: Store, viewer: Viewer, found: Module) -> catalogue.PartSubmis
         """The part, coupled of the stored formulas."""
         return published_part(found.found, found.parts, store.settings.limits.program_nodes, store.admit)
 
-    return catalogue.prepare(store, viewer, found.found.definition, found.entry, found.origin, made)
+    return catalogue.prepare(store, viewer, found.found.definition, found.entry, found.origin, made, found.recipe)

@@ -49,7 +49,8 @@ class TreeContent:
     """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
     freedom, joints, mass in kg if it is known, the summary as JSON.
 
-    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
+    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along;
+    ``software``: that coupled it, empty for that of this process.
     """
 
     name: str
@@ -63,6 +64,7 @@ class TreeContent:
     summary: bytes
     parts: Mapping[str, str]
     inline: Sequence[PartContent] = ()
+    software: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -208,7 +210,7 @@ def _part(store: Store, connection: Connection, viewer: Viewer, index: int, inst
         digest = instance.definition.digest
         hidden = [owner for _, owner in private_parts(connection, [digest]).values() if not viewer.may_change(owner)]
         # what is private takes its time as what is not there
-        return (None if hidden else store.part(connection, digest)) or _derived(store, index, instance)
+        return (None if hidden else store.part(connection, digest, is_newest=True)) or _derived(store, index, instance)
     pointer = f"/instances/{index}/substructure"
     ref = parse_reference(instance.substructure or "")
     version = versions.resolve(connection, viewer, ref) if ref is not None else None
@@ -216,7 +218,7 @@ def _part(store: Store, connection: Connection, viewer: Viewer, index: int, inst
         why = owners.absent_part(connection, viewer, instance.substructure or "")
         message = f"instance '{instance.name}': {why}"
         raise InvalidDocument.at(pointer, "unknown-substructure", message)
-    return store.required_part(connection, version.digest)
+    return store.required_part(connection, version.digest, is_newest=True)
 
 
 def _derived(store: Store, index: int, instance: Instance) -> Part:
@@ -279,7 +281,7 @@ def store(
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
     whom = viewer.key, whose.owner, whose.visibility, entry.note or ""
-    figures = coupled.joints, coupled.mass
+    figures = coupled.joints, coupled.mass, coupled.software
     tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom, *figures)
     trees.add_revision(connection, tree, coupled.parts)
     audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)

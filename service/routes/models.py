@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.analyses.grouping import check_group
-from service.analyses.printing import needs_parts
+from service.analyses.printing import has_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
@@ -142,7 +142,7 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
     """The digests of the programs that quantities are printed from."""
-    return [tree.program, *(part_programs(store, tree) if any(map(needs_parts, quantities)) else ())]
+    return [tree.program, *(part_programs(store, tree) if any(map(has_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -191,7 +191,7 @@ def _quantity(
         """Form, bind and print."""
         sources = models.with_options(sources_of(store, tree, model), quantity, options)
         members, parameters = models.described(sources, quantity)
-        program = models.with_numbers(models.model_quantity(sources, quantity), parameters, model.inputs, style)
+        program = models.with_numbers(sources.formulas(quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
         named = models.names_of_steps(
             style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree), model=model.program)
