@@ -90,7 +90,9 @@ def _upgraded(connection: Connection, viewer: Viewer, item: Mapping[str, Any], o
     files, told = outcome.files, outcome.summary
     found = Improvement(told["before"], told["after"], told["outcome"])
     if found.is_one and "tree" in item:
-        made = TreeProgram(files["program"], told["program"], told["nodes"], told["dof"], files["summary"])
+        checked("the program of a tree", told["program"], unpack(files["program"]))
+        figures = told["program"], told["nodes"], told["dof"]
+        made = TreeProgram(files["program"], *figures, files["summary"], told.get("software", UNKNOWN))
         put_tree(connection, viewer, told["name"], told["digest"], item["program"], made, found)
     elif found.is_one:
         put_part(connection, viewer, item["substructure"], item["program"], PartContent.of_files(files), found)

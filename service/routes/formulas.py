@@ -7,6 +7,7 @@ from typing import Annotated, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
+from service.analyses import printing
 from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -97,7 +98,7 @@ def _absent(part: Part, quantity: str, chosen: Chosen) -> str:
 
 
 def _formula(
-    ref: str, quantity: str, request: Request, store: Store, viewer: Viewer, style: models.Style, chosen: Chosen
+    ref: str, quantity: str, request: Request, store: Store, viewer: Viewer, style: printing.Style, chosen: Chosen
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
@@ -116,8 +117,8 @@ def _formula(
         """Bind and print."""
         own = with_own_inertia(part, found) if chosen.inertia == "own" else found
         inputs = described_inputs(part.definition.inputs)
-        program = models.with_numbers(own, part.parameters, inputs, style)
-        named = models.names_of_steps(style, part.parameters, inputs, lambda: part_glossary(part))
+        program = printing.with_numbers(own, part.parameters, inputs, style)
+        named = printing.names_of_steps(style, part.parameters, inputs, lambda: part_glossary(part))
         return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest), None, named)
 
     return remembered(request, tag, is_pinned(ref) and version.is_public, make)

@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.analyses import printing
 from service.analyses.exporting import ExportRequest, tree_package
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.analyses.grouping import check_group
-from service.analyses.printing import has_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
@@ -142,7 +142,7 @@ def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: Ex
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
     """The digests of the programs that quantities are printed from."""
-    return [tree.program, *(part_programs(store, tree) if any(map(has_parts, quantities)) else ())]
+    return [tree.program, *(part_programs(store, tree) if any(map(printing.has_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -160,7 +160,7 @@ async def get_quantity(
 
 
 def _quantity(
-    ref: str, quantity: str, request: Request, store: Store, style: models.Style, options: Options, group: bool
+    ref: str, quantity: str, request: Request, store: Store, style: printing.Style, options: Options, group: bool
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
@@ -170,7 +170,7 @@ def _quantity(
     style = style.of(f"{tree.name}, revision {tree.revision}", quantity)
     if group:
         if quantity not in QUANTITIES:
-            models.check_quantity(model, quantity)
+            printing.check_quantity(model, quantity)
         check_options(quantity, options)
         check_group(quantity, style)
         source = analyses.source_of(store, tree, model)
@@ -181,19 +181,19 @@ def _quantity(
         programs = _programs(store, tree, [quantity])
         tag = etag(tree.digest, *programs, quantity, str(sorted(options.items())), *style.identity)
         return remembered(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
-    models.check_quantity(model, quantity)
-    check_options(quantity, options, models.options_of_quantity(quantity))
+    printing.check_quantity(model, quantity)
+    check_options(quantity, options, printing.options_of_quantity(quantity))
     programs = _programs(store, tree, [quantity])
     chosen = [f"{name}={x}" for name, x in options.items()]
     tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
 
     def make() -> Answer:
         """Form, bind and print."""
-        sources = models.with_options(sources_of(store, tree, model), quantity, options)
-        members, parameters = models.described(sources, quantity)
-        program = models.with_numbers(sources.formulas(quantity), parameters, model.inputs, style)
+        sources = printing.with_options(sources_of(store, tree, model), quantity, options)
+        members, parameters = printing.described(sources, quantity)
+        program = printing.with_numbers(sources.formulas(quantity), parameters, model.inputs, style)
         interface = interface_of_model(model, digest=tree.digest)
-        named = models.names_of_steps(
+        named = printing.names_of_steps(
             style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree), model=model.program)
         )
         return models.printed(program, style, quantity, interface, members, named)

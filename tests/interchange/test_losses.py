@@ -286,3 +286,6 @@ def test_computed_vectors_and_those_of_programs_are_cleaned() -> None:
     joint = found.definition["bodies"][1]["joint"]
     assert joint["placement"]["position"][1] == 0
     assert joint["axis"] == [-1, 0, 1]
+    frame = POLE.replace("<joint", '<frame euler="0 90 45"><joint').replace("/>\n<inertial", "/></frame>\n<inertial")
+    body = read(frame.replace("MORE", "").replace('"0 1 0"', '"0 0 1"')).definition["bodies"][0]
+    assert body["joint"]["axis"] == [1, 0, 0]

@@ -16,10 +16,13 @@ from substructures.interchange.numbers import (
     ZERO,
     Number,
     Triple,
+    axis_of,
     cleaned,
     decimal_of,
+    direction,
     is_zero,
     triple,
+    undusted,
     value,
 )
 from substructures.interchange.report import Place, Report, refuse
@@ -145,11 +148,12 @@ class Bodies:
         axis = triple(node.numbers("axis", 3, _Z))
         if all(map(is_zero, axis)):
             raise refuse(node.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
+        turned = Seat(ORIGIN, outer.rpy).point(axis)
         return Motion(
             name,
             kind,
             node.place,
-            axis=Seat(ORIGIN, outer.rpy).point(axis) if outer.is_turned else axis,
+            axis=direction([value(x) for x in turned]) if outer.is_turned else axis_of(triple(undusted(axis))),
             anchor=outer.point(triple(node.numbers("pos", 3, ORIGIN))) if kind == "revolute" else ORIGIN,
             offset=read(node.number("ref", ZERO)),
             rest=read(node.number("springref", ZERO)),
