@@ -7,7 +7,9 @@ from typing import Any
 
 import orjson
 
-from service.analyses.formulas import Made, Options, made, velocity_equations_of
+from service.analyses.formulas import made
+from service.analyses.formulas.constraints import velocity_equations_of
+from service.analyses.formulas.entry import Made, Options
 from service.analyses.grouping import grouped_text
 from service.analyses.numbers import ANALYSES
 from service.analyses.printing import Style, made_text
