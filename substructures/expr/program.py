@@ -18,6 +18,7 @@ from typing import Any
 import orjson
 
 from substructures.errors import InvalidProgram
+from substructures.expr.demands import check_demands
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.needs import needed, totals
 from substructures.expr.operations import (
@@ -276,4 +277,6 @@ def _operation(node: Expr, position: Sequence[int], number: Mapping[str, int]) -
 
 def read_program(document: Any) -> Program:
     """A program from its JSON document. Raises InvalidProgram."""
-    return Program(*read_parts(document))
+    symbols, operations, outputs = read_parts(document)
+    check_demands(operations, outputs.values())
+    return Program(symbols, operations, outputs)
