@@ -27,6 +27,7 @@ OWN = frozenset(("x-request-id", "server", "date", "x-content-type-options", "co
 #: of a request whose answer is kept for others
 CONDITIONS = frozenset(("if-none-match", "if-modified-since", "if-match", "range"))
 CONNECTIONS, ATTEMPTS = 256, 2
+INNER = "localhost"  # of addresses of that process; the host that was asked for is a header like all others
 KEPT = 2.0  # seconds; the other side closes connections on which nothing is asked for longer
 #: seconds beyond the limit of a request: for the process to start again, and for its answer
 SLACK = 60.0
@@ -92,9 +93,7 @@ class Away:
 def _address(request: Request) -> str:
     path = request.scope.get("raw_path") or request.url.path.encode()
     query = request.scope["query_string"]
-    return f"http://{request.headers.get('host', 'localhost')}{path.decode('ascii')}" + (
-        f"?{query.decode('ascii')}" if query else ""
-    )
+    return f"http://{INNER}{path.decode('ascii')}" + (f"?{query.decode('ascii')}" if query else "")
 
 
 def _passed_on(request: Request, left_out: frozenset[str] = frozenset()) -> list[tuple[bytes, bytes]]:
