@@ -7,8 +7,8 @@
     puma560@0123456789ab/program          canonical bytes of the program (substructures/expr/format.md)
     puma560@0123456789ab/certificate.json
 
-A bundle that is read is what it says of itself, and no more is known: whether programs are those of their definitions
-is for :func:`substructures.part.part.received`.
+Of a bundle that is read only names and definitions are taken: formulas are derived of these, and a program that comes
+with one is compared with what was derived by its digest, and never read.
 """
 
 from __future__ import annotations
@@ -197,17 +197,3 @@ def definition_of(part: BundledPart) -> Definition:
         detail = f"{path}: not the canonical text of a definition with the name '{part.name}'; {NOTHING}"
         raise unprocessable("wrong-digest", detail, file_pointer(path))
     return definition
-
-
-def certificate_of(part: BundledPart) -> dict[str, Any]:
-    """What was certified of the part where it comes from. Raises InvalidDocument, Refused 422."""
-    path = part.file(CERTIFICATE)
-    with _inside(path):
-        found = read_json(part.certificate)
-    direct = found.get("direct_form", {}) if isinstance(found, dict) else None
-    if not isinstance(direct, dict) or not isinstance(direct.get("max_relative_error", {}), dict):
-        raise invalid(path, "no certificate of a part")
-    left_out = direct.get("potential_left_out", [])
-    if not isinstance(left_out, list) or not all(isinstance(name, str) for name in left_out):
-        raise invalid(path, "no certificate of a part")
-    return dict(found)

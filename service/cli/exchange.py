@@ -42,7 +42,7 @@ def pull(
     private: Visibility = None,
     json: Json = False,
 ) -> int:
-    """Copy parts of another server to this one, which verifies them."""
+    """Copy parts of another server to this one, which derives them anew."""
     with _other(url, other_key).client() as other:
         content = _bundle(other, refs)
         _require_decision(other, refs, private)
@@ -59,7 +59,7 @@ def push(
     private: Visibility = None,
     json: Json = False,
 ) -> int:
-    """Copy parts of this server to another one, which verifies them."""
+    """Copy parts of this server to another one, which derives them anew."""
     with server.client() as client:
         content = _bundle(client, refs)
         _require_decision(client, refs, private)
@@ -96,7 +96,7 @@ def load(
     private: Private = False,
     json: Json = False,
 ) -> int:
-    """Verify and store what is in a file; all of it, or nothing."""
+    """Derive and store what is in a file; all of it, or nothing."""
     content = file.read_bytes()
     with server.client() as client:
         return _told(_stored(client, content, private), json)
@@ -131,7 +131,7 @@ def _tell_mirrored(client: Client, job: str) -> None:
         found = item["result"]
         for each in found["refused"]["items"]:
             print(f"refused: {each['name']}: {each['message']}", file=sys.stderr)
-        counts = ", ".join(f"{found[name]['count']} {name}" for name in ("stored", "same", "refused"))
+        counts = ", ".join(f"{found[name]['count']} {name}" for name in ("stored", "same", "differing", "refused"))
         print(f"{found['offered']} parts at {found['source']}: {counts}")
 
 
@@ -161,7 +161,7 @@ def _require_decision(client: Client, refs: Sequence[str], private: bool | None)
 
 def _stored(client: Client, content: bytes, private: bool | None) -> list[dict[str, Any]]:
     wanted = {"visibility": PRIVATE} if private else {}
-    with waiting("verifying"):
+    with waiting("deriving"):
         answer = client.request("POST", "/v1/bundles", content=content, headers={"Content-Type": ZIP}, params=wanted)
     found: list[dict[str, Any]] = answer.json()["items"]
     return found
@@ -173,7 +173,8 @@ def _told(found: Sequence[dict[str, Any]], as_json: bool) -> int:
         return 0
     for each in found:
         what = "stored" if each["outcome"] == "stored" else "was stored already"
-        print(f"{each['name']}@{each['version']} {what}, {each['digest']}")
+        differ = "; formulas derived here, those of the bundle differ" if each["formulas"] == "differ" else ""
+        print(f"{each['name']}@{each['version']} {what}, {each['digest']}{differ}")
     return 0
 
 

@@ -1,9 +1,15 @@
-"""Bundles: parts as others get them, and parts of others that are stored here, each verified before it is."""
+"""Bundles: parts as others get them, and parts of others that are stored here.
+
+Of what others send only definitions are believed: what is stored is derived of them here. Formulas that come with them
+are compared by digest with those that are stored, so that it is told where they differ, be they forged or of another
+version of the software.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import dataclass
 
 from service import bundles
 from service.bundles import BundledPart
@@ -19,9 +25,8 @@ from service.schemas.entries import PartEntry
 from service.store import Store
 from service.unzipped import file_pointer, too_large
 from service.viewer import Viewer
-from substructures.errors import Fault, InvalidInput, InvalidProgram, TooLarge, VerificationFailed
-from substructures.part.definition import Definition
-from substructures.part.part import Part, received
+from substructures.errors import Fault, InvalidInput, TooLarge
+from substructures.part.part import derive
 
 IMPORTED = Origin("import")
 
@@ -45,61 +50,42 @@ def bundled(connection: Connection, version: Version) -> BundledPart:
 
 
 def prepare(store: Store, viewer: Viewer, part: BundledPart, entry: PartEntry, max_nodes: int) -> PartSubmission:
-    """Verify a part of a bundle, whose content is stored unless it is known.
+    """Derive a part of a bundle from its definition, unless its content is known.
 
     Raises Refused 403 for a name of others, 409, 422 and InvalidDocument, with pointers to the file.
     """
     definition = bundles.definition_of(part)
-    made: list[Part] = []
-
-    def verified() -> Part:
-        """The part with a certificate of its own."""
-        made.append(_received(part, definition, max_nodes))
-        return made[0]
-
-    with _inside(part):
-        submission = catalogue.prepare(store, viewer, definition, entry, IMPORTED, verified)
-    if not made and not _is_stored(store, part):  # another program of what is known is not stored, but refused if wrong
-        verified()
-    return submission
-
-
-def _is_stored(store: Store, part: BundledPart) -> bool:
-    """Whether what is stored under the digest of the part has the same program."""
-    with store.database.read() as connection:
-        found = content.get_part(connection, part.digest)
-    return found is not None and found.program == part.program
-
-
-def _received(part: BundledPart, definition: Definition, max_nodes: int) -> Part:
-    """The part, its program compared with its definition. Raises Refused 422, InvalidDocument."""
-    path, certificate = part.file(bundles.PROGRAM), bundles.certificate_of(part)
-    pointer = file_pointer(path)
+    path = part.file(bundles.DEFINITION)
     try:
-        found = received(definition, part.program, certificate, max_nodes)
-        if found.program.to_bytes() != part.program:
-            raise InvalidProgram("its text is not the canonical one")
+        with _inside(part):
+            return catalogue.prepare(store, viewer, definition, entry, IMPORTED, lambda: derive(definition, max_nodes))
     except InvalidInput as error:
-        raise error.below(file_pointer(part.file(bundles.DEFINITION))) from None
-    except InvalidProgram as error:
-        raise unprocessable("invalid-bundle", f"{path}: {error}; nothing was stored", pointer) from None
-    except VerificationFailed as error:
-        detail = f"{path}: these are not the formulas of the definition: {error}; nothing was stored"
-        raise unprocessable("not-verified", detail, pointer) from None
+        raise error.below(file_pointer(path)) from None
     except TooLarge as error:
         raise too_large(path, error.what, error.size, error.limit) from None
-    return found
+
+
+@dataclass(frozen=True, slots=True)
+class Imported:
+    """What a part of a bundle has become. ``is_new``: it was not there before; ``is_equal``: the formulas in the bundle
+    are, by their digest, those that are stored.
+    """
+
+    version: Version
+    is_new: bool
+    is_equal: bool
 
 
 def commit(
     connection: Connection, viewer: Viewer, parts: Sequence[BundledPart], ready: Sequence[PartSubmission]
-) -> list[tuple[Version, bool]]:
-    """Store what was prepared, all or nothing: every version, and whether it is new. Raises Refused 403, 409."""
-    found: dict[str, tuple[Version, bool]] = {}
+) -> list[Imported]:
+    """Store what was prepared, all or nothing. Raises Refused 403, 409."""
+    found: dict[str, Imported] = {}
     # names are locked in one order, whatever that of a bundle is
     for part, submission in sorted(zip(parts, ready, strict=True), key=lambda pair: pair[0].name):
         with _inside(part):
-            found[part.digest] = catalogue.submit(connection, viewer, submission)
+            version, is_new = catalogue.submit(connection, viewer, submission)
+        found[part.digest] = Imported(version, is_new, version.program == part.program_digest)
     return [found[part.digest] for part in parts]
 
 

@@ -1,7 +1,7 @@
 """All public parts of another instance, stored here one by one: what is stored is not asked for again.
 
 Every part is a transaction of its own, so that a mirror that was killed goes on with what is missing. Of what the other
-side says nothing is believed: it is asked at its own address alone, and what it sends is verified as any bundle is.
+side says nothing is believed: it is asked at its own address alone, and what it sends is derived anew as any bundle is.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ import httpx2
 
 from service.bundles import BundledPart, read_bundle
 from service.operations import bundles, owners
+from service.operations.bundles import Imported
 from service.queries import catalogue
 from service.queries.catalogue import Version
 from service.queries.common import is_conflict
@@ -46,12 +47,15 @@ class Stopped(Exception):
 
 @dataclass
 class Mirrored:
-    """What became of the parts that were offered: references here, and of those that were refused why."""
+    """What became of the parts that were offered: references here, and of those that were refused why; ``differing``:
+    those whose formulas are others there than what was derived of their definitions here.
+    """
 
     source: str
     offered: int = 0
     stored: list[str] = field(default_factory=list)
     same: list[str] = field(default_factory=list)
+    differing: list[str] = field(default_factory=list)
     refused: list[dict[str, str]] = field(default_factory=list)
 
     def refuse(self, name: str, digest: str, code: str, message: str) -> None:
@@ -60,7 +64,8 @@ class Mirrored:
 
     def summary(self) -> dict[str, Any]:
         """Counts, and the first of each."""
-        outcomes: dict[str, Sequence[Any]] = {"stored": self.stored, "same": self.same, "refused": self.refused}
+        outcomes: dict[str, Sequence[Any]] = {"stored": self.stored, "same": self.same, "differing": self.differing}
+        outcomes["refused"] = self.refused
         told = {name: {"count": len(some), "items": list(some[:LISTED])} for name, some in outcomes.items()}
         return {"source": self.source, "offered": self.offered, **told}
 
@@ -173,17 +178,20 @@ class Mirror:
 
     def _store_part(self, part: BundledPart) -> None:
         try:
-            version, is_new = self._committed(part)
+            found = self._committed(part)
         except Exception as error:
             known = known_refusal(error)
             if known is None:
                 raise
             self._found.refuse(part.name, part.digest, known.code, known.detail)
         else:
-            (self._found.stored if is_new else self._found.same).append(_reference(version))
+            reference = _reference(found.version)
+            (self._found.stored if found.is_new else self._found.same).append(reference)
+            if not found.is_equal:
+                self._found.differing.append(reference)
 
-    def _committed(self, part: BundledPart) -> tuple[Version, bool]:
-        """The version that a part becomes; once more where another host was in the way."""
+    def _committed(self, part: BundledPart) -> Imported:
+        """What a part becomes; once more where another host was in the way."""
         for left in reversed(range(ATTEMPTS)):
             ready = bundles.prepare(self._store, self._viewer, part, PLAIN, self._max_nodes)
             try:

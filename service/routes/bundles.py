@@ -15,7 +15,7 @@ from service.http.requests import StoreOf, ViewerOf, declared_type, needs, recei
 from service.http.responses import conditional
 from service.integrity import digest_of
 from service.operations import bundles
-from service.queries.catalogue import Version
+from service.operations.bundles import Imported
 from service.references import is_pinned
 from service.refusals import Refused
 from service.routes.bodies import binary
@@ -61,7 +61,7 @@ def import_bundle(
     act: SpooledActOf,
     visibility: Annotated[Visibility | None, Query(description=VISIBILITY)] = None,
 ) -> Response:
-    """Verify the parts of a bundle and store them, all or nothing. 201 when something was new, else 200."""
+    """Derive the parts of a bundle and store them, all or nothing. 201 when something was new, else 200."""
     if declared_type(request) != MEDIA_TYPE:
         raise Refused(
             415,
@@ -72,7 +72,7 @@ def import_bundle(
     entry, limit = PartEntry(visibility=visibility), store.settings.limits.program_nodes
 
     def prepare() -> Commit:
-        """Verify every part by its own definition."""
+        """Derive every part from its definition."""
         with act.spool.reader() as file:
             parts = read_bundle(file, store.settings.limits)
         ready = []
@@ -83,14 +83,16 @@ def import_bundle(
         def commit(connection: Connection) -> Answer:
             """Store all that is new."""
             found = bundles.commit(connection, act.viewer, parts, ready)
-            items = [_view(version, is_new) for version, is_new in found]
-            return json_answer(dump({"items": items}), 201 if any(is_new for _, is_new in found) else 200)
+            items = [_view(each) for each in found]
+            return json_answer(dump({"items": items}), 201 if any(each.is_new for each in found) else 200)
 
         return commit
 
     return act.run(prepare)
 
 
-def _view(version: Version, is_new: bool) -> dict[str, Any]:
+def _view(found: Imported) -> dict[str, Any]:
+    version = found.version
     told = {"name": version.name, "version": version.version, "digest": version.digest}
-    return {**told, "outcome": "stored" if is_new else "same", "links": {"self": version_path(version)}}
+    outcome = {"outcome": "stored" if found.is_new else "same", "formulas": "equal" if found.is_equal else "differ"}
+    return {**told, **outcome, "links": {"self": version_path(version)}}

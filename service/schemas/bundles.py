@@ -16,6 +16,9 @@ class BundledView(Shape):
     version: int
     digest: Digest
     outcome: Literal["stored", "same"] = Field(description="`same`: this content was there already")
+    formulas: Literal["equal", "differ"] = Field(
+        description="whether those in the bundle are, by their digest, those that were derived and stored here"
+    )
     links: Links
 
 

@@ -8,7 +8,7 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge, VerificationFailed, listed
+from substructures.errors import InvalidDocument, TooLarge, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Formulas, Program, program
@@ -285,26 +285,6 @@ def recheck(part: Part) -> dict[str, Any]:
     certificate = _certificate(m, part.program, check_units(m.definition, m.topology), 0.0)
     require_no_less(part.certificate, certificate)
     return certificate | {"warnings": [*certificate["warnings"], *uncounted(part.parameters)]}
-
-
-@without_collections
-def received(definition: Definition, data: bytes, certificate: Mapping[str, Any], max_nodes: int = MAX_NODES) -> Part:
-    """A part that was derived elsewhere: its program as it comes, ``data``, with a certificate made anew, which says no
-    less than the one that comes with it.
-
-    Raises InvalidProgram, VerificationFailed as :func:`recheck`, and as :func:`derive` for the definition.
-    """
-    result = Program.from_bytes(data)
-    if len(result) > max_nodes:
-        raise TooLarge(PROGRAM, len(result), max_nodes)
-    m, units, _ = _opened(definition)
-    _formulas(m, large=True)  # refuses what derivation refuses, and declares all symbols
-    for symbol in result.symbols:
-        if m.scope.symbols.get(symbol.name, symbol) != symbol:
-            raise VerificationFailed(f"the symbol '{symbol.name[:80]}' has another kind or unit than in the definition")
-    made = _certificate(m, result, units, 0.0)
-    require_no_less(certificate, made)
-    return Part(definition, result, made)
 
 
 def told_operations(operations: Mapping[str, int]) -> str:

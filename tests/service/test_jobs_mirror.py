@@ -23,9 +23,11 @@ from service.settings import Settings, SettingsError, from_environment
 from service.sources import read_source, source_of
 from service.store import Store
 from substructures.client import Client, ProblemError
+from substructures.documents import write_json
 
 from .conftest import PENDULUM, SLIDER, make_client
 from .fake_engine import FakeEngine, eventually, finished, items, running, submitted
+from .test_bundles import bump, consistent, packed, unpacked
 
 NAMES = [f"part-{k:02}" for k in range(7)]
 SECRET = "sub_0123_secret-of-the-source"
@@ -70,7 +72,7 @@ def test_all_public_parts(source: str, client: TestClient, store: Store) -> None
         result = item["result"]
         assert (result["source"], result["offered"]) == (source, len(NAMES))
         assert result["stored"] == {"count": len(NAMES), "items": [f"{name}@1" for name in NAMES]}
-        assert (result["same"]["count"], result["refused"]["count"]) == (0, 0)
+        assert [result[name]["count"] for name in ("same", "differing", "refused")] == [0, 0, 0]
         assert names(client) == NAMES
         version = client.get(f"/v1/substructures/{NAMES[0]}").json()
         assert (version["title"], version["origin"]) == (SLIDER["title"], "import")
@@ -402,6 +404,28 @@ def test_other_parts_than_were_asked_for(liar: str, source: str, client: TestCli
         assert finished(client, job)["state"] == "succeeded"
     assert items(client, job)[0]["result"]["refused"]["count"] == 2
     assert names(client) == []
+
+
+def test_formulas_of_a_source_are_not_stored(source: str, liar: str, client: TestClient, store: Store) -> None:
+    """The public part of a source, with other formulas than those of its definition: told, and derived here."""
+    with Client(source) as known:
+        data = known.request("GET", "/v1/bundles", params={"refs": NAMES[0]}).content
+        version = known.request("GET", f"/v1/substructures/{NAMES[0]}").json()
+    files = unpacked(data)
+    path = next(name for name in files if name.endswith("/program"))
+    program = json.loads(files[path])
+    bump(program)
+    page = {"items": [{**OFFER, "name": NAMES[0], "digest": version["digest"]}], "next_page_token": None}
+    forged = packed(consistent(files, path, write_json(program)))
+    Liar.answers = {"/v1/substructures": (200, page), "/v1/bundles": (200, forged)}
+    store.settings = store.settings.model_copy(update={"mirror_sources": (liar,)})
+    with running(store, FakeEngine()):
+        job = submitted(client, mirror(liar))
+        assert finished(client, job)["state"] == "succeeded"
+    result = items(client, job)[0]["result"]
+    assert [result[name]["count"] for name in ("stored", "refused")] == [1, 0]
+    assert result["differing"] == {"count": 1, "items": [f"{NAMES[0]}@1"]}
+    assert client.get(f"/v1/substructures/{NAMES[0]}").json()["program"] == version["program"]
 
 
 def test_one_part_that_is_refused_does_not_stop_the_others(
