@@ -57,7 +57,7 @@ class _Frames:
 
     def pose(self, name: str, place: Place) -> Pose:
         """In the outermost model. Raises InvalidDocument for frames that are not there, and circles."""
-        chain: list[str] = []
+        chain: dict[str, None] = {}
         here = name
         while here not in self._known:
             if here == "":
@@ -67,7 +67,7 @@ class _Frames:
                 raise refuse(place, "unknown-frame", f"there is no frame '{here}'{among(here, self.given)}")
             if here in chain:
                 raise refuse(place, "cycle", f"the frame '{here}' is placed relative to itself")
-            chain.append(here)
+            chain[here] = None
             here = self.given[here].relative_to
         for each in reversed(chain):
             own = self.given[each]
@@ -97,6 +97,7 @@ class _Reader:
         self.links: dict[str, Node] = {}
         self.joints: list[tuple[str, Node]] = []
         self.attached: dict[str, str] = {}  #: of frames what they are attached to
+        self.over: dict[str, str | None] = {}  #: of frames the link that carries them, where it was looked for
         self._enter(model, "", _framed(None, "", model.place))
 
     def robot(self, world: Node | None) -> Robot:
@@ -233,9 +234,14 @@ class _Reader:
 
     def _link_of(self, name: str) -> str | None:
         """The link that a frame is attached to, perhaps over other frames; None for the model itself."""
-        for _ in range(len(self.attached)):
-            name = self.attached.get(name, name)
-        return name if name in self.links else None
+        chain: list[str] = []
+        while name in self.attached and name not in self.over:
+            chain.append(name)
+            self.over[name] = None  # of a circle
+            name = self.attached[name]
+        found = self.over.get(name, name if name in self.links else None)
+        self.over.update(dict.fromkeys(chain, found))
+        return found
 
     def _frame(self, name: str, link: str) -> NamedFrame:
         place = self.frames.given[name].place
