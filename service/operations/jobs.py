@@ -20,6 +20,7 @@ from service.settings import Limits
 from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import require_object, write_json
+from substructures.documents.fields import hidden
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions, of which every item names one
@@ -74,6 +75,8 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
     label = body.get("label", "")
     if not isinstance(label, str) or len(label) > LONGEST_LABEL:
         raise InvalidDocument.at("/label", "bad-label", f"a label is a text of at most {LONGEST_LABEL} characters")
+    if hidden(label):
+        raise InvalidDocument.at("/label", "control-character", hidden(label))
     with store.database.read() as connection:
         library = StoreLibrary(connection, viewer, store.settings.mirror_sources)
         skipped: list[Skipped] = []
