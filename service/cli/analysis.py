@@ -12,9 +12,9 @@ from typing import Annotated, Any
 import orjson
 import typer
 
-from service.analyses.formulas import OPTIONS, QUANTITIES, Options
+from service.analyses.formulas import OPTIONS, QUANTITIES, Options, made
 from service.analyses.numbers import ANALYSES
-from service.analyses.printing import NAME
+from service.analyses.printing import NAME, made_text
 from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.analyses.source import Source
 from service.answers import Answer
@@ -25,7 +25,6 @@ from service.cli.options import Json, Server, with_more, with_server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import parts_beside
 from service.operations import models
-from service.operations.analyses import printed
 from service.operations.models import Style
 from service.settings import Limits
 from substructures.client.connection import step
@@ -130,7 +129,8 @@ def _formula(wanted: _Wanted, what: str, style: Style, chosen: Options) -> bytes
             return found
     source = local_source(Path(wanted.tree))
     if what in QUANTITIES:
-        return printed(source, what, chosen, style).body
+        interface = interface_of_model(source.model, digest=source.digest)
+        return made_text(made(source, what, chosen), what, interface, source, style).encode()
     return _model_formula(source, what, style, chosen).body
 
 

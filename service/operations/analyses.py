@@ -1,94 +1,49 @@
-"""Analyses of stored trees: what they work on, their limit of time, and their answers."""
+"""Quantities and numbers that follow from a stored tree, computed by workers."""
 
 from __future__ import annotations
 
-from functools import partial
-from time import perf_counter
 from typing import Any
 
 import orjson
 
-from service.analyses.formulas import Made, Options, made, velocity_equations_of
-from service.analyses.grouping import grouped_text
-from service.analyses.numbers import ANALYSES
-from service.analyses.printing import Style, made_text
-from service.analyses.results import trajectory_of, written
-from service.analyses.source import Source
+from service.analyses.printing import Style
+from service.analyses.results import MEDIA_TYPES
 from service.answers import Answer
-from service.negotiation import MEDIA_TYPES
+from service.jobs.worker import Worker
 from service.operations import trees
-from service.operations.sources import grouped_model, sources_of, tree_parts
-from service.queries.trees import Tree
+from service.operations.exports import printed
+from service.operations.pinned import pinned_tree
+from service.refusals import moved
 from service.store import Store
 from service.viewer import Viewer
-from substructures.export import interface_of_model
-from substructures.tree.model import Model
+
+FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
+LIMITS = ("program_nodes", "binary_bytes", "states")
 
 
-def source_of(store: Store, tree: Tree, model: Model) -> Source:
-    """What analyses of a stored tree work on."""
-    sources = sources_of(store, tree, model)
-    tools = store.settings.limits, store.kernels.folder, store.kernels
-    kept = sources.plausibility, sources.reactions, sources.powers
-    more = partial(grouped_model, store, tree), lambda: tree_parts(store, tree)
-    return Source(model, tree.digest, sources.columns, *tools, *kept, *more)
-
-
-def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
-    """A quantity that follows from the model, in the format chosen; its description is in the JSON answer.
-
-    Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
-    """
-    return _printed(source, quantity, made(source, quantity, options), style)
-
-
-def grouped(source: Source, quantity: str, style: Style) -> Answer:
-    """A quantity in grouped symbols, with what they stand for. Raises InvalidDocument, TooLarge, Refused 422."""
-    interface = interface_of_model(source.model, digest=source.digest)
-    text = grouped_text(source, quantity, style, interface)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
-
-
-def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, style: Style) -> Answer:
-    """The equations of a stored tree with velocity constraints as formulas. Raises as :func:`printed`, Refused 404."""
+def velocity_equations(store: Store, viewer: Viewer, worker: Worker, ref: str, document: Any, style: Style) -> Answer:
+    """The equations of a stored tree with velocity constraints as formulas. Raises as ``printed``, Refused 404."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        model = store.model(connection, tree)
-    source = source_of(store, tree, model)
-    return _printed(source, "velocity_equations", velocity_equations_of(source, document), style)
+    return printed(store, worker, tree, "velocity-equations", style, request=document)
 
 
-def _printed(source: Source, quantity: str, found: Made, style: Style) -> Answer:
-    interface = interface_of_model(source.model, digest=source.digest)
-    text = made_text(found, quantity, interface, source, style)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
-
-
-def analyse(store: Store, viewer: Viewer, ref: str, name: str, request: Any, media: str) -> Answer:
+def analyse(store: Store, viewer: Viewer, worker: Worker, ref: str, name: str, request: Any, media: str) -> Answer:
     """The result of an analysis of ANALYSES in one of its media types.
 
-    Raises Refused 404, InvalidDocument, MissingValue, TooLarge, TimeoutError.
+    Raises Refused 404, InvalidDocument, Refused, TooLarge, TimeoutError.
     """
-    analysis = ANALYSES[name]
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        model = store.model(connection, tree)
-    time_limit = TimeLimit(store.settings.limits.sync_seconds)
-    result = analysis.compute(source_of(store, tree, model), request, time_limit)
+    item, blobs = pinned_tree(store, tree)
+    limits, folder = store.settings.limits, store.work_folder
+    item |= {"analysis": name, "request": request, "format": FORMATS[media], "answered": True}
+    item |= {"limits": {each: getattr(limits, each) for each in LIMITS}, "kernels": folder and str(folder)}
+    with moved(lambda pointer: pointer.removeprefix("/request")):
+        found = worker("analyse", item, blobs)
     headers = {"Content-Type": media}
-    motion = trajectory_of(result)
+    motion = found.summary.get("motion")
     if motion is not None:  # a CSV file has no place for them
-        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": orjson.dumps(motion.is_right).decode()}
-    return Answer(200, written(result, media, model), headers)
-
-
-class TimeLimit:
-    """A listener of progress that ends the work when its time is over: nobody waits for it any longer."""
-
-    def __init__(self, seconds: float) -> None:
-        self._end = perf_counter() + seconds
-
-    def __call__(self, share: float) -> None:
-        """Raises TimeoutError, which answers as work that is waited for too long: with a job or 503."""
-        if perf_counter() > self._end:
-            raise TimeoutError(f"{100 * share:.0f} % was done in the time of a request")
+        right = orjson.dumps(motion["is_right"]).decode()
+        headers |= {"Trajectory-Status": motion["status"], "Trajectory-Right": right}
+    return Answer(200, found.files["result"], headers)

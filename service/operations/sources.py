@@ -7,11 +7,9 @@ from typing import TypeVar
 
 from service.cache import Cache
 from service.integrity import reading
-from service.operations.trees import parts_of
 from service.queries import trees
 from service.queries.trees import Tree
 from service.store import Store
-from service.viewer import ANYBODY
 from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, Sources
@@ -69,11 +67,10 @@ def _numeric(store: Store, tree: Tree) -> NumericTree:
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a stored tree and its parts by instance. Raises Refused for content that is damaged or gone."""
-    # a part that is not found was there when the tree was stored
     with reading(f"the document of tree {tree.name}@{tree.revision}", tree.digest):
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         with store.database.read() as connection:
-            return spec, parts_of(store, connection, ANYBODY, spec)  # the tree was found for whoever asks
+            return spec, {each.name: store.required_part(connection, each.digest) for each in spec.instances}
 
 
 def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:

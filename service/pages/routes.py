@@ -8,6 +8,7 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
+from service.jobs.worker import Worker
 from service.operations import catalogue, differences, jobs, searches, trees
 from service.operations.models import model_quantity
 from service.operations.sources import sources_of
@@ -87,11 +88,11 @@ def substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -
 async def part_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What changed between two versions."""
 
-    def shown() -> Response:
+    def shown(worker: Worker) -> Response:
         """The page, made in a thread."""
         a, b = differences.versions(store, viewer, ref, to)
         names = f"{a.name}@{a.version}", f"{b.name}@{b.version}"
-        return answer(request, difference_page("substructures", *names, differences.of_versions(store, a, b)))
+        return answer(request, difference_page("substructures", *names, differences.of_versions(store, worker, a, b)))
 
     return await in_time(request, shown, ADVICE)
 
@@ -100,11 +101,12 @@ async def part_difference(ref: str, to: To, request: Request, store: StoreOf, vi
 async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What changed between two revisions of a tree."""
 
-    def shown() -> Response:
+    def shown(worker: Worker) -> Response:
         """The page, made in a thread."""
         a, b = differences.revisions(store, viewer, ref, to)
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
-        return answer(request, difference_page("trees", *names, differences.of_revisions(store, viewer, a, b)))
+        found = differences.of_revisions(store, worker, viewer, a, b)
+        return answer(request, difference_page("trees", *names, found))
 
     return await in_time(request, shown, ADVICE)
 

@@ -1,13 +1,25 @@
-"""Bundles that are small and ask for much: they are refused while they are read."""
+"""Programs that are small and ask for much: in bundles they are not believed, in a store they are not used."""
 
 from __future__ import annotations
 
+import json
+import zlib
 from time import process_time
 from typing import Any
 
 import pytest
 from fastapi.testclient import TestClient
+from sqlalchemy import update
 
+from service.database.tables import parts
+from service.integrity import digest_of
+from service.operations import catalogue
+from service.queries import content
+from service.store import Store
+from service.viewer import ANYBODY
+from substructures.documents import write_json
+
+from .conftest import TREE
 from .test_bundles import Files, changed_program, files, packed, sent, source
 
 __all__ = ["files", "source"]
@@ -28,16 +40,38 @@ def powers(count: int, needed: bool) -> Any:
     return change
 
 
-REFUSALS = [(False, "no output needs it"), (True, "an exponent of more than 4096 bits")]
-
-
-@pytest.mark.parametrize(("needed", "why"), REFUSALS)
-def test_99000_powers(client: TestClient, files: Files, needed: bool, why: str) -> None:
+@pytest.mark.parametrize("needed", [False, True])
+def test_99000_powers(client: TestClient, files: Files, needed: bool) -> None:
+    """They are never computed: what is stored is derived from the definition, which is all that is believed."""
     data = packed(changed_program(files, powers(99_000, needed)), 8)  # deflated
     assert len(data) < 500_000
     start = process_time()
     answer = sent(client, data)
     assert process_time() - start < 10  # what they ask for would take minutes, and gigabytes
-    assert (answer.status_code, answer.json()["code"]) == (422, "invalid-bundle"), answer.text
+    assert answer.status_code == 201, answer.text
+    assert {item["name"]: item["formulas"] for item in answer.json()["items"]} == {
+        "pendulum": "differ",
+        "slider": "equal",
+    }
+    assert client.get("/v1/substructures/pendulum").json()["operations"]["total"] < 1000
+    assert client.post("/v1/trees", json=TREE).status_code == 201
+
+
+@pytest.mark.parametrize(
+    ("needed", "why"), [(False, "no output needs it"), (True, "an exponent of more than 4096 bits")]
+)
+def test_what_is_stored_all_the_same_is_not_used(filled: TestClient, store: Store, needed: bool, why: str) -> None:
+    """Whatever put it there: the part is damaged, by name, and others are not kept waiting."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, ANYBODY, "pendulum")
+        found = json.loads(content.get_program(connection, version.program) or b"")
+    powers(99_000, needed)(found)
+    bomb = write_json(found)
+    with store.database.write() as connection:
+        content.put_program(connection, digest_of(bomb), zlib.compress(bomb), len(found["operations"]))
+        connection.execute(update(parts).where(parts.c.digest == version.digest).values(program=digest_of(bomb)))
+    start = process_time()
+    answer = filled.get("/v1/substructures/pendulum/formulas/metric")
+    assert process_time() - start < 10
+    assert (answer.status_code, answer.json()["code"]) == (500, "damaged-content")
     assert why in answer.json()["detail"]
-    assert client.get("/v1/substructures/pendulum").status_code == 404

@@ -13,7 +13,7 @@ from service.jobs.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.derive import DERIVE
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, check_fields, inside
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -25,7 +25,7 @@ from substructures.interchange.sides import Parts, sides
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 
-ALL = "*"
+ALL, SIDES = "*", ("a", "b")
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
@@ -56,14 +56,14 @@ def _read(given: Any) -> Any:
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     found, blobs = dict(item), dict[str, None]()
-    for name in ("a", "b"):
+    for name in SIDES:
         with inside(f"/{name}"):
-            found[name], needed = _pinned(item[name], item["nodes"], library)
+            found[name], needed = pinned_side(item[name], item["nodes"], library)
         blobs |= dict.fromkeys(needed)
     return found, tuple(blobs)
 
 
-def _pinned(given: Any, nodes: int, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
+def pinned_side(given: Any, nodes: int, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     """A part by its digests, a tree with those of its parts, or a definition."""
     if isinstance(given, str):
         version = library.version(given)
@@ -82,7 +82,7 @@ def _pinned(given: Any, nodes: int, library: Library) -> tuple[ItemDocument, tup
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """The summary is the answer of ``POST /v1/equivalences``. Raises InvalidInput, TooLarge."""
     read = []
-    for name in ("a", "b"):
+    for name in SIDES:
         with inside(f"/{name}"):
             read.append(_decoded(item[name], blobs))
         progress(0.2 * len(read))
@@ -96,7 +96,7 @@ def _decoded(pinned: ItemDocument, blobs: Blobs) -> Part | Parts:
         return part_of(pinned["substructure"].partition("@")[2], pinned["program"], blobs)
     if "tree" in pinned:
         return tree_parts(pinned, blobs)
-    return derive(Definition.read(pinned["definition"]), pinned["nodes"])
+    return derive(Definition.read(pinned["definition"]), pinned["nodes"], admitted(pinned))
 
 
 def _name(pinned: ItemDocument) -> str:
