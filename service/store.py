@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from service.caches import Caches
@@ -12,6 +13,7 @@ from service.database.connections import Connection, Database
 from service.feed import Feed
 from service.integrity import missing, reading
 from service.jobs.pool import InProcess, Workers
+from service.jobs.worker import Worker
 from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
@@ -80,6 +82,12 @@ class Store:
     def work_folder(self) -> Path | None:
         """Where works keep compiled kernels: where this process does, unless they have the rights of another user."""
         return None if self.settings.runner_user else self.kernels.folder
+
+    def job_worker(self, owner: str) -> Worker:
+        """A worker that may take what an item of a job may, on behalf of an owner."""
+        limits = self.settings.limits
+        end = monotonic() + limits.job_seconds
+        return Worker(self.workers, owner, limits.job_cpu_seconds, end, limits.job_memory_bytes)
 
     def blobs(self, digests: Iterable[str]) -> dict[str, bytes]:
         """Contents by digest. Raises Refused as :meth:`blob`."""

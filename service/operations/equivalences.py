@@ -8,13 +8,12 @@ from typing import Any
 from service.jobs.kinds.compare import SIDES, pinned_side
 from service.jobs.kinds.kind import inside
 from service.jobs.worker import Worker
-from service.operations.imports import Wanted, read
+from service.operations.imports import document_of
 from service.operations.library import StoreLibrary
 from service.refusals import moved
 from service.store import Store
 from service.viewer import Viewer
 from substructures.errors import InvalidDocument
-from substructures.interchange.importing import text_of_file
 
 
 def compared(
@@ -45,7 +44,4 @@ def _document(worker: Worker, given: Any) -> Any:
         return given
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("", "object-expected", "a reference, a definition, a tree or a file is needed")
-    if "file" not in given:
-        return given
-    found = read(worker, text_of_file(given), Wanted(kind=given.get("kind")))
-    return found["tree"] if "tree" in found else found["definition"]
+    return document_of(worker, given) if "file" in given else given

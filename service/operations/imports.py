@@ -19,6 +19,7 @@ from service.summaries import PartContent
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 from substructures.interchange.as_part import Options
+from substructures.interchange.importing import text_of_file
 from substructures.part.definition import Definition
 
 IMPORTED, DEFAULT = Origin("import"), Options()
@@ -42,6 +43,13 @@ def read(worker: Worker, data: bytes, wanted: Wanted) -> Mapping[str, Any]:
     digest, item = digest_of(data), asdict(wanted.options) | {"cut": list(wanted.cut)}
     item |= {"kind": wanted.kind, "name": wanted.name, "called": wanted.file, "license": wanted.license}
     return worker("import", {"file": digest, **item}, {digest: data}).summary
+
+
+def document_of(worker: Worker, given: Mapping[str, Any]) -> Mapping[str, Any]:
+    """The definition or tree in ``{"file": text, "kind": ...}``. Raises InvalidDocument, TimeoutError."""
+    found = read(worker, text_of_file(given), Wanted(kind=given.get("kind")))
+    document: Mapping[str, Any] = found["tree"] if "tree" in found else found["definition"]
+    return document
 
 
 @dataclass(frozen=True, slots=True)

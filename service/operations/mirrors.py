@@ -10,13 +10,12 @@ import io
 import json
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from time import monotonic, sleep
+from time import sleep
 from typing import Any
 
 import httpx2
 
 from service.bundles import BundledPart, read_bundle
-from service.jobs.worker import Worker
 from service.operations import bundles, owners
 from service.operations.bundles import Imported
 from service.queries import catalogue
@@ -191,16 +190,11 @@ class Mirror:
             if not found.is_equal:
                 self._found.differing.append(reference)
 
-    def _worker(self) -> Worker:
-        """For one part, which may take what an item of a job may."""
-        limits = self._store.settings.limits
-        end = monotonic() + limits.job_seconds
-        return Worker(self._store.workers, self._viewer.owner, limits.job_cpu_seconds, end, limits.job_memory_bytes)
-
     def _committed(self, part: BundledPart) -> Imported:
         """What a part becomes; once more where another host was in the way."""
         for left in reversed(range(ATTEMPTS)):
-            ready = bundles.prepare(self._store, self._viewer, part, PLAIN, self._worker(), self._max_nodes)
+            worker = self._store.job_worker(self._viewer.owner)
+            ready = bundles.prepare(self._store, self._viewer, part, PLAIN, worker, self._max_nodes)
             try:
                 with self._store.database.write() as connection:
                     (found,) = bundles.commit(connection, self._viewer, [part], [ready])

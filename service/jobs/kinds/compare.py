@@ -20,7 +20,6 @@ from service.settings import Limits
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import equivalence
-from substructures.interchange.importing import document_of
 from substructures.interchange.sides import Parts, sides
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
@@ -34,24 +33,24 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     if not isinstance(coordinates, dict) or not all(isinstance(name, str) for name in coordinates.values()):
         raise InvalidDocument.at("/coordinates", "object-expected", "names in a to names in b are needed")
     many = list(library.catalogue()) if item["b"] == ALL else item["b"]
-    found = []
+    found: list[ItemDocument] = []
+    with inside("/a"):
+        a = _read(item["a"], library)
     for k, b in enumerate(many if isinstance(many, list) else [many]):
         with inside(f"/b/{k}" if isinstance(item["b"], list) else "/b"):
-            read = _read(b)
-        with inside("/a"):
-            found.append({"a": _read(item["a"]), "b": read, "coordinates": coordinates, "nodes": limits.job_nodes})
+            found.append({"a": a, "b": _read(b, library), "coordinates": coordinates, "nodes": limits.job_nodes})
     if not found:
         raise InvalidDocument.at("/b", "empty", "a list of at least one model is needed")
     return found
 
 
-def _read(given: Any) -> Any:
+def _read(given: Any, library: Library) -> Any:
     """A reference or a document; a file as what is read of it. Raises InvalidDocument."""
     if isinstance(given, str):
         return given
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("", "object-expected", "a reference, a definition, a tree or a file is needed")
-    return document_of(given)
+    return library.file(given) if "file" in given else given
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
