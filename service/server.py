@@ -121,8 +121,10 @@ def work(settings: Settings) -> None:
     if settings.engine == "none":
         raise SettingsError("a worker needs an engine: local or dask")
     signal.signal(signal.SIGTERM, _stop)
-    with open_store(settings) as store, supervised(store, engine_of(settings)):
-        threading.Event().wait()
+    with open_store(settings) as store:
+        store.workers = worker_pool(settings, warm=False)  # of mirrors
+        with supervised(store, engine_of(settings)):
+            threading.Event().wait()
 
 
 def _stop(_signal: int, _frame: object) -> None:

@@ -110,13 +110,16 @@ class _Asked:
 class WorkerPool:
     """At most so many runners, with a thread that feeds them."""
 
-    def __init__(self, most: int, start: Callable[[], LocalEngine]) -> None:
-        """``start``: makes the engine with its first runner, in the thread that alone uses it."""
+    def __init__(self, most: int, start: Callable[[], LocalEngine], warm: bool = True) -> None:
+        """``start``: makes the engine with its first runner, in the thread that alone uses it: now, or else when there
+        is something to do."""
         self._most, self._start = max(LEAST, most), start
         self._waiting: OrderedDict[str, deque[_Asked]] = OrderedDict()
         self._running: dict[str, _Asked] = {}
         self._withdrawn: list[str] = []
-        self._lock, self._closing = Lock(), Event()
+        self._lock, self._closing, self._needed = Lock(), Event(), Event()
+        if warm:
+            self._needed.set()
         self._engine: LocalEngine | None = None
         self._thread = Thread(target=self._run, name="workers", daemon=True)
         self._thread.start()
@@ -128,6 +131,7 @@ class WorkerPool:
             if self._closing.is_set():
                 return AttemptReport(work.id, death=CLOSED)
             self._waiting.setdefault(share, deque()).append(asked)
+        self._needed.set()
         self._wake()
         try:
             return asked.report.result(seconds)
@@ -141,6 +145,7 @@ class WorkerPool:
     def close(self) -> None:
         """Kill all runners; whoever waits is told."""
         self._closing.set()
+        self._needed.set()
         self._wake()
         self._thread.join()
 
@@ -150,6 +155,7 @@ class WorkerPool:
             engine.interrupt()
 
     def _run(self) -> None:
+        self._needed.wait()
         while not self._closing.is_set():
             try:
                 self._engine = self._engine or self._start()

@@ -28,11 +28,14 @@ def engine_of(settings: Settings) -> Callable[[], Engine] | None:
     return None
 
 
-def worker_pool(settings: Settings) -> WorkerPool:
-    """The runners of one process that answers requests: one more than it has cores, so that one is free for others."""
+def worker_pool(settings: Settings, warm: bool = True) -> WorkerPool:
+    """The runners of one process that answers requests: one more than it has cores, so that one is free for others.
+
+    ``warm``: the first one is started now. Raises SettingsError.
+    """
     _check_user(settings.runner_user)
     cores = -(-(os.cpu_count() or 1) // settings.processes)
-    return WorkerPool(cores + 1, lambda: LocalEngine(1, settings.runner_user, NICE))
+    return WorkerPool(cores + 1, lambda: LocalEngine(1, settings.runner_user, NICE), warm)
 
 
 def _check_user(user: str) -> None:

@@ -34,7 +34,7 @@ HOSTILE = [
     "&lt;b&gt; &#60;b&#62;",
     "{{7*7}} ${7*7} <%= 7*7 %>",
     "javascript:alert(1)",
-    "\u202e\u0007\u0000 right to left",
+    "\u200f\u2028\u00ad right to left",
 ]  # fmt: skip
 
 

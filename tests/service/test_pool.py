@@ -139,6 +139,25 @@ def test_who_waits_no_longer_is_stopped_or_not_begun(gated: Any) -> None:
     assert again.result(SECONDS).id == "again"
 
 
+def test_a_pool_may_start_when_it_is_needed() -> None:
+    engines: list[Gated] = []
+
+    def start() -> Any:
+        engines.append(Gated())
+        return engines[0]
+
+    pool = WorkerPool(2, start, warm=False)
+    pool.close()
+    assert engines == []
+    pool = WorkerPool(2, start, warm=False)
+    with ThreadPoolExecutor(1) as threads:
+        asked = threads.submit(pool.compute, "a", Work("one", "derive", {}, {}, BUDGET), SECONDS)
+        until(lambda: engines and engines[0].begun)
+        engines[0].end("one")
+        assert asked.result(SECONDS).outcome == Outcome({"done": "one"})
+    pool.close()
+
+
 def test_at_the_end_all_are_told(gated: Any) -> None:
     engine, pool, ask = gated
     asked = [ask(f"work{k}", "a") for k in range(4)]
