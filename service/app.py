@@ -14,6 +14,7 @@ from service import __version__
 from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
 from service.http.middleware import Conventions
+from service.http.not_derived import DerivesFirst
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
 from service.pages import account
@@ -137,5 +138,6 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
     for router in routers:
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
+    app.add_middleware(DerivesFirst)
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
     return app

@@ -11,9 +11,6 @@ from service.cache import Cache
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.powers import PowerModel
-from substructures.quantities.reactions import ReactionModel
-from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -27,17 +24,15 @@ SECTIONS = 8 * 2**20  # characters of formulas on pages
 @dataclass(frozen=True)
 class Caches:
     """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
-    model and quantity, ``regressors``, ``reactions``, ``powers``, ``numeric_trees`` and ``plausibilities`` by digest of
-    the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose by digest,
-    ``blobs`` by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
+    model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
+    digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
+    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
     """
 
     parts: Cache[Part]
     models: Cache[Model]
     derived: Cache[Program]
-    regressors: Cache[RegressorModel]
-    reactions: Cache[ReactionModel]
-    powers: Cache[PowerModel]
+    of_parts: Cache[Any]  # of substructures.quantities.of_parts
     numeric_trees: Cache[NumericTree]
     plausibilities: Cache[Plausibility]
     evaluations: Cache[Any]  # of service.operations.at_hand
@@ -53,9 +48,7 @@ class Caches:
             parts=Cache(nodes // 4, lambda part: len(part.program)),
             models=Cache(nodes // 4, lambda model: len(model.program)),
             derived=Cache(nodes // 4, len),
-            regressors=Cache(nodes // 8, lambda found: len(found.program)),
-            reactions=Cache(nodes // 8, lambda found: len(found.program)),
-            powers=Cache(nodes // 8, lambda found: len(found.program)),
+            of_parts=Cache(nodes // 8, lambda found: len(found.program)),
             numeric_trees=Cache(nodes // 8, NumericTree.weight),
             plausibilities=Cache(TREES, lambda _: 1),
             evaluations=Cache(nodes // 8, lambda found: found.weight()),

@@ -1,4 +1,4 @@
-"""Whether a program that was derived anew is better than the one that is stored for the same document."""
+"""How a program that was derived anew differs from the one that is stored for the same document."""
 
 from __future__ import annotations
 
@@ -6,13 +6,13 @@ from dataclasses import dataclass
 
 from substructures.expr.program import Program
 
-SHORTER, MORE, AS_IT_WAS = "shorter", "more formulas", "as it was"
+SHORTER, MORE, OTHER, AS_IT_WAS = "shorter", "more formulas", "other", "as it was"
 
 
 @dataclass(frozen=True, slots=True)
 class Improvement:
     """Operations before and after, of the outputs that both have; ``outcome``: SHORTER, MORE (outputs that the stored
-    program lacks) or AS_IT_WAS.
+    program lacks), OTHER (as many operations or more, in another way) or AS_IT_WAS.
     """
 
     before: int
@@ -26,14 +26,11 @@ class Improvement:
 
 
 def improvement(old: Program, new: Program) -> Improvement:
-    """The comparison of two programs for the same document.
-
-    Formulas that are as long in another way are left: nothing would be gained for what refers to the program.
-    """
+    """The comparison of two programs for the same document."""
     common = [name for name in old.outputs if name in new.outputs]
     before, after = (program.count(common)["total"] for program in (old, new))
     if old.digest == new.digest:
         return Improvement(before, after, AS_IT_WAS)
     if new.outputs.keys() - old.outputs.keys():
         return Improvement(before, after, MORE)
-    return Improvement(before, after, SHORTER if after < before else AS_IT_WAS)
+    return Improvement(before, after, SHORTER if after < before else OTHER)

@@ -40,7 +40,7 @@ from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, interpreted
-from substructures.quantities.from_parts import NumericTree, Scalars, kernel_entries
+from substructures.quantities.from_parts import NumericTree, Scalars, gives, kernel_entries
 from substructures.tree.coupling import asked
 
 #: from this many states on compiling first is quicker
@@ -98,7 +98,8 @@ class Kernels:
             given: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
         ) -> dict[str, Array]:
             """By kernel, by the parts, or as for any program."""
-            if given is program and quickest(states, coupled=True, warm=self.warm(parts)) is Way.PARTS:
+            way = quickest(states, coupled=True, warm=self.warm(parts))
+            if given is program and way is Way.PARTS and gives(names):
                 kernel = self._ready(given, names, states)
                 try:
                     if kernel is not None:

@@ -6,6 +6,7 @@
     InvalidInput           422, one error for every fault, with a pointer into the body
     TooLarge, MissingValue 422
     VerificationFailed     500, named: formulas that are wrong are not used
+    NotDerived             503: what is stored is derived anew first
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import replace
 from http import HTTPStatus
-from typing import Any
+from typing import Any, Literal
 
 from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
@@ -40,6 +41,17 @@ class Refused(Exception):
         self.faults, self.headers, self.members = tuple(faults), dict(headers or {}), members
 
 
+class NotDerived(Exception):
+    """Content that this server has not derived, or not as it is stored now: it is derived anew before it is used.
+
+    ``kind``: ``part`` with its digest as ``key``, or ``tree`` with name and revision as in ``cell@2``.
+    """
+
+    def __init__(self, kind: Literal["part", "tree"], key: str) -> None:
+        super().__init__(f"the {kind} {key} is being derived anew from its document; ask again")
+        self.kind, self.key = kind, key
+
+
 class LongWork(TimeoutError):
     """What is asked for would take so long that it should not be begun: it becomes a job."""
 
@@ -63,6 +75,8 @@ def known_refusal(error: Exception) -> Refused | None:
     match error:
         case Refused():
             return error
+        case NotDerived():
+            return Refused(503, "not-derived", str(error), headers={"Retry-After": "1"})
         case InvalidInput():
             detail = "; ".join(str(fault) for fault in error.faults[:3])
             return Refused(422, "invalid-document", detail, error.faults)

@@ -34,8 +34,8 @@ class Computed:
 
 class Runtime:
     """``computed``: keys of computations; ``threads``: for requests that may be given up, by task; ``wrong_keys``: at
-    sign-in; ``wake``: set when there is something new for the supervisor of this process; ``stopping``: set when the
-    server stops, so that answers without an end are ended.
+    sign-in; ``renewing``: held while something stored is derived anew; ``wake``: set when there is something new for
+    the supervisor of this process; ``stopping``: set when the server stops, so that answers without an end are ended.
     """
 
     def __init__(self, key_seconds: float) -> None:
@@ -43,6 +43,7 @@ class Runtime:
         self.wrong_keys = WrongKeys()
         self.computed = Computed()
         self.threads = {task: SharedThreads(count, task) for task, count in THREADS.items()}
+        self.renewing = Lock()
         self.wake = Event()
         self.stopping = Event()
 

@@ -13,7 +13,7 @@ import socket
 import sys
 import threading
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
 from typing import cast
 
@@ -26,6 +26,7 @@ from service.operations.seed import Told
 from service.queries.keys import any_key
 from service.queue.engines import engine_of, worker_pool
 from service.queue.supervisor import Supervisor
+from service.renewing import renewed
 from service.respawn import bound, kept, listeners
 from service.settings import Settings, SettingsError
 from service.store import Store
@@ -51,7 +52,11 @@ def serve(settings: Settings, told: Told = lambda _done, _all: None) -> None:
         _prepare_to_answer()
         store.workers = worker_pool(settings)
         # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
-        with supervised(store, engine_of(settings) if kept.number == 0 else None):
+        is_first = kept.number == 0
+        with (
+            renewed(store) if is_first else nullcontext(),
+            supervised(store, engine_of(settings) if is_first else None),
+        ):
             _run(store)
 
 
@@ -147,6 +152,7 @@ def background(settings: Settings, told: Told = lambda _done, _all: None) -> Ite
     """A server in a thread on a free port of loopback; gives its address. ``told``: as of ``import_catalogue``."""
     with (
         open_store(settings, progress=told) as store,
+        renewed(store),
         supervised(store, engine_of(settings)),
         socket.create_server(("127.0.0.1", 0)) as listener,
     ):

@@ -10,6 +10,7 @@ from typing import Any
 from service.caches import Caches
 from service.claims import Claims
 from service.database.connections import Connection, Database
+from service.derivation import software
 from service.feed import Feed
 from service.integrity import missing, reading
 from service.jobs.pool import InProcess, Workers
@@ -18,6 +19,7 @@ from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
 from service.queries.trees import Tree
+from service.refusals import NotDerived
 from service.runtime import Runtime
 from service.settings import Settings
 from service.usage import Usage
@@ -53,21 +55,29 @@ class Store:
         self.kernels.close()
         self.database.close()
 
-    def part(self, connection: Connection, digest: str) -> Part | None:
-        """The part with this digest, decoded; None when it is not stored. Raises Refused for damaged content."""
-        program = content.program_of(connection, digest)
+    def part(self, connection: Connection, digest: str, is_newest: bool = False) -> Part | None:
+        """The part with this digest, decoded; None when it is not stored. ``is_newest``: as this software derives it,
+        for what is derived of it.
+
+        Raises Refused for damaged content, NotDerived for what this server has not derived as it is.
+        """
+        program, made_by = content.program_of(connection, digest)
+        if is_newest and program is not None and made_by != software():
+            raise NotDerived("part", digest)
         part = self.caches.parts.get((digest, program))
         self.metrics.cache("part", part is not None)
         if part is None and (stored := content.get_part(connection, digest)) is not None:
             with reading("a part", digest):
                 definition = Definition.stored(read_json(stored.definition))
                 part = Part.load(definition, stored.program, read_json(stored.certificate))
+            if not stored.is_derived:
+                raise NotDerived("part", digest)
             self.caches.parts.put((digest, program), part)
         return part
 
-    def required_part(self, connection: Connection, digest: str) -> Part:
-        """The part of a version that is stored. Raises Refused for content that is damaged or gone."""
-        part = self.part(connection, digest)
+    def required_part(self, connection: Connection, digest: str, is_newest: bool = False) -> Part:
+        """The part of a version that is stored. Raises as :meth:`part`, and Refused for content that is gone."""
+        part = self.part(connection, digest, is_newest)
         if part is None:
             raise missing("a definition", digest)
         return part

@@ -6,12 +6,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.database.packed import pack
+from service.database.packed import pack, unpack
+from service.derivation import software
+from service.integrity import checked
 from substructures.documents import read_json, write_json
 from substructures.part.mass import mass_at_defaults
 from substructures.part.part import Part
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
+
+UNKNOWN = "unknown"  # software
 
 
 def tree_summary(spec: TreeSpec, model: Model) -> bytes:
@@ -52,14 +56,20 @@ class PartContent:
 
     @classmethod
     def of_files(cls, files: Mapping[str, bytes], prefix: str = "") -> PartContent:
-        """Out of the files of an outcome."""
-        members = read_json(files[f"{prefix}content"])
-        row = {**members["row"], "mass": float_of(members["row"]["mass"])}
-        return cls(files[f"{prefix}program"], members["nodes"], row, members["formulas"])
+        """Out of the files of an outcome, which may be of another version of the software. Raises Refused for a program
+        or a definition that is not the one that it is called.
+        """
+        members, program = read_json(files[f"{prefix}content"]), files[f"{prefix}program"]
+        row = {"software": UNKNOWN, **members["row"], "mass": float_of(members["row"]["mass"])}
+        checked("a program", row["program"], unpack(program))
+        checked("a definition", row["digest"], row["definition"].encode())
+        return cls(program, members["nodes"], row, members["formulas"])
 
 
-def part_content(part: Part) -> PartContent:
-    """What is stored of a part; the operations of its formulas are counted one by one."""
+def part_content(part: Part, recipe: str | None = None) -> PartContent:
+    """What is stored of a part that was derived here, by a ``recipe`` where it is a published tree; the operations of
+    its formulas are counted one by one.
+    """
     definition = part.definition
     words = (definition.name, definition.title, definition.description, *definition.tags)
     row = {
@@ -80,6 +90,8 @@ def part_content(part: Part) -> PartContent:
         "parameters": _json(part.parameters),
         "operations": _json(part.operations),
         "certificate": _json(part.certificate),
+        "software": software(),
+        "recipe": recipe,
     }
     formulas = [
         (k, f.quantity, f.body, f.coordinate, _json(f.shape), f.symmetry, f.operations, f.output, _json(f.index))

@@ -6,10 +6,10 @@ from functools import cache
 from typing import Any
 
 import numpy as np
-import pytest
+from made_once import coupled_once
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Model, catalogue
 from substructures.quantities.states import default_number
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
@@ -18,16 +18,10 @@ FINE: Plain = {"relative_tolerance": 1e-13, "absolute_tolerance": 1e-14}
 PERIOD = 2.3678419475762373
 
 
-def seeds(quick: int, count: int) -> list[Any]:
-    """``count`` seeds, of which the first ``quick`` are in the default tests."""
-    return [*range(quick), *(pytest.param(k, marks=pytest.mark.deep) for k in range(quick, count))]
-
-
 def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81), **parameters: Any) -> Model:
     """A catalogue entry alone at the world, as instance x."""
-    part = derive(Definition.read(catalogue.load(name)))
     one = {"name": "x", "substructure": name, "parameters": parameters}
-    return couple(TreeSpec.read({"name": "t", "gravity": list(gravity), "instances": [one]}), {"x": part})
+    return coupled_once({"name": "t", "gravity": list(gravity), "instances": [one]}, {name: catalogue.load(name)})
 
 
 def oscillator(**joint: Any) -> Plain:
@@ -42,6 +36,7 @@ def shipped(name: str) -> Model:
     return catalogue_model(name, (0, 0, "-9.81"))
 
 
+@cache
 def random_model(number: int, **changes: Any) -> Model:
     """A seeded random tree with positive definite metric, a part of its numbers as parameters."""
     rng = np.random.default_rng(900 + number)

@@ -5,23 +5,24 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from made_once import coupled_once, derived_once
 from random_trees import Plain
 
-from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures import Model, Part, TreeSpec, catalogue
 
 SQUEEZER = ("beta", "Theta", "gamma", "Phi", "delta", "Omega", "epsilon")
 
 
 def tree_parts(document: Plain, definitions: Plain) -> tuple[TreeSpec, dict[str, Part]]:
     """``definitions``: by the reference that instances give."""
-    parts = {name: derive(Definition.read(data)) for name, data in definitions.items()}
+    parts = {name: derived_once(data) for name, data in definitions.items()}
     full = {"name": "loop"} | document
     return TreeSpec.read(full), {i["name"]: parts[i["substructure"]] for i in full["instances"]}
 
 
 def tree_model(document: Plain, definitions: Plain) -> Model:
     """``definitions``: by the reference that instances give."""
-    return couple(*tree_parts(document, definitions))
+    return coupled_once({"name": "loop"} | document, definitions)
 
 
 def closed_entry(name: str, closures: list[Plain], gravity: Any = (0, 0, 0), **parameters: Any) -> Model:

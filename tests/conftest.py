@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import gc
 import sys
+from collections.abc import Generator
 from pathlib import Path
 
 import pytest
@@ -21,3 +23,14 @@ def pytest_configure(config: pytest.Config) -> None:
     """Before anything is imported that makes formulas."""
     if config.getoption("--checked"):
         checked_graph.install()
+
+
+@pytest.hookimpl(wrapper=True)
+def pytest_collection() -> Generator[None, object, object]:
+    """Nine thousand tests stay to the end: the collector of garbage need not look through them, a tenth of the time."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()

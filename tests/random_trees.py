@@ -190,8 +190,11 @@ PLACES = re.compile(
 )
 
 
-def with_parameters(rng: np.random.Generator, definition: Plain, share: float) -> Plain:
-    """Replaces a share of the numbers by parameters p1, p2, ... or expressions in them, with the same values."""
+def with_parameters(rng: np.random.Generator, definition: Plain, share: float, odd: bool = False) -> Plain:
+    """Replaces a share of the numbers by parameters p1, p2, ... or expressions in them, with the same values.
+
+    ``odd``: also by roots, squares and functions of parameters, as they come about by substitution.
+    """
     result = copy.deepcopy(definition)
     parameters: Plain = {}
 
@@ -202,7 +205,8 @@ def with_parameters(rng: np.random.Generator, definition: Plain, share: float) -
             return [walk(value, f"{path}/{i}") for i, value in enumerate(data)]
         if isinstance(data, str) or not PLACES.fullmatch(path) or rng.random() >= share:
             return data
-        return _expression(rng, Decimal(repr(data)), parameters)
+        value = Decimal(repr(data))
+        return (_odd_expression if odd else _expression)(rng, value, parameters)
 
     result = walk(result, "")
     result["parameters"] = parameters
@@ -218,6 +222,22 @@ def _expression(rng: np.random.Generator, value: Decimal, parameters: Plain) -> 
         (f"2*({name} - 0.5)", value / 2 + Decimal("0.5")),
     ][int(rng.choice(4, p=[0.7, 0.1, 0.1, 0.1]))]
     parameters[name] = {"value": given}
+    return text
+
+
+def _odd_expression(rng: np.random.Generator, value: Decimal, parameters: Plain) -> str:
+    name, other = f"p{len(parameters) + 1}", f"p{len(parameters) + 2}"
+    sign = "-" if value < 0 else ""
+    text, given, more = [
+        (f"{sign}sqrt({name})", value * value, None),
+        (f"{name} + 0.01*sin({other})^2/2", value, Decimal("0.1")),
+        (f"{name}*{other}", value * 4, Decimal("0.25")),
+        (f"{sign}{name}^2", Decimal(repr(round(float(abs(value)) ** 0.5, 4))), None),
+        (f"{name}*cos(0.3)/{other}", value, Decimal(1)),
+    ][int(rng.integers(5))]
+    parameters[name] = {"value": given}
+    if more is not None:
+        parameters[other] = {"value": more}
     return text
 
 

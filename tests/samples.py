@@ -5,13 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from in_depth import seeds
 from random_trees import Kind, Plain, random_definition, random_states, with_parameters
 
 from substructures import Model
 from substructures.quantities.evaluation import Evaluation
 
 QUANTITIES = ["metric", "christoffel", "forces", "gravity", "potential_energy", "kinematics", "momentum"]
-SEEDS = range(8)
+COUNT = 8
+#: as parameters of tests
+SEEDS = seeds(3, COUNT)
 
 
 def pair(seed: int, share: float) -> tuple[Plain, Plain]:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from importlib import resources
 from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import QUICK
+from catalogue_entries import shipped_part as derived
 from independent import defaults, value
 
-from substructures import couple, derive
+from substructures import couple
 from substructures.catalogue import load, names
 from substructures.documents import read_yaml
 from substructures.part.definition import Definition
 from substructures.part.part import Part
+from substructures.part.topology import CHAINS
 from substructures.quantities.evaluation import evaluate
 from substructures.tree.document import TreeSpec
 
@@ -36,6 +40,22 @@ def test_enough_entries() -> None:
     assert list(names()) == sorted(names())
     with pytest.raises(KeyError, match="no catalogue entry 'nothing'"):
         load("nothing")
+
+
+def smallest(some: Iterable[str]) -> dict[tuple[frozenset[str], bool], int]:
+    """Degrees of freedom of the smallest entry of each topology: kinds of joints, and whether it branches."""
+    found: dict[tuple[frozenset[str], bool], int] = {}
+    for name in some:
+        moving = [body for body in load(name)["bodies"] if body["joint"]["type"] != "fixed"]
+        parents = [body["parent"] for body in moving]
+        key = frozenset(body["joint"]["type"] for body in moving), len(set(parents)) < len(parents)
+        size = sum(len(CHAINS[body["joint"]["type"]]) for body in moving)
+        found[key] = min(size, found.get(key, size))
+    return found
+
+
+def test_the_default_tests_take_the_smallest_entry_of_every_topology() -> None:
+    assert smallest(QUICK) == smallest(names())
 
 
 @ENTRIES
@@ -96,7 +116,7 @@ def test_default_values_are_physical(name: str) -> None:
 
 @pytest.fixture(scope="module", params=names())
 def part(request: pytest.FixtureRequest) -> Part:
-    return derive(Definition.read(load(request.param)))
+    return derived(request.param)
 
 
 def test_entry_derives(part: Part) -> None:

@@ -6,6 +6,7 @@ from contextlib import suppress
 from decimal import Decimal
 from typing import Any
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -186,6 +187,44 @@ def test_canonical_bytes() -> None:
 )
 def test_only_plain_data_is_written(data: Any, pointer: str, code: str) -> None:
     assert fault_of(write_json, data)[:2] == (pointer, code)
+
+
+def in_numpy(data: Any, as_array: bool) -> Any:
+    """The same with NumPy's scalars, and arrays of them, for what they can hold exactly."""
+    if isinstance(data, dict):
+        return {name: in_numpy(x, as_array) for name, x in data.items()}
+    if isinstance(data, list):
+        alike = as_array and data and {type(x) for x in data} in ({float}, {bool})
+        return np.array(data) if alike else [in_numpy(x, as_array) for x in data]
+    if isinstance(data, bool):
+        return np.bool_(data)
+    if isinstance(data, int):
+        return np.int64(data) if abs(data) < 2**63 else data
+    return {float: np.float64, str: np.str_}.get(type(data), lambda x: x)(data)
+
+
+@given(
+    st.recursive(
+        st.none() | st.booleans() | st.integers(-(10**20), 10**20) | st.floats(-1e99, 1e99) | st.text(),
+        lambda inner: st.lists(inner, max_size=4) | st.dictionaries(st.text(), inner, max_size=4),
+        max_leaves=20,
+    ),
+    st.booleans(),
+)
+def test_numbers_of_numpy_have_the_bytes_of_plain_ones(data: Any, as_array: bool) -> None:
+    with suppress(InvalidDocument):  # a lone surrogate
+        assert write_json(in_numpy(data, as_array)) == write_json(data)
+
+
+@pytest.mark.parametrize("value", [np.float32(0.5), np.float64(0.5), np.array(0.5)])
+def test_every_float_of_numpy_is_written(value: Any) -> None:
+    assert write_json({"a": [value]}) == b'{"a":[0.5]}'
+
+
+@pytest.mark.parametrize("value", [np.float64("nan"), np.float32("inf"), np.array([1, np.nan])])
+def test_not_a_number_is_refused_in_numpy_as_well(value: Any) -> None:
+    with pytest.raises(InvalidDocument, match="is not a number"):
+        write_json([value])
 
 
 def test_writing_has_the_same_depth() -> None:

@@ -45,6 +45,7 @@ def run(text: str, folder: Path) -> str:
     return done.stdout
 
 
+# takes seconds: a server with the whole catalogue, as a reader starts it
 @pytest.mark.skipif(shutil.which("curl") is None, reason="the README's requests need curl")
 def test_requests_in_order(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     requests = [line for block in blocks("sh") for line in re.split(r"\n(?=curl)", block.strip()) if line[:4] == "curl"]
@@ -116,8 +117,13 @@ def test_python_example(tmp_path: Path) -> None:
         *("jobs submit", "jobs list", "jobs watch", "jobs result"),
     ],
 )
-def test_commands_exist(word: str) -> None:
-    done = subprocess.run(
-        [sys.executable, "-m", "service.cli.main", *word.split(), "--help"], capture_output=True, text=True, check=False
-    )
+def test_commands_exist(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main([*word.split(), "--help"]) == 0
+    assert f"Usage: substructures {word}" in capsys.readouterr().out
+
+
+def test_help_of_a_command_that_is_kept_is_shown_at_once() -> None:
+    command = [sys.executable, "-m", "service.cli.main", "serve", "--help"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 0, done.stderr
+    assert "Usage: substructures serve" in done.stdout

@@ -22,7 +22,7 @@ CRITERION = (
 
 def abbreviated(source: Source, read: AbbreviationRequest, report: ProgressReport) -> dict[str, Any]:
     """The answer to a request. Raises InvalidArgument with pointers into the request, TooLarge."""
-    model = source.model if source.grouped is None else source.grouped()
+    model = source.grouped()
     found = abbreviate(model, read.quantity, read.simplify, read.ranges, read.parameters, report)
     return {
         "quantity": found.quantity,

@@ -21,13 +21,12 @@ from substructures.export import (
     interface_of_part,
 )
 from substructures.export.exported import check_name
-from substructures.export.fmu.variables import DYNAMICS
 from substructures.export.stages import staged
 from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Sources
-from substructures.quantities.formulas import DERIVED
+from substructures.quantities.quantity import FORWARD, askable
 from substructures.tree.document import TreeSpec
 
 ZIP = "application/zip"
@@ -110,11 +109,11 @@ def tree_package(
     if request.target == URDF:
         name, spec_and_parts = _urdf_name(request, called), document()
         return _urdf(name, urdf_of_tree(*spec_and_parts, name, reference, digest, _all_numbers(parameters, request)))
-    outputs = sources.model.program.outputs
+    known = askable(sources.model.program.outputs)
     chosen = OF_FMUS if request.target == FMU else OF_TREES
-    names = request.quantities or tuple(name for name in chosen if name in outputs or name in DERIVED)
+    names = request.quantities or tuple(name for name in chosen if name in known)
     if request.target in MOVING:
-        names = tuple(dict.fromkeys((DYNAMICS, *names)))
+        names = tuple(dict.fromkeys((FORWARD, *names)))
     interface = _left(interface_of_model(sources.model, reference, digest), request)
 
     def numbers(program: Program) -> Program:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from service.analyses.binding import bound
-from service.analyses.printing import JSON, TO_READ, Style, model_quantity, text_of
+from service.analyses.printing import JSON, TO_READ, Style, text_of
 from service.analyses.source import Source
 from service.cache import Cache
 from service.refusals import unprocessable
@@ -24,13 +24,13 @@ from substructures.export import Interface
 from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.quantities.evaluation import Sources
+from substructures.quantities.quantity import DERIVED, PROGRAMS
 
 #: what follows from the equations of motion alone, and has formulas in grouped symbols
-DERIVED = (
-    *("coriolis", "kinetic_energy", "generalised_momenta", "forward_dynamics", "inverse_metric"),
-    "christoffel_second_kind",
+QUANTITIES = (
+    *OUTPUTS,
+    *(name for name in DERIVED if name not in OUTPUTS and {*PROGRAMS[name].needs.split()} <= {*OUTPUTS}),
 )
-QUANTITIES = tuple(dict.fromkeys((*OUTPUTS, *DERIVED)))
 
 _grouped: Cache[Grouped] = Cache(2_000_000, lambda found: len(found.model.program))
 
@@ -66,7 +66,7 @@ def grouped_text(source: Source, quantity: str, style: Style, interface: Interfa
     except InvalidInput as error:
         raise error.moved(lambda _: "/query/group") from None
     parameters = found.model.parameters
-    program = bound(model_quantity(Sources(found.model), quantity), parameters, style.bind)
+    program = bound(Sources(found.model).formulas(quantity), parameters, style.bind)
     definitions = Definitions(
         bound(found.definitions, parameters, style.bind), {s.name: cut(sum_of(s.standard)) for s in found.symbols}
     )

@@ -45,6 +45,7 @@ from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.errors import Fault, InvalidArgument, TooLarge
 from substructures.quantities.powers import PowerModel
+from substructures.quantities.quantity import POWERS, REACTIONS
 from substructures.quantities.reactions import ReactionModel, read_joints
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model
@@ -107,9 +108,8 @@ def _powers(source: Source, request: SpanRequest) -> PowerModel | None:
     """The powers, where they are wanted along a motion. Raises InvalidArgument."""
     if not (isinstance(request, WithReactions) and request.powers):
         return None
-    if source.powers is None:
-        raise InvalidArgument.at("/powers", "needs-parts", "powers need the parts of the tree")
-    return source.powers()
+    found: PowerModel = _of_parts(source, POWERS, "/powers")
+    return found
 
 
 def _transmitted(source: Source, request: SpanRequest) -> ReactionModel | None:
@@ -123,9 +123,16 @@ def _transmitted(source: Source, request: SpanRequest) -> ReactionModel | None:
 
 def _reactions(source: Source, pointer: str) -> ReactionModel:
     """All reactions of a tree. Raises InvalidArgument."""
-    if source.reactions is None:
-        raise InvalidArgument.at(pointer, "needs-parts", "reactions need the parts of the tree")
-    return source.reactions()
+    found: ReactionModel = _of_parts(source, REACTIONS, pointer)
+    return found
+
+
+def _of_parts(source: Source, name: str, pointer: str) -> Any:
+    """What is derived of the parts of a tree. Raises InvalidArgument."""
+    try:
+        return source.sources.of(name)
+    except InvalidArgument as error:
+        raise error.moved(lambda place: pointer if place == "/quantities" else place) from None
 
 
 def _sensitivities(source: Source, request: SensitivityRequest, report: ProgressReport) -> Any:

@@ -16,37 +16,26 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.told import base_symbols
 from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
-from substructures.expr.hoist import hoisted
-from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
 from substructures.printers import entries
 from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.canonical import MOMENTA, momentum
-from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources
-from substructures.quantities.formulas import DERIVED
-from substructures.quantities.regressor import OUTPUTS
+from substructures.quantities.canonical import momentum
+from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
+from substructures.quantities.result import plain_names
+from substructures.quantities.sources import Sources
 from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
 #: prefix of functions where none is given
 NAME = "model"
-#: quantities that consist of several outputs
-GROUPS = {
-    "kinematics": ("position", "rotation", "U", "Omega"),
-    "momentum": ("linear_momentum", "angular_momentum"),
-    "closures": ("closure.residual", "closure.jacobian", "closure.acceleration", "closure.direction"),
-    "interface": ("f", "n", "K", "kappa", "F", "N", "composite"),
-}
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"
 #: formats that have a title
 DOCUMENTS = ("latex-document", "mathml")
 #: formats that people read, and outputs that programs judge others by: D_k / |g_kk| and |g_kk|
 TO_READ, JUDGES = ("text", "latex", "latex-document", "mathml"), ("pivots", "inertias")
-#: of what has one beside g_ab = g_ba
-SYMMETRY_RULES = {"christoffel_second_kind": "Gamma^a_bc = Gamma^a_cb"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -69,33 +58,27 @@ class Style:
         return replace(self, name=f"{quantity} of {what}") if is_untitled else self
 
 
-def quantities(name: str) -> tuple[str, ...]:
-    """The quantities that a name stands for."""
-    return GROUPS.get(name, (name,))
-
-
 def check_quantity(model: Model, quantity: str) -> None:
     """Raise Refused 404 unless the model has the quantity, InvalidDocument for what a large one does not store."""
-    if quantity in (*DERIVED, *OUTPUTS, REACTIONS, POWERS) or any(
-        name in model.program.outputs for name in quantities(quantity)
-    ):
+    known = askable(model.program.outputs)
+    if quantity in known:
         return
     if quantity == CHRISTOFFEL:  # of a large model, which says why
         require_stored(model.program, [quantity])
-    names = [*model.program.outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES]
-    known = ", ".join(dict.fromkeys(names))
+    names = list(dict.fromkeys([*known, *QUANTITIES]))
     like = meant(quantity, names)
-    raise not_found(f"there is no quantity '{quantity[:80]}'{like or f'; there are {known}'}", "unknown-quantity")
+    there = like or f"; there are {', '.join(names)}"
+    raise not_found(f"there is no quantity '{quantity[:80]}'{there}", "unknown-quantity")
 
 
-def needs_parts(quantity: str) -> bool:
-    """Whether a quantity needs the parts of the tree, beside its formulas."""
-    return quantity in (*OUTPUTS, REACTIONS, POWERS, *OF_PARTS)
+def has_parts(quantity: str) -> bool:
+    """Whether a quantity, also one that follows from a model, needs the parts of the tree."""
+    return needs_parts(quantity) or quantity in OF_PARTS
 
 
 def options_of_quantity(quantity: str) -> tuple[str, ...]:
     """The options that a quantity of a model has."""
-    return ("joints",) if quantity == REACTIONS else ()
+    return TABLE[quantity].options if quantity in TABLE else ()
 
 
 def with_options(sources: Sources, quantity: str, options: Options) -> Sources:
@@ -105,38 +88,22 @@ def with_options(sources: Sources, quantity: str, options: Options) -> Sources:
         return sources
     found = replace(sources, joints=tuple(options["joints"]))
     try:
-        found.transmitted()
+        found.of(REACTIONS)
     except InvalidInput as error:
         raise error.moved(lambda pointer: f"/query{pointer}") from None
     return found
 
 
-def model_quantity(sources: Sources, quantity: str) -> Program:
-    """The program of one quantity of a model. Raises TooLarge, InvalidDocument."""
-    if quantity in DERIVED:
-        return sources.program(quantity)
-    if quantity in (REACTIONS, POWERS):
-        return sources.program(quantity)
-    if quantity in OUTPUTS:
-        return sources.program(REGRESSOR).select([quantity])
-    wanted, whole = quantities(quantity), sources.model.program
-    return hoisted(whole.select([name for name in whole.outputs if name in wanted]))
-
-
-def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Mapping[str, Any]]:
+def described(sources: Sources, quantity: str) -> tuple[dict[str, Any], Parameters]:
     """What is said beside the formulas of a quantity, and the parameters that may be bound in them."""
-    if quantity == REACTIONS:
-        return {"joints": sources.transmitted().rows}, sources.model.parameters
-    if quantity == POWERS:
-        return {"loads": sources.by_load().rows}, sources.model.parameters
-    if quantity in MOMENTA:
-        return {"momenta": [momentum(name) for name in sources.model.coordinates]}, sources.model.parameters
-    if quantity in SYMMETRY_RULES:
-        return {"symmetry_rule": SYMMETRY_RULES[quantity]}, sources.model.parameters
-    if quantity not in OUTPUTS:
-        return {}, sources.model.parameters
-    found = sources.columns()
-    return {"columns": {"names": found.names, "units": found.units}}, found.parameters
+    row, told = TABLE.get(quantity), dict[str, Any]()
+    if row is None:
+        return told, sources.model.parameters
+    if needs_parts(quantity):
+        told = {axis: plain_names(names) for axis, names in sources.labels([quantity]).items()}
+    told |= {"momenta": [momentum(name) for name in sources.model.coordinates]} if row.of_momenta else {}
+    told |= {name: text for name, text in (("symmetry_rule", row.rule), ("note", row.note)) if text}
+    return told, sources.parameters([quantity])
 
 
 def with_numbers(program: Program, parameters: Parameters, inputs: Parameters, style: Style) -> Program:
@@ -174,6 +141,8 @@ def text_of(
     text = _rendered(program, style, quantity, interface, limit, definitions, glossary)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, interface.vectors["q"].names)
+    if style.format == "text" and members and "note" in members:
+        return f"{text.rstrip()}\n{members['note']}\n"
     return _joined(members, text) if style.format == JSON and members else text
 
 
@@ -222,14 +191,9 @@ def made_text(
 
 def _base_text(base: BaseParameters, interface: Interface, model: Model, style: Style, limit: int) -> str:
     """Every base parameter with its formula and what was grouped into it."""
-    symbols, notes = base_symbols(base)
-    units = dict(zip(base.standard, base.units, strict=True))
-    called = (
-        Symbol(name, "base parameter", units[standard])
-        for name, standard in zip(symbols.outputs, base.names, strict=True)
-    )
+    symbols, called, notes = base_symbols(base)
     definitions = Definitions(with_numbers(symbols, model.parameters, model.inputs, style), notes)
-    return _rendered(Program(tuple(called), (), {}), style, BASE, interface, limit, definitions)
+    return _rendered(Program(called, (), {}), style, BASE, interface, limit, definitions)
 
 
 def _notes(members: Mapping[str, Any]) -> Iterator[str]:

@@ -9,33 +9,39 @@ from pathlib import Path
 from service.settings import Limits
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator, Sources, interpreted
-from substructures.quantities.powers import PowerModel
-from substructures.quantities.reactions import ReactionModel
+from substructures.quantities.quantity import REGRESSOR
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model
-from substructures.tree.plausibility import Plausibility
+from substructures.tree.model import Model, couple
 
 
 @dataclass(frozen=True)
 class Source:
-    """``digest``: of the tree; ``regressor``: derived when needed; ``folder``: where compiled kernels are kept;
-    ``plausibility``: what judges values, made when needed; so are ``reactions`` and ``powers``, where the parts are
-    there, and ``grouped``: the model with base parameters; ``parts``: the document and the parts by instance.
+    """``sources``: the model with what is derived of it when it is needed; ``digest``: of the tree; ``folder``: where
+    compiled kernels are kept; ``parts``: the document and the parts by instance, where these are there.
     """
 
-    model: Model
+    sources: Sources
     digest: str
-    regressor: Callable[[], RegressorModel]
     limits: Limits
     folder: Path | None = None
     engine: Evaluator = interpreted
-    plausibility: Callable[[], Plausibility] | None = None
-    reactions: Callable[[], ReactionModel] | None = None
-    powers: Callable[[], PowerModel] | None = None
-    grouped: Callable[[], Model] | None = None
     parts: Callable[[], tuple[TreeSpec, Mapping[str, Part]]] | None = None
 
-    def sources(self) -> Sources:
-        """What quantities are made from."""
-        return Sources(self.model, regressor=self.regressor, reactions=self.reactions, powers=self.powers)
+    @property
+    def model(self) -> Model:
+        """The model."""
+        return self.sources.model
+
+    def regressor(self) -> RegressorModel:
+        """The regressor. Raises InvalidArgument without parts, TooLarge."""
+        found = self.sources.of(REGRESSOR)
+        if not isinstance(found, RegressorModel):
+            raise TypeError("a regressor expected")
+        return found
+
+    def grouped(self) -> Model:
+        """The model with base parameters, without parts the model. Raises TooLarge."""
+        if self.parts is None:
+            return self.model
+        return couple(*self.parts(), self.limits.program_nodes, group=True)

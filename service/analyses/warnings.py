@@ -1,4 +1,4 @@
-"""Warnings about requests for analyses: impossible bodies, parameters without effect, joint limits that are left."""
+"""Warnings about requests for analyses: impossible bodies, parameters without effect, limits and relations left."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from pydantic import BaseModel
 
 from service.analyses.source import Source
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.quantities.evaluation import Sources
 from substructures.quantities.states import read_states
 from substructures.quantities.warnings import Notice, value_warnings
 
@@ -20,12 +19,14 @@ NEAR = ("EquilibriaRequest", "RootLocusRequest")
 def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -> list[Notice]:
     """What is hardly meant about the parameters and states of a request, or about the motion that followed from it."""
     given, inputs = (getattr(request, name, None) or {} for name in ("parameters", "inputs"))
-    sources = Sources(source.model, plausibility=source.plausibility)
     # a motion has told of the limits itself, which it may also leave between its results
     told = type(request).__name__ in NEAR or motion is not None
     q: Any = None if told else getattr(request, "q", None)
     states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
-    notices = value_warnings(sources, given, inputs, states)
+    notices = value_warnings(source.sources, given, inputs, states)
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
+    # a model with its definitions has told of relations itself
+    if motion is not None and source.model.plausibility is None and source.sources.judge is not None:
+        notices += source.sources.judge.apart(motion.coordinates, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

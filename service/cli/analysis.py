@@ -32,9 +32,7 @@ from substructures.errors import meant
 from substructures.export import interface_of_model
 from substructures.part.part import Part
 from substructures.printers import FORMS
-from substructures.quantities.powers import powers
-from substructures.quantities.reactions import reactions
-from substructures.quantities.regressor import regressor
+from substructures.quantities.sources import Sources, of_parts
 from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple
@@ -135,12 +133,12 @@ def _formula(wanted: _Wanted, what: str, style: Style, chosen: Options) -> bytes
 
 
 def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> Answer:
-    sources = source.sources()
+    sources = source.sources
     models.check_quantity(source.model, what)
     sources = models.with_options(sources, what, chosen)
     members, parameters = models.described(sources, what)
     inputs = source.model.inputs
-    program = models.with_numbers(models.model_quantity(sources, what), parameters, inputs, style)
+    program = models.with_numbers(sources.formulas(what), parameters, inputs, style)
     interface = interface_of_model(source.model, digest=source.digest)
     named = models.source_glossary(source, style, parameters)
     return models.printed(program, style, what, interface, members, named)
@@ -225,18 +223,8 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
     model = couple(spec, parts, limits.program_nodes)
     # the others come with the result
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
-    nodes = limits.program_nodes
-    # what is made when it is asked for
-    return Source(
-        model,
-        spec.digest,
-        lambda: regressor(spec, parts, nodes),
-        limits,
-        reactions=lambda: reactions(spec, parts, nodes),
-        powers=lambda: powers(spec, parts, nodes),
-        grouped=lambda: couple(spec, parts, nodes, group=True),
-        parts=lambda: (spec, parts),
-    )
+    sources = Sources(model, of_parts=of_parts(spec, parts, limits.program_nodes))
+    return Source(sources, spec.digest, limits, parts=lambda: (spec, parts))
 
 
 COMMANDS = {"simulate": simulate, "analyse": analyse}

@@ -17,21 +17,9 @@ from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.trees import values
 from substructures.client.connection import step
-from substructures.quantities.evaluation import QUANTITIES
 from substructures.quantities.evaluation import evaluate as evaluated
+from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
 from substructures.quantities.states import STATE, wrong_length
-
-#: what the axes of quantities mean by the members of an answer, by how their names begin; all others are coordinates
-_AXES: Mapping[str, tuple[str, ...]] = {
-    "kinematics.position": ("frames", "axes"),
-    "kinematics.rotation": ("frames", "axes", "axes"),
-    "kinematics.": ("frames", "coordinates", "axes"),
-    "momentum.": ("axes",),
-    "reactions.": ("joints", "axes"),
-    "powers": ("loads",),
-    "regressor": ("coordinates", "columns"),
-    "inertial_parameters": ("columns",),
-}
 
 Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
 
@@ -75,6 +63,8 @@ def evaluate(
     else:
         for name in quantities:
             _print(name, found[name], found)
+            if TABLE[name].note:
+                print(f"  {TABLE[name].note}")
     tell_warnings(found)
     for failure in found.get("failures", ()):
         print(f"no result: {failure['message']}")
@@ -84,7 +74,7 @@ def evaluate(
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
     source = local_source(path)
     _check_lengths(request, source.model.coordinates)
-    sources = source.sources()
+    sources = source.sources
     given = {"q": np.zeros(source.model.dof), **request}
     quantities = given.pop("quantities")
     result = evaluated(source.model, quantities, **given, sources=sources)
@@ -126,13 +116,6 @@ def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
     return found
 
 
-def _labels(name: str, axes: int, told: Mapping[str, Any]) -> list[Sequence[str]]:
-    """What the indices along the axes of an array are called."""
-    known = {**told, "columns": told.get("columns", {}).get("names", ()), "axes": ("x", "y", "z")}
-    names = next((names for start, names in _AXES.items() if name.startswith(start)), ("coordinates",) * axes)
-    return [known.get(each, ()) for each in (*names, *[""] * axes)[:axes]]
-
-
 def _print(name: str, value: Any, told: Mapping[str, Any]) -> None:
     """A number; a vector or matrix by the names of its rows; what has more axes by its elements that are not zero."""
     if isinstance(value, dict):
@@ -149,7 +132,7 @@ def _print(name: str, value: Any, told: Mapping[str, Any]) -> None:
     print(name)
     named = [
         labels if len(labels) == n else [str(k + 1) for k in range(n)]
-        for labels, n in zip(_labels(name, numbers.ndim, told), numbers.shape, strict=True)
+        for labels, n in zip(labels_of(name, told), numbers.shape, strict=True)
     ]
     if numbers.ndim > 2:
         for place in np.argwhere(numbers):

@@ -79,7 +79,7 @@ def _local(path: Path, request: ExportRequest) -> Package:
     if isinstance(read, Part):
         return part_package(read, path.name, read.definition.digest, request, limit)
     source = coupled_source(*read)
-    sources = source.sources()
+    sources = source.sources
     return tree_package(sources, path.stem, path.name, source.digest, request, limit, lambda: read)
 
 

@@ -24,7 +24,7 @@ from substructures.client.progress import counted
 from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
-from substructures.quantities.evaluation import QUANTITIES
+from substructures.quantities.quantity import QUANTITIES
 
 Id = Annotated[str, typer.Argument(metavar="ID", autocompletion=completion.jobs)]
 Wait = Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")]

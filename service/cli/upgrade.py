@@ -10,7 +10,7 @@ import typer
 from service.cli.options import Json, Store, settings
 from service.cli.output import print_json
 from service.database.connections import Database
-from service.operations.upgrade import OPERATOR
+from service.operations.renewal import OPERATOR
 from service.operations.upgrade import upgrade as upgraded
 
 
@@ -19,7 +19,7 @@ def upgrade(
     database: Store = None,
     json: Json = False,
 ) -> int:
-    """Derive the parts and trees of a store anew where that gives shorter formulas; a server may go on using it.
+    """Derive the parts and trees of a store anew, as a server does by itself; one may go on using it.
 
     Definitions, versions and digests stay. What is told of is on the disk.
     """

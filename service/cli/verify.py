@@ -20,7 +20,7 @@ def verify(
     database: Store = None,
     json: Json = False,
 ) -> int:
-    """Verify every part and tree of a store against its documents; a server may go on using it meanwhile."""
+    """Prove every part and tree of a store by deriving it anew; a server may go on using it meanwhile."""
     opened = Database(settings(database=database).database, exclusive=False)
     told, verified, wrong, mended = [], 0, 0, 0
     try:

@@ -17,6 +17,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from service.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch
 from service.database.schema import is_newest
+from service.database.seals import KEY, key_beside
 
 READERS = 16
 BUSY_MS = 10_000
@@ -42,6 +43,7 @@ class Database:
         kind of URL, MigrationError for one of a newer version.
         """
         self.url = normalised(address)
+        key = b""
         self.claim: int | None = None
         self._watch: Watch | None = None
         with ExitStack() as opened:
@@ -51,9 +53,11 @@ class Database:
                 claimed = opened.enter_context(closing(Claim(self.file, claim)))
                 self.claim = claimed.shared
                 self._watch = opened.enter_context(closing(Watch(claimed.path)))
-            self.writer = _engine(self.url, writer=True)
+            if self.is_sqlite:
+                key = key_beside(self.file)
+            self.writer = _engine(self.url, key, writer=True)
             opened.callback(self.writer.dispose)
-            self.reader = _engine(self.url, writer=False) if self.is_sqlite else _snapshots(self.writer)
+            self.reader = _engine(self.url, key, writer=False) if self.is_sqlite else _snapshots(self.writer)
             opened.callback(self.reader.dispose)
             try:
                 if not is_newest(self.writer):
@@ -123,7 +127,8 @@ def normalised(address: str) -> URL:
     return url
 
 
-def _engine(url: URL, *, writer: bool) -> Engine:
+def _engine(url: URL, key: bytes, *, writer: bool) -> Engine:
+    """``key``: of seals (:mod:`service.database.seals`)."""
     if url.get_backend_name() != "sqlite":
         try:
             return _postgres(url)
@@ -137,6 +142,7 @@ def _engine(url: URL, *, writer: bool) -> Engine:
         connect_args={"timeout": BUSY_MS / 1000, "check_same_thread": False},
     )
     event.listen(engine, "connect", _configure)
+    event.listen(engine, "connect", lambda _, record: record.info.update({KEY: key}))
     if not writer:
         event.listen(engine, "connect", lambda connection, _: connection.execute("PRAGMA query_only=ON"))
     # A deferred transaction that reads and then writes fails with "database is locked" under load.

@@ -86,11 +86,16 @@ parts = Table(  # a derived definition: everything that depends on its content a
     _text("operations"),
     _text("certificate"),
     _text("created"),
+    _default("software", ""),  # that derived it
+    _default("seal", ""),  # of this server over all that follows from the definition
+    _default("index_digest", ""),  # sha256 of the index
+    _text("recipe", nullable=True),  # JSON: what a published tree was coupled of
     # the index of the formulas, JSON, of which the view ``formulas`` makes a row for each
     Column("outputs", Text, nullable=False, server_default="[]"),  # [quantity, output, shape of a formula, symmetry]
     Column(
         "formulas", Text, nullable=False, server_default="[]"
     ),  # [place in outputs, body, coordinate, entry, operations]
+    Index(None, "software"),
 )
 
 search_terms = Table(  # of the latest version of every name, so that what has one of them is found at once
@@ -221,8 +226,19 @@ trees = Table(
     _default("note", ""),
     _default("joints", ""),
     _mass(),  # as of parts
+    _default("software", ""),  # that coupled it
+    _default("seal", ""),  # as of parts, with names and notes
+    Index(None, "software"),
     Index(None, "digest"),
     Index(None, "created"),
+)
+
+renewals = Table(  # which software has derived all of the store anew
+    "renewals",
+    metadata,
+    _text("software", primary_key=True),
+    _text("seal"),
+    _text("ended"),
 )
 
 tree_parts = Table(

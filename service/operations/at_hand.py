@@ -20,8 +20,9 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import POWERS, REACTIONS, REGRESSOR, Sources, cost, steps
+from substructures.quantities.evaluation import Sources, cost, steps
 from substructures.quantities.one_state import OneState, prepared
+from substructures.quantities.quantity import OF_PARTS, REACTIONS
 from substructures.quantities.states import longest
 
 EVERYBODY = ""  # no owner
@@ -72,13 +73,12 @@ def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, eva
     """
     sources, names = evaluation.sources, request.quantities
     operations, numbers = cost(sources, names)
-    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or {REACTIONS, POWERS} & {*names}:
+    if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or REACTIONS in names:
         return
     programs = {source: (program, outputs) for source, program, outputs in steps(sources, names) if program}
-    columns = sources.columns() if REGRESSOR in programs else None
-    regressor = None if columns is None else lambda: columns
+    own = {source: sources.of(source) for source in programs if source in OF_PARTS}
     derived = lambda _, source: programs[source][0]  # noqa: E731 -- nothing is derived anew
-    at_hand = Sources(sources.model, derived, regressor, sources.plausibility)
+    at_hand = Sources(sources.model, derived, own.__getitem__, sources.plausibility)
     found = AtHand(replace(evaluation, sources=at_hand), programs, None)
     if found.is_ready(store):
         one_state = prepared(at_hand, names, lambda program, outputs: store.kernels.compiled(program, outputs)[0])

@@ -29,7 +29,7 @@ SUBMITTED = Origin()
 @dataclass(frozen=True, slots=True)
 class PartSubmission:
     """A definition ready to be stored; ``content`` is None when that is stored already. ``is_mended``: what is stored
-    is damaged, and the content takes its place."""
+    is damaged, or was not derived here, and the content takes its place."""
 
     name: str
     digest: str
@@ -58,10 +58,13 @@ def prepare(
             owners.wanted(connection, viewer, "substructure", definition.name, entry)
         derived_from(connection, viewer, entry)
         try:
-            if content.get_part(connection, definition.digest) is not None:
-                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
+            known = content.get_part(connection, definition.digest)
         except Refused:  # damaged, or gone in part
             is_mended = True
+        else:
+            if known is not None and known.is_derived:
+                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
+            is_mended = known is not None
     found = make() if make else part_content(derive(definition, store.settings.limits.program_nodes))
     return PartSubmission(definition.name, definition.digest, found, is_mended, entry, origin)
 

@@ -10,7 +10,8 @@ import orjson
 
 from service.settings import Limits
 from substructures.errors import TooLarge
-from substructures.quantities.evaluation import QUANTITIES, Evaluation, Sources, cost
+from substructures.quantities.evaluation import Evaluation, Sources, cost
+from substructures.quantities.quantity import has_numbers
 
 
 def check_size(
@@ -30,11 +31,7 @@ def check_size(
 
 def _known(quantities: Sequence[Any]) -> list[str]:
     """Those that there are; unknown ones are refused later."""
-    return [name for name in dict.fromkeys(filter(_is_text, quantities)) if name in QUANTITIES]
-
-
-def _is_text(name: Any) -> bool:
-    return isinstance(name, str)
+    return list(dict.fromkeys(filter(has_numbers, quantities)))
 
 
 def bytes_per_state(sources: Sources, quantities: Sequence[Any]) -> int:

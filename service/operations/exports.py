@@ -8,7 +8,7 @@ from typing import Any
 
 from service.analyses.exporting import URDF, ExportRequest
 from service.analyses.formulas import Options
-from service.analyses.printing import TO_READ, Style, needs_parts
+from service.analyses.printing import TO_READ, Style, has_parts
 from service.answers import Answer
 from service.jobs.engine import Outcome
 from service.jobs.worker import Worker
@@ -35,7 +35,7 @@ def printed(
 
     Raises InvalidDocument and Refused with pointers into query and body, TooLarge, TimeoutError.
     """
-    item, blobs = pinned_tree(store, tree, group or needs_parts(quantity) or style.format in TO_READ)
+    item, blobs = pinned_tree(store, tree, group or has_parts(quantity) or style.format in TO_READ)
     item |= {"quantity": quantity, **asdict(style), "group": group, **more}
     item |= {"options": {name: list(texts) for name, texts in (options or {}).items()}}
     item |= {"nodes": store.settings.limits.program_nodes}
@@ -55,7 +55,7 @@ def _of_request(pointer: str) -> str:
 
 def tree_files(store: Store, worker: Worker, tree: Tree, wanted: ExportRequest) -> Answer:
     """A tree for a target. Raises InvalidInput with pointers into the query, TooLarge, Refused, TimeoutError."""
-    item, blobs = pinned_tree(store, tree, wanted.target == URDF or any(map(needs_parts, wanted.quantities)))
+    item, blobs = pinned_tree(store, tree, wanted.target == URDF or any(map(has_parts, wanted.quantities)))
     return _files(store, worker, wanted, {**item, "called": tree.name}, f"{tree.name}@{tree.revision}", blobs)
 
 

@@ -46,7 +46,10 @@ class StoreLibrary:
         ref = parse_reference(reference)
         found = None if ref is None else catalogue.resolve(self._connection, self._viewer, ref)
         self._note(found)
-        return None if found is None else StoredVersion(found.name, found.digest, found.program)
+        if found is None:
+            return None
+        recipe = content.get_recipe(self._connection, found.digest)
+        return StoredVersion(found.name, found.digest, found.program, found.software, recipe)
 
     def _tree(self, reference: str) -> StoredTree | None:
         ref = parse_reference(reference)

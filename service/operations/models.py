@@ -14,10 +14,8 @@ from service.analyses.printing import (
     Style,
     check_quantity,
     described,
-    model_quantity,
     names_of_steps,
     options_of_quantity,
-    quantities,
     source_glossary,
     text_of,
     with_numbers,
@@ -30,6 +28,7 @@ from service.refusals import unprocessable
 from substructures.export import Interface
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
+from substructures.quantities.quantity import outputs_of
 
 __all__ = [
     "Style",
@@ -37,12 +36,10 @@ __all__ = [
     "bound",
     "check_quantity",
     "described",
-    "model_quantity",
     "names_of_steps",
     "options_of_quantity",
     "part_formulas",
     "printed",
-    "quantities",
     "source_glossary",
     "with_numbers",
     "with_options",
@@ -75,7 +72,7 @@ def part_formulas(part: Part, rows: Sequence[FormulaRow], wanted: Wanted, first:
     Refused 422 for a component that there is not.
     """
     names = [name for name in part.program.outputs if name not in INTERNAL]
-    names = [name for name in names if {name, name.partition(".")[0]} & set(quantities(wanted.quantity))]
+    names = [name for name in names if {name, name.partition(".")[0]} & set(outputs_of(wanted.quantity))]
     if wanted.is_whole:
         return part.program.select(names) if names else None
     return _entries(part.program, rows, wanted.component, first) if rows else _zeros(part, names, wanted, first)

@@ -7,12 +7,14 @@ from dataclasses import dataclass
 from typing import Any
 
 from service.database.connections import Connection
+from service.derivation import recipe_of
 from service.jobs.kinds.requested import publication_of
 from service.jobs.worker import Worker
 from service.operations import catalogue, owners, trees
 from service.operations.pinned import pinned_tree
 from service.operations.provenance import Origin
 from service.operations.sources import tree_parts
+from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree
 from service.refusals import Refused
@@ -34,6 +36,7 @@ class Module:
     request: Any
     entry: PartEntry
     origin: Origin
+    recipe: str
 
     def document(self) -> dict[str, Any]:
         """As it would be submitted."""
@@ -55,9 +58,11 @@ def module(store: Store, viewer: Viewer, text: str, request: Any) -> Module:
         spec, parts = tree_parts(store, tree)
         uses = {instance: part.definition.digest for instance, part in parts.items()}
         _require_visible(connection, viewer, tree, name, entry, uses)
-    found = published(spec, parts, publication_of(wanted, name))
+        recipes = {instance: content.get_recipe(connection, digest) for instance, digest in uses.items()}
+    how = publication_of(wanted, name)
+    found = published(spec, parts, how)
     origin = Origin("tree", tree.name, tree.revision, uses)
-    return Module(found, tree, request, entry, origin)
+    return Module(found, tree, request, entry, origin, recipe_of(spec, parts, recipes, how))
 
 
 def _require_visible(
@@ -83,6 +88,7 @@ def prepare(store: Store, viewer: Viewer, worker: Worker, found: Module) -> cata
         """What is stored of it, coupled of the stored formulas."""
         pinned, blobs = pinned_tree(store, found.tree)
         item = {"parts": pinned["parts"], "request": found.request, "name": definition.name, **store.work_limits}
+        item["recipe"] = found.recipe
         return PartContent.of_files(worker("publish", item, blobs).files)
 
     return catalogue.prepare(store, viewer, definition, found.entry, found.origin, make)

@@ -2,26 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TypeVar
+from functools import partial
+from typing import Any
 
-from service.cache import Cache
 from service.integrity import reading
 from service.queries import trees
 from service.queries.trees import Tree
 from service.store import Store
 from substructures.documents import read_json
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Evaluator, Sources
+from substructures.quantities.evaluation import Evaluator
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.powers import PowerModel, powers
-from substructures.quantities.reactions import ReactionModel, reactions
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
-
-Derived = TypeVar("Derived", PowerModel, ReactionModel, RegressorModel)
 
 
 def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
@@ -29,12 +24,17 @@ def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
     return Sources(
         model,
         store.derived,
-        lambda: _derived(store, tree, store.caches.regressors, regressor),
+        lambda name: _of_parts(store, tree, name),
         lambda: plausibility_of(store, tree, model),
         lambda values, names, states: _numeric(store, tree).answer(values, names, states),
-        lambda: _derived(store, tree, store.caches.reactions, reactions),
-        powers=lambda: _derived(store, tree, store.caches.powers, powers),
     )
+
+
+def _of_parts(store: Store, tree: Tree, name: str) -> Any:
+    """What is derived of the parts of a tree beside its model. Raises TooLarge."""
+    parts, nodes = partial(tree_parts, store, tree), store.settings.limits.program_nodes
+    key = tree.digest, name, part_programs(store, tree)
+    return store.caches.of_parts.once(key, lambda: of_parts(*parts(), nodes)(name))
 
 
 def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
@@ -77,23 +77,3 @@ def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:
     """The digests of what is derived of a tree beside its own program is made of."""
     with store.database.read() as connection:
         return trees.part_programs(connection, tree.name, tree.revision)
-
-
-def grouped_model(store: Store, tree: Tree) -> Model:
-    """The model of a stored tree with base parameters. Raises TooLarge."""
-    return couple(*tree_parts(store, tree), store.settings.limits.program_nodes, group=True)
-
-
-def _derived(
-    store: Store,
-    tree: Tree,
-    cache: Cache[Derived],
-    derive: Callable[[TreeSpec, Mapping[str, Part], int], Derived],
-) -> Derived:
-    """What is derived of the parts of a tree beside its model. Raises TooLarge."""
-    key = tree.digest, part_programs(store, tree)
-    found = cache.get(key)
-    if found is None:
-        found = derive(*tree_parts(store, tree), store.settings.limits.program_nodes)
-        cache.put(key, found)
-    return found

@@ -8,7 +8,8 @@ from typing import Any
 
 from service.answers import etag
 from service.database.connections import Connection
-from service.integrity import digest_of
+from service.database.packed import unpack
+from service.integrity import checked, digest_of
 from service.jobs.engine import Outcome
 from service.jobs.kinds.assemble import NAMED, pinned_spec
 from service.jobs.worker import Worker
@@ -21,7 +22,7 @@ from service.references import Reference, is_pinned, parse_reference
 from service.refusals import Refused, StaleError, moved, not_found
 from service.schemas.entries import PLAIN, Entry
 from service.store import Store
-from service.summaries import PartContent, float_of
+from service.summaries import UNKNOWN, PartContent, float_of
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.documents.tables import with_points
@@ -35,7 +36,8 @@ class TreeContent:
     """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
     freedom, joints, mass in kg if it is known, the summary as JSON.
 
-    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along.
+    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along;
+    ``software``: that coupled it, empty for that of this process.
     """
 
     name: str
@@ -49,14 +51,17 @@ class TreeContent:
     summary: bytes
     parts: Mapping[str, str]
     inline: Sequence[PartContent] = ()
+    software: str = ""
 
     @classmethod
     def of_outcome(cls, outcome: Outcome) -> TreeContent:
-        """What a work of the kind ``assemble`` has made."""
+        """What a work of the kind ``assemble`` has made. Raises Refused for a program that is not what it is called."""
         files, told = outcome.files, outcome.summary
         inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
         figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
-        return cls(told["name"], files["spec"], files["program"], *figures, files["summary"], told["parts"], inline)
+        made = files["summary"], told["parts"], inline, told.get("software", UNKNOWN)
+        checked("the program of a tree", told["program"], unpack(files["program"]))
+        return cls(told["name"], files["spec"], files["program"], *figures, *made)
 
 
 @dataclass(frozen=True, slots=True)
@@ -221,7 +226,7 @@ def store(
     content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
     texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
     whom = viewer.key, whose.owner, whose.visibility, entry.note or ""
-    figures = coupled.joints, coupled.mass
+    figures = coupled.joints, coupled.mass, coupled.software
     tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom, *figures)
     trees.add_revision(connection, tree, coupled.parts)
     audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)

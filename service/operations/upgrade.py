@@ -1,9 +1,9 @@
 """Formulas of older versions of the software derived anew with today's: the command ``substructures upgrade``.
 
 A version is its definition, a revision its document: these never change, nor do their digests. Their programs are
-what follows; where today's derivation gives a shorter one, or outputs that an older software did not store, it takes
-the place of the old one, with a certificate of its own. The old program stays in the store under its digest, for items
-of jobs that are queued with it.
+what follows: what today's software derives takes the place of what another one did, with a certificate of its own. The
+server does so by itself when a newer version starts (:mod:`service.renewing`). The old program stays in the store under
+its digest, for items of jobs that are queued with it.
 """
 
 from __future__ import annotations
@@ -12,23 +12,16 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from service.database.connections import Connection, Database
-from service.database.packed import pack
 from service.improvement import AS_IT_WAS, Improvement, improvement
 from service.integrity import digest_of
 from service.operations.catalogue import mend_part
-from service.operations.verification import read_tree, stored_definitions, told
+from service.operations.renewal import OPERATOR, read_tree, renew_part, renew_tree
+from service.operations.verification import told
 from service.queries import audit, catalogue, content, trees
-from service.summaries import PartContent, part_content, tree_summary
-from service.viewer import CONSOLE, OPEN, SCOPES, Viewer
-from substructures.documents import read_json
+from service.summaries import PartContent
+from service.viewer import Viewer
 from substructures.expr.program import Program
-from substructures.part.certificate import require_no_less
-from substructures.part.definition import Definition
-from substructures.part.part import MAX_NODES, Part, derive
-from substructures.tree.model import couple
-
-#: who works on a store directly
-OPERATOR = Viewer(CONSOLE, OPEN, SCOPES)
+from substructures.part.part import MAX_NODES
 
 
 @dataclass(frozen=True, slots=True)
@@ -90,22 +83,17 @@ def _part(database: Database, viewer: Viewer, what: str, digest: str, max_nodes:
         stored = content.get_part(connection, digest)
     if stored is None:
         raise ValueError("its definition is gone from the store; submit it again")
-    definition = Definition.stored(read_json(stored.definition))
-    old = Part.load(definition, stored.program, read_json(stored.certificate))
-    new = derive(definition, max_nodes)
-    require_no_less(old.certificate, new.certificate)
-    found = improvement(old.program, new.program)
-    if found.is_one:
-        made = part_content(new)
-        with database.write() as connection:
-            put_part(connection, viewer, what.removeprefix("substructure "), old.program.digest, made, found)
+    renew_part(database, digest, max_nodes, viewer)
+    with database.read() as connection:
+        now = content.get_part(connection, digest)
+    found = improvement(Program.from_bytes(stored.program), Program.from_bytes((now or stored).program))
     return Upgraded(what, digest, found.before, found.after, found.outcome)
 
 
 def put_part(
     connection: Connection, viewer: Viewer, name: str, before: str, made: PartContent, found: Improvement
 ) -> None:
-    """Write a program over the one with the digest ``before``; what has another one meanwhile stays as it is."""
+    """Write what a job derived over a part with the program ``before``; what has another one meanwhile stays."""
     if content.get_row(connection, made.digest)["program"] != before:
         return
     mend_part(connection, made)
@@ -115,24 +103,12 @@ def put_part(
 
 def _tree(database: Database, viewer: Viewer, name: str, number: int, max_nodes: int) -> Upgraded:
     with database.read() as connection:
-        tree, spec = read_tree(connection, f"{name}@{number}")
-        definitions = stored_definitions(connection, spec)
-        stored = {d.digest: content.get_part(connection, d.digest) for d in definitions.values()}
+        tree, _ = read_tree(connection, name, number)
         data = content.get_program(connection, tree.program)
     if data is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
-    parts = {}
-    for instance, definition in definitions.items():
-        kept = stored[definition.digest]
-        parts[instance] = derive(definition, max_nodes) if kept is None else Part.load(definition, kept.program, {})
-    model = couple(spec, parts, max_nodes)
-    require_no_less(read_json(tree.summary.encode()).get("certificate", {}), model.certificate)
-    found = improvement(Program.from_bytes(data), model.program)
-    if found.is_one:
-        figures = model.program.digest, len(model.program), model.dof
-        made = TreeProgram(pack(model.program), *figures, tree_summary(spec, model))
-        with database.write() as connection:
-            put_tree(connection, viewer, tree.name, tree.digest, tree.program, made, found)
+    made = renew_tree(database, name, number, max_nodes, viewer)
+    found = improvement(Program.from_bytes(data), made.program)
     return Upgraded(f"tree {name}@{number}", tree.digest, found.before, found.after, found.outcome)
 
 
@@ -145,7 +121,7 @@ def put_tree(
     made: TreeProgram,
     found: Improvement,
 ) -> None:
-    """Write a program over the one with the digest ``before``, in all revisions of this document that have it."""
+    """Write what a job coupled over the program ``before``, in all revisions of this document that have it."""
     content.put_program(connection, made.digest, made.program, made.nodes)
     for tree in trees.with_program(connection, name, digest, before):
         summary = made.summary.decode()

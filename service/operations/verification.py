@@ -1,33 +1,31 @@
-"""Everything in a store verified, and what is wrong derived anew: the command ``substructures verify``."""
+"""Everything in a store proven by deriving it anew, and what is wrong put right: the command ``substructures verify``.
+
+A part is right when what this software derives of its definition is what is stored, by the digest of its program, and
+figure by figure; a tree when coupling its parts gives what is stored. Nothing is sampled. What another version of the
+software derived, or a server elsewhere, is told as such: it may be right, and this server does not vouch for it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from service.database.connections import Connection, Database
-from service.database.packed import pack
-from service.integrity import checked, digest_of
-from service.operations.catalogue import mend_part
+from service.derivation import software
+from service.integrity import checked
+from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
 from service.queries import catalogue, content, trees
-from service.queries.formulas import FormulaRow, list_formulas
-from service.queries.trees import Tree
+from service.queries.formulas import FormulaRow, read_index
 from service.refusals import Refused
-from service.summaries import part_content, tree_summary
 from service.viewer import ANYBODY
 from substructures.documents import read_json
 from substructures.errors import SubstructuresError
-from substructures.expr.program import Program
-from substructures.part.definition import Definition
-from substructures.part.part import Part, derive, recheck
-from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
-from substructures.tree.plausibility import Plausibility
-from substructures.tree.recheck import recheck_tree
 
-#: what is stored of a part, and follows from its definition and program
-FOLLOWS = ("program", "dof", "joints", "coordinates", "bodies", "ports", "parameters", "operations")
+#: columns of a part that say when and by whom, not what; its certificate is compared but for the time that it took
+APART = ("created", "definition", "seal", "software", "recipe", "certificate", "outputs", "formulas", "index_digest")
+FIGURES = ("program", "dof", "joints", "mass")
 
 
 @dataclass(frozen=True, slots=True)
@@ -59,11 +57,19 @@ def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
         revisions = trees.all_revisions(connection, ANYBODY)
     for digest, name in contents.items():
         what = f"substructure {name}" if name else "definition of a tree"
-        yield _verified(database, what, digest, _check_part, _mend_part if repair else None)
+        yield _verified(database, what, digest, _check_part, partial(renew_part, database) if repair else None)
     for tree, number in revisions:
-        yield _verified(
-            database, f"tree {tree}@{number}", f"{tree}@{number}", _check_tree, _mend_tree if repair else None
-        )
+        name = f"{tree}@{number}"
+        yield _verified(database, f"tree {name}", name, _check_tree, partial(_renew_tree, database) if repair else None)
+
+
+def _renew_tree(database: Database, reference: str) -> None:
+    renew_tree(database, *_parted(reference))
+
+
+def _parted(reference: str) -> tuple[str, int]:
+    name, _, number = reference.partition("@")
+    return name, int(number)
 
 
 def _verified(
@@ -71,14 +77,13 @@ def _verified(
     what: str,
     key: str,
     check: Callable[[Connection, str], object],
-    mend: Callable[[Connection, str], object] | None,
+    mend: Callable[[str], object] | None,
 ) -> Finding:
     fault = _fault(database, key, check)
     if not fault or mend is None:
         return Finding(what, key, fault)
     try:
-        with database.write() as connection:
-            mend(connection, key)
+        mend(key)
     except Exception as error:  # whatever it is, the next one is looked at, too
         return Finding(what, key, fault, f"cannot be derived anew: {told(error)}")
     again = _fault(database, key, check)
@@ -105,69 +110,55 @@ def _check_part(connection: Connection, digest: str) -> None:
     stored = content.get_part(connection, digest)
     if stored is None:
         raise ValueError("its definition is gone from the store; submit it again")
-    part = Part.load(Definition.stored(read_json(stored.definition)), stored.program, read_json(stored.certificate))
-    recheck(part)
-    expected, row = part_content(part), content.get_row(connection, digest)
-    wrong = [name for name in FOLLOWS if row[name] != expected.row[name]]
+    _, made = part_anew(connection, digest)
+    row = content.get_row(connection, digest)
+    wrong = [name for name in made.row if name not in APART and row[name] != made.row[name]]
+    if _lasting(read_json(row["certificate"].encode())) != _lasting(read_json(made.row["certificate"].encode())):
+        wrong.append("certificate")
+    if read_index(row["outputs"], row["formulas"]) != [FormulaRow(*values) for values in made.formulas]:
+        wrong.append("index of formulas")
+    _require_none(wrong)
+    _require_own(stored.software, stored.is_derived)
+    if wrong := catalogue.wrong_latest(connection, digest):
+        raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
+
+
+def _lasting(certificate: Mapping[str, Any]) -> dict[str, Any]:
+    return {name: value for name, value in certificate.items() if name != "seconds"}
+
+
+def _require_none(wrong: list[str]) -> None:
     if wrong:
-        raise ValueError(f"what is stored beside its formulas is wrong: {', '.join(wrong)}")
-    if list_formulas(connection, digest) != [FormulaRow(*values) for values in expected.formulas]:
-        raise ValueError("the index of its formulas is wrong")
+        raise ValueError(f"what is stored is not what this version derives of its document: {', '.join(wrong)}")
 
 
-def _mend_part(connection: Connection, digest: str) -> None:
-    definition = content.get_definition(connection, digest)
-    if definition is None:
-        raise ValueError("its definition is gone from the store; submit it again")
-    mend_part(connection, part_content(derive(Definition.stored(read_json(definition)))))
-
-
-def read_tree(connection: Connection, reference: str) -> tuple[Tree, TreeSpec]:
-    """A revision whose document is sound."""
-    name, _, number = reference.partition("@")
-    tree = trees.get_damaged(connection, name, int(number))
-    if tree is None:
-        raise ValueError("it is gone from the store")
-    checked("its document", tree.digest, tree.spec.encode())
-    return tree, TreeSpec.stored(read_json(tree.spec.encode()))
-
-
-def stored_definitions(connection: Connection, spec: TreeSpec) -> dict[str, Definition]:
-    """What every instance is. Raises ValueError for what is gone."""
-    found = {}
-    for instance in spec.instances:
-        digest = (instance.substructure or "").partition("@")[2]
-        text = None if instance.definition is not None else content.get_definition(connection, digest)
-        if text is None and instance.definition is None:
-            raise ValueError(f"the definition {digest} of '{instance.name}' is gone from the store")
-        found[instance.name] = instance.definition or Definition.stored(read_json(text or b""))
-    return found
+def _require_own(made_by: str, is_derived: bool) -> None:
+    if not is_derived:
+        raise ValueError("it was changed in the store, or this server has not derived it")
+    if made_by != software():
+        raise ValueError("it was derived by another version of the software")
 
 
 def _check_tree(connection: Connection, reference: str) -> None:
     """Raises what is wrong with a tree, its program and its summary."""
-    tree, spec = read_tree(connection, reference)
+    name, number = _parted(reference)
+    tree, _ = read_tree(connection, name, number)
     checked("its summary", tree.summary_digest, tree.summary.encode())
-    data = content.get_program(connection, tree.program)
-    if data is None:
+    if content.get_program(connection, tree.program) is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
-    summary: dict[str, Any] = read_json(tree.summary.encode())
-    recheck_tree(spec, stored_definitions(connection, spec), summary, Program.from_bytes(data))
-    given = read_json(spec.canonical())
-    if (summary["gravity"], summary["instances"]) != (given.get("gravity", [0, 0, 0]), given.get("instances", [])):
-        raise ValueError("gravity or instances in its summary are not those of its document")
+    found = tree_anew(connection, name, number)
+    made = found.tree
+    wrong = [each for each in FIGURES if getattr(tree, each) != getattr(made, each)]
+    wrong += _different(read_json(tree.summary.encode()), read_json(made.summary.encode()))
+    _require_none(wrong)
+    _require_own(tree.software, tree.is_derived)
+    if trees.part_digests(connection, name, number) != dict(found.parts):
+        raise ValueError("the parts that it is found by are not those of its document")
+    if wrong := trees.wrong_latest(connection, tree):
+        raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
 
 
-def _mend_tree(connection: Connection, reference: str) -> None:
-    tree, spec = read_tree(connection, reference)
-    parts = {}
-    for name, definition in stored_definitions(connection, spec).items():
-        stored = content.get_part(connection, definition.digest)
-        parts[name] = derive(definition) if stored is None else Part.load(definition, stored.program, {})
-    model = couple(spec, parts)
-    content.replace_program(connection, model.program.digest, pack(model.program), len(model.program))
-    summary = tree_summary(spec, model)
-    mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
-    figures: dict[str, Any] = {"dof": model.dof, "joints": model.joints, "mass": mass}
-    coupled = replace(tree, program=model.program.digest, summary=summary.decode(), **figures)
-    trees.replace_model(connection, replace(coupled, summary_digest=digest_of(summary)))
+def _different(stored: Mapping[str, Any], made: Mapping[str, Any]) -> list[str]:
+    """The members of a summary that differ."""
+    before, now = ({**each, "certificate": _lasting(each.get("certificate", {}))} for each in (stored, made))
+    return [f"summary ({name})" for name in sorted(before.keys() | now.keys()) if before.get(name) != now.get(name)]

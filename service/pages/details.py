@@ -50,6 +50,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Html
                 link(version.derived_from, f"/substructures/{version.derived_from}") if version.derived_from else None,
             ),
             ("Stored", version.created[:10]),
+            ("Derived", "here, of the definition"),
             ("Digest", tag("code", version.digest, class_="small")),
             ("As data", joined([link("JSON", path), *links(version)], " · ")),
         ]
@@ -87,6 +88,7 @@ def tree_page(tree: Tree, model: Model, metric: Html, notes: Notes = ((), ())) -
             ("Owner", _owner(tree)),
             ("Note", tree.note),
             ("Stored", tree.created[:10]),
+            ("Derived", "here, of the document and its parts"),
             ("Digest", tag("code", tree.digest, class_="small")),
             ("As data", link("JSON", path)),
             ("As text", joined(printed, " · ")),

@@ -9,8 +9,10 @@ from pathlib import Path
 from fastapi import Request, Response
 
 from service.answers import Answer, etag
+from service.http.requests import store_of
 from service.http.responses import conditional
 from service.pages.html import Html, html, joined, link, tag
+from service.queries import renewals
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
 #: of the first page: filters cards, and sends a robot file
@@ -63,6 +65,11 @@ def document(title: str, *content: Html, script: str = "", refresh: int | None =
 
 
 def answer(request: Request, page: bytes) -> Response:
-    """The page, or 304 when the browser has it."""
+    """The page, or 304 when the browser has it. While the store is derived anew, it says how far that is."""
+    with store_of(request).database.read() as connection:
+        renewal = renewals.progress(connection)
+    if renewal is not None and renewal[0] < renewal[1]:
+        told = tag("p", "{} of {} parts and trees are derived anew".format(*renewal), class_="small")
+        page = page.replace(b"<main>", b"<main>" + str(told).encode(), 1)
     tag_of_content = etag("page", hashlib.sha256(page).hexdigest())
     return conditional(request, tag_of_content, False, lambda: Answer(200, page, HEADERS))

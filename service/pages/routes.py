@@ -10,7 +10,6 @@ from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.jobs.worker import Worker
 from service.operations import catalogue, differences, jobs, searches, trees
-from service.operations.models import model_quantity
 from service.operations.sources import sources_of
 from service.pages.account import PageRoute
 from service.pages.catalogue import Shown, page
@@ -134,9 +133,7 @@ def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Respon
         model = store.model(connection, found)
         gone = trees.withdrawn(connection, viewer, found)
         all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
-    metric = metric_section(
-        found, lambda: model_quantity(sources_of(store, found, model), "metric"), store.caches.sections
-    )
+    metric = metric_section(found, lambda: sources_of(store, found, model).formulas("metric"), store.caches.sections)
     return answer(request, tree_page(found, model, metric, (withdrawn_section(gone), revisions_section(all_of_it))))
 
 

@@ -3,21 +3,23 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Self
 
-from sqlalchemy import Connection, and_, bindparam, func, insert, select, update
+from sqlalchemy import Connection, Row, and_, bindparam, func, insert, select, update
 
 from service.database.tables import aliases, parts, substructures, tree_names, versions
 from service.integrity import missing
 from service.queries.common import now
+from service.queries.content import seal_of_part
 from service.queries.owners import reference, seen_by, visible
-from service.queries.terms import Term, exchange, terms_of
+from service.queries.terms import Term, exchange, stored_terms, terms_of
 from service.references import Reference
+from service.refusals import NotDerived
 from service.viewer import PUBLIC, Viewer
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")
-_REPORTS = ("operations", "certificate", "program")
+_REPORTS = ("operations", "certificate", "program", "software", "index_digest", "seal")
 _OWNED = ("owner", "visibility")
 COLUMNS = [
     *(versions.c[name] for name in _NAMES),
@@ -44,7 +46,8 @@ _VISIBLE, _IS_LATEST = visible(substructures), substructures.c.latest == version
 class Version:
     """A version with what depends on its content; JSON columns as stored text.
 
-    ``derived_from``, ``successor``, ``tree``: references, None where there is none that the viewer sees.
+    ``derived_from``, ``successor``, ``tree``: references, None where there is none that the viewer sees;
+    ``is_derived``: this server has derived all of it, with ``software``, and stored it as it is.
     """
 
     name: str
@@ -67,6 +70,9 @@ class Version:
     operations: str
     certificate: str
     program: str
+    software: str
+    index_digest: str
+    seal: str
     owner: str
     visibility: str
     note: str
@@ -74,6 +80,13 @@ class Version:
     derived_from: str | None
     successor: str | None
     tree: str | None
+    is_derived: bool = False
+
+    @classmethod
+    def of(cls, connection: Connection, row: Row[Any]) -> Self:
+        """Out of a row of :data:`COLUMNS`."""
+        values: list[Any] = [*row, row.seal == seal_of_part(connection, row._mapping)]
+        return cls(*values)
 
     @property
     def is_public(self) -> bool:
@@ -117,7 +130,8 @@ def add_version(
     return number, True
 
 
-def _set_latest(connection: Connection, name: str) -> None:
+def _set_latest(connection: Connection, name: str, is_anew: bool = False) -> None:
+    """``is_anew``: whatever the name is found by until now."""
     before = connection.execute(_SHOWN, {"of_name": name}).scalar_one()
     latest = connection.execute(_OFFERED, {"of_name": name}).scalar()
     old, new = (
@@ -127,7 +141,28 @@ def _set_latest(connection: Connection, name: str) -> None:
     values = {f"its_{column.name}": value for column, value in zip(_NARROW, shown, strict=True)}
     connection.execute(_NEW_LATEST, {"of_name": name, "its_latest": latest, **values})
     had, has = (set[Term]() if row is None else terms_of(name, *row[len(_NARROW) :]) for row in (old, new))
-    exchange(connection, name, had, has or set())
+    exchange(connection, name, None if is_anew else had, has or set())
+
+
+def show_again(connection: Connection, digest: str) -> None:
+    """Let searches find what is stored of a part, where it is the latest version of its name."""
+    name = connection.execute(_NAME_OF, {"of_digest": digest}).scalar()
+    if name is not None:
+        _set_latest(connection, name, is_anew=True)
+
+
+def wrong_latest(connection: Connection, digest: str) -> list[str]:
+    """What searches read of a part, where it is the latest version of its name, and is not what is stored of it."""
+    name = connection.execute(_NAME_OF, {"of_digest": digest}).scalar()
+    latest = None if name is None else connection.execute(_SHOWN, {"of_name": name}).scalar()
+    row = connection.execute(_OF_LATEST, {"of_name": name, "of_version": latest}).first()
+    if row is None or row.digest != digest:
+        return []
+    columns = [substructures.c[column.name] for column in _NARROW]
+    shown = connection.execute(select(*columns).where(substructures.c.name == name)).one()
+    wrong = [column.name for column, x, y in zip(_NARROW, shown, row, strict=False) if x != y]
+    terms = terms_of(name or "", *row[len(_NARROW) :])
+    return wrong if stored_terms(connection, name or "") == (terms or set()) else [*wrong, "words, tags and ports"]
 
 
 def yank(
@@ -144,7 +179,8 @@ def yank(
 def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version | None:
     """The version that a reference means; None when the viewer sees none (or, for a bare name, all are yanked).
 
-    Raises Refused (``missing-content``) for a version whose content is gone from the store.
+    Raises Refused (``missing-content``) for a version whose content is gone from the store, NotDerived for one that
+    this server has not derived as it is.
     """
     named = {"name": ref.name, **seen_by(viewer)}
     if ref.digest is not None:
@@ -157,13 +193,17 @@ def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version |
         row = connection.execute(_LATEST, named).first()
     if row is None:
         _check_content(connection, viewer, ref)
-    return None if row is None else Version(*row)
+        return None
+    found = Version.of(connection, row)
+    if not found.is_derived:
+        raise NotDerived("part", found.digest)
+    return found
 
 
 def last(connection: Connection, viewer: Viewer, name: str) -> Version | None:
     """The version of a name with the highest number, withdrawn or not; None when the viewer sees none."""
     row = connection.execute(_LAST, {"name": name, **seen_by(viewer)}).first()
-    return None if row is None else Version(*row)
+    return None if row is None else Version.of(connection, row)
 
 
 def _check_content(connection: Connection, viewer: Viewer, ref: Reference) -> None:
@@ -216,6 +256,7 @@ _LATEST = _NAMED.where(_IS_LATEST)
 _LAST = _NAMED.order_by(versions.c.version.desc()).limit(1)
 _NEW = insert(versions)
 _OF_DIGEST = select(versions.c.version).where(versions.c.digest == bindparam("of_digest"))
+_NAME_OF = select(versions.c.name).where(versions.c.digest == bindparam("of_digest"))
 _IS_OF_NAME = versions.c.name == bindparam("of_name")
 _HIGHEST = select(func.coalesce(func.max(versions.c.version), 0)).where(_IS_OF_NAME)
 _OFFERED = (  # from the highest number down: of 10,000 versions one row is read

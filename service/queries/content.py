@@ -6,23 +6,37 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, bindparam, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, update
 
 from service.database.packed import unpack
-from service.database.tables import parts, programs
+from service.database.seals import seal
+from service.database.tables import parts, programs, trees
+from service.derivation import software
 from service.integrity import checked, missing, reading
 from service.queries.common import insert_missing, now
 from service.queries.formulas import FormulaRow, packed
 from service.queries.uploads import get_upload
 
+#: what follows from the definition of a part and is served; the program is in it by its digest, as are the formulas
+SEALED = (
+    *("digest", "program", "software", "title", "description", "tags", "dof", "joints", "mass", "coordinates"),
+    *("bodies", "ports", "parameters", "operations", "certificate", "index_digest"),
+)
+
 
 @dataclass(frozen=True, slots=True)
 class StoredPart:
-    """What is needed to decode a part: definition and certificate are JSON, the program canonical bytes."""
+    """What is needed to decode a part: definition and certificate are JSON, the program canonical bytes.
+
+    ``software``: that derived it; ``is_derived``: this server did, and stored it as it is.
+    """
 
     definition: bytes
     program: bytes
     certificate: bytes
+    recipe: str | None
+    software: str
+    is_derived: bool
 
 
 def put_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
@@ -43,8 +57,20 @@ def _unpacked(digest: str, content: bytes) -> bytes:
 
 
 def put_part(connection: Connection, row: Mapping[str, Any], formula_rows: Sequence[FormulaRow]) -> None:
-    """Store a part whose program is stored already, with its formulas, unless it is there."""
-    insert_missing(connection, parts, [{**row, **packed(formula_rows), "created": now()}])
+    """Store a part that was derived here, and whose program is stored already, unless it is there."""
+    insert_missing(connection, parts, [{**_sealed(connection, row, formula_rows), "created": now()}])
+
+
+def _sealed(connection: Connection, row: Mapping[str, Any], formula_rows: Sequence[FormulaRow]) -> dict[str, Any]:
+    """The row of a part with the index of its formulas, under the seal of this server."""
+    mass = row["mass"]
+    found = {"software": software(), **row, "mass": None if mass is None else float(mass), **packed(formula_rows)}
+    return {**found, "seal": seal_of_part(connection, found)}
+
+
+def seal_of_part(connection: Connection, row: Mapping[str, Any] | RowMapping) -> str:
+    """The seal that a row with these values has to have."""
+    return seal(connection, ["part", *(row[name] for name in SEALED)])
 
 
 def replace_part(
@@ -57,7 +83,7 @@ def replace_part(
     """Put a part that was derived anew in the place of what is stored under its digest, with its packed program."""
     replace_program(connection, row["program"], program, nodes)
     chosen = update(parts).where(parts.c.digest == row["digest"])
-    connection.execute(chosen.values(**row, **packed(formula_rows)))
+    connection.execute(chosen.values(**_sealed(connection, row, formula_rows)))
 
 
 def replace_program(connection: Connection, digest: str, content: bytes, nodes: int) -> None:
@@ -66,9 +92,16 @@ def replace_program(connection: Connection, digest: str, content: bytes, nodes: 
     connection.execute(update(programs).where(programs.c.digest == digest).values(content=content, nodes=nodes))
 
 
-def program_of(connection: Connection, digest: str) -> str | None:
-    """The digest of the program of a part; None when it is not stored."""
-    return connection.execute(_PROGRAM_OF, {"digest": digest}).scalar()
+def forget_program(connection: Connection, digest: str) -> None:
+    """Remove a program that no part and no tree has any more, and that this server did not derive."""
+    used = exists().where(parts.c.program == digest) | exists().where(trees.c.program == digest)
+    connection.execute(delete(programs).where(programs.c.digest == digest, ~used))
+
+
+def program_of(connection: Connection, digest: str) -> tuple[str | None, str]:
+    """The digest of the program of a part, None when it is not stored, and the software that derived it."""
+    found = connection.execute(_PROGRAM_OF, {"digest": digest}).first()
+    return (None, "") if found is None else (found.program, found.software)
 
 
 def has_part(connection: Connection, digest: str) -> bool:
@@ -78,20 +111,43 @@ def has_part(connection: Connection, digest: str) -> bool:
 
 def get_part(connection: Connection, digest: str) -> StoredPart | None:
     """A part, ready to be decoded. Raises Refused (``damaged-content``, ``missing-content``)."""
-    columns = select(parts.c.definition, parts.c.program, programs.c.content, parts.c.certificate)
-    joined = columns.join(programs, programs.c.digest == parts.c.program, isouter=True)
-    row = connection.execute(joined.where(parts.c.digest == digest)).first()
+    row = connection.execute(_STORED, {"of_digest": digest}).mappings().first()
     if row is None:
         return None
-    if row.content is None:
-        raise missing("a program", row.program)
-    definition = checked("a definition", digest, row.definition.encode())
-    return StoredPart(definition, _unpacked(row.program, row.content), row.certificate.encode())
+    if row["content"] is None:
+        raise missing("a program", row["program"])
+    definition = checked("a definition", digest, row["definition"].encode())
+    program = _unpacked(row["program"], row["content"])
+    told = row["recipe"], row["software"], row["seal"] == seal_of_part(connection, row)
+    return StoredPart(definition, program, row["certificate"].encode(), *told)
 
 
 def get_row(connection: Connection, digest: str) -> Mapping[str, Any]:
     """All columns of a part, as they are stored. Raises NoResultFound."""
     return dict(connection.execute(select(parts).where(parts.c.digest == digest)).mappings().one())
+
+
+def get_recipe(connection: Connection, digest: str) -> str | None:
+    """What a part that is a published tree was coupled of."""
+    return connection.execute(select(parts.c.recipe).where(parts.c.digest == digest)).scalar()
+
+
+def stale_parts(connection: Connection) -> list[str]:
+    """The digests of all parts that other software has derived, or that are not as this server stored them."""
+    rows = connection.execute(select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest))
+    ours = software()
+    return [
+        row["digest"]
+        for row in rows.mappings()
+        if row["software"] != ours or row["seal"] != seal_of_part(connection, row)
+    ]
+
+
+def count_parts(connection: Connection) -> tuple[int, int]:
+    """How many parts there are that this software has derived, and how many in all."""
+    count = select(func.count()).select_from(parts)
+    done = connection.execute(count.where(parts.c.software == software())).scalar_one()
+    return done, connection.execute(count).scalar_one()
 
 
 def get_definition(connection: Connection, digest: str) -> bytes | None:
@@ -110,4 +166,9 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
 
 
 # Built once: to build a statement takes longer than to execute it.
-_PROGRAM_OF = select(parts.c.program).where(parts.c.digest == bindparam("digest"))
+_PROGRAM_OF = select(parts.c.program, parts.c.software).where(parts.c.digest == bindparam("digest"))
+_STORED = (
+    select(*(parts.c[name] for name in (*SEALED, "definition", "recipe", "seal")), programs.c.content)
+    .join(programs, programs.c.digest == parts.c.program, isouter=True)
+    .where(parts.c.digest == bindparam("of_digest"))
+)

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
 
 import orjson
 from sqlalchemy import Connection, select
 
 from service.database.tables import parts
-from service.integrity import reading
+from service.integrity import damaged, digest_of, reading
 
 
 @dataclass(frozen=True, slots=True)
@@ -43,7 +42,13 @@ def packed(rows: Sequence[FormulaRow]) -> dict[str, str]:
         )
         for row in rows
     ]
-    return {"outputs": _json(common), "formulas": _json(own)}
+    texts = {"outputs": _json(common), "formulas": _json(own)}
+    return {**texts, "index_digest": index_digest(**texts)}
+
+
+def index_digest(outputs: str, formulas: str) -> str:
+    """The digest of both columns, which the seal of the part covers."""
+    return digest_of(f"{outputs}\n{formulas}".encode())
 
 
 def list_formulas(
@@ -57,11 +62,14 @@ def list_formulas(
 
     Raises Refused (``damaged-content``).
     """
-    stored = connection.execute(select(parts.c.outputs, parts.c.formulas).where(parts.c.digest == part)).first()
+    columns = parts.c.outputs, parts.c.formulas, parts.c.index_digest
+    stored = connection.execute(select(*columns).where(parts.c.digest == part)).first()
     if stored is None:
         return []
+    if index_digest(stored.outputs, stored.formulas) != stored.index_digest:
+        raise damaged("the index of the formulas of a part", part, "it is another one than was stored")
     with reading("the index of the formulas of a part", part):
-        rows = _unpacked(orjson.loads(stored.outputs), orjson.loads(stored.formulas))
+        rows = read_index(stored.outputs, stored.formulas)
     return [
         row
         for row in rows
@@ -71,10 +79,11 @@ def list_formulas(
     ]
 
 
-def _unpacked(outputs: list[list[Any]], formulas: list[list[Any]]) -> list[FormulaRow]:
-    common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in outputs]
+def read_index(outputs: str, formulas: str) -> list[FormulaRow]:
+    """The formulas out of both columns. Raises ValueError, TypeError, IndexError for what :func:`packed` does not make."""
+    common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in orjson.loads(outputs)]
     rows = []
-    for position, (number, body, coordinate, entry, operations) in enumerate(formulas):
+    for position, (number, body, coordinate, entry, operations) in enumerate(orjson.loads(formulas)):
         quantity, output, shape, symmetry = common[number]
         place = position, quantity, body, coordinate
         rows.append(FormulaRow(*place, shape, symmetry, operations, output, _json(entry)))

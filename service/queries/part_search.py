@@ -53,7 +53,9 @@ def page(
     rows = places(connection, viewer, search, after, size)
     chosen = substructures.c.name.in_([name for name, _ in rows])
     latest = select(*COLUMNS).select_from(STORED).where(_IS_LATEST, chosen)
-    return in_order({row.name: Version(*row) for row in connection.execute(latest, seen_by(viewer))}, rows)
+    return in_order(
+        {row.name: Version.of(connection, row) for row in connection.execute(latest, seen_by(viewer))}, rows
+    )
 
 
 def count(connection: Connection, viewer: Viewer) -> int:

@@ -49,6 +49,12 @@ def names_with(kind: str, term: str) -> Select[Any]:
     return select(search_terms.c.name).where(search_terms.c.kind == kind, search_terms.c.term == term)
 
 
+def stored_terms(connection: Connection, name: str) -> set[Term]:
+    """The terms that a name is found by."""
+    query = select(search_terms.c.kind, search_terms.c.term).where(search_terms.c.name == name)
+    return {(kind, term) for kind, term in connection.execute(query)}
+
+
 def exchange(connection: Connection, name: str, before: set[Term] | None, after: set[Term]) -> None:
     """Let a name have other terms than before; None where these are not known."""
     if before is None:

@@ -42,4 +42,4 @@ def page(
     """Up to ``size`` trees that follow a position, as :func:`places`, with their own."""
     rows = places(connection, viewer, search, after, size)
     latest = LATEST.where(tree_names.c.name.in_([name for name, _ in rows]))
-    return in_order({row.name: Tree(*row) for row in connection.execute(latest, seen_by(viewer))}, rows)
+    return in_order({row.name: Tree.of(connection, row) for row in connection.execute(latest, seen_by(viewer))}, rows)

@@ -4,20 +4,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass
-from typing import Any
+from typing import Any, Self
 
-from sqlalchemy import Connection, Select, bindparam, delete, insert, select, update
+from sqlalchemy import Connection, Row, RowMapping, Select, bindparam, delete, func, insert, select, update
 
+from service.database.seals import seal
 from service.database.tables import parts, tree_names, tree_parts, trees
+from service.derivation import software
 from service.integrity import checked
 from service.queries.owners import seen_by, visible
 from service.references import Reference
+from service.refusals import NotDerived
 from service.viewer import ANYBODY, PUBLIC, Viewer
 
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A revision of a tree; ``spec`` (references pinned) and ``summary`` are JSON."""
+    """A revision of a tree; ``spec`` (references pinned) and ``summary`` are JSON. ``is_derived``: this server has
+    coupled it, with ``software``, and stored it as it is.
+    """
 
     name: str
     revision: int
@@ -35,6 +40,15 @@ class Tree:
     note: str = ""
     joints: str = ""
     mass: float | None = None
+    software: str = ""
+    seal: str = ""
+    is_derived: bool = True
+
+    @classmethod
+    def of(cls, connection: Connection, row: Row[Any]) -> Self:
+        """Out of a row of all columns."""
+        values: list[Any] = [*row, row.seal == seal_of_tree(connection, row._mapping)]
+        return cls(*values)
 
     @property
     def is_public(self) -> bool:
@@ -48,11 +62,16 @@ def latest_revision(connection: Connection, name: str) -> int:
 
 
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
-    """Store a new latest revision and which part every instance is; the name is locked."""
-    connection.execute(_NEW, {name: value for name, value in asdict(tree).items() if name not in _OWNED})
+    """Store a new latest revision, coupled here, and which part every instance is; the name is locked."""
+    row = {name: value for name, value in asdict(tree).items() if name in _COLUMNS}
+    connection.execute(_NEW, _sealed(connection, row))
     shown = {f"its_{name}": getattr(tree, name) for name in _NARROW}
     connection.execute(_NEW_LATEST, {"of_name": tree.name, "its_latest": tree.revision, **shown})
-    key = {"name": tree.name, "revision": tree.revision}
+    _put_parts(connection, tree.name, tree.revision, parts)
+
+
+def _put_parts(connection: Connection, name: str, revision: int, parts: Mapping[str, str]) -> None:
+    key = {"name": name, "revision": revision}
     values = [{**key, "instance": instance, "part": digest} for instance, digest in parts.items()]
     if values:
         connection.execute(_NEW_PART, values)
@@ -61,7 +80,7 @@ def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -
 def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Tree | None:
     """The revision that a reference means, the latest for a bare name; None when the viewer sees none.
 
-    Raises Refused (``damaged-content``).
+    Raises Refused (``damaged-content``), NotDerived for one that this server has not coupled as it is.
     """
     named = {"name": ref.name, **seen_by(viewer)}
     if ref.digest is not None:
@@ -74,10 +93,24 @@ def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Tree | No
         row = connection.execute(_LATEST, named).first()
     if row is None:
         return None
-    tree = Tree(*row)
+    tree = Tree.of(connection, row)
     checked(f"the document of tree {tree.name}@{tree.revision}", tree.digest, tree.spec.encode())
     checked(f"the summary of tree {tree.name}@{tree.revision}", tree.summary_digest, tree.summary.encode())
+    if not tree.is_derived:
+        raise NotDerived("tree", f"{tree.name}@{tree.revision}")
     return tree
+
+
+def _sealed(connection: Connection, row: Mapping[str, Any]) -> dict[str, Any]:
+    """The row of a revision under the seal of this server."""
+    mass = row["mass"]
+    found = {**row, "mass": None if mass is None else float(mass), "software": row["software"] or software()}
+    return {**found, "seal": seal_of_tree(connection, found)}
+
+
+def seal_of_tree(connection: Connection, row: Mapping[str, Any] | RowMapping) -> str:
+    """The seal that a row with these values has to have."""
+    return seal(connection, ["tree", *(row[name] for name in SEALED)])
 
 
 def remove(connection: Connection, name: str) -> None:
@@ -115,30 +148,80 @@ def part_programs(connection: Connection, name: str, revision: int) -> tuple[str
 def with_program(connection: Connection, name: str, digest: str, program: str) -> list[Tree]:
     """The revisions of a tree with this document whose formulas are this program."""
     query = _all().where(trees.c.name == name, trees.c.digest == digest, trees.c.program == program)
-    return [Tree(*row) for row in connection.execute(query.order_by(trees.c.revision))]
+    return [Tree.of(connection, row) for row in connection.execute(query.order_by(trees.c.revision))]
 
 
 def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None:
     """A revision as it is stored, whatever its digests say."""
     named = {"name": name, "number": revision, **seen_by(ANYBODY)}
     row = connection.execute(_BY_NUMBER, named).first()
-    return None if row is None else Tree(*row)
+    return None if row is None else Tree.of(connection, row)
 
 
 def replace_model(connection: Connection, tree: Tree) -> None:
     """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
     chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
-    names = ("program", "dof", "joints", "mass", "summary", "summary_digest")
-    values = {name: getattr(tree, name) for name in names}
-    connection.execute(update(trees).where(chosen).values(**values))
+    names = ("program", "dof", "joints", "mass", "summary", "summary_digest", "software", "seal")
+    row = _sealed(connection, {**asdict(tree), "software": ""})
+    connection.execute(update(trees).where(chosen).values({name: row[name] for name in names}))
+    shown = {name: getattr(tree, name) for name in _NARROW}
+    is_latest = (tree_names.c.name == tree.name) & (tree_names.c.latest == tree.revision)
+    connection.execute(update(tree_names).where(is_latest).values(**shown))
+
+
+def part_digests(connection: Connection, name: str, revision: int) -> dict[str, str]:
+    """Which part every instance of a revision is found by."""
+    query = select(tree_parts.c.instance, tree_parts.c.part)
+    rows = connection.execute(query.where(tree_parts.c.name == name, tree_parts.c.revision == revision))
+    return {row.instance: row.part for row in rows}
+
+
+def put_parts(connection: Connection, name: str, revision: int, parts: Mapping[str, str]) -> None:
+    """Write which part every instance of a revision is, over what is there."""
+    chosen = (tree_parts.c.name == name) & (tree_parts.c.revision == revision)
+    connection.execute(delete(tree_parts).where(chosen))
+    _put_parts(connection, name, revision, parts)
+
+
+def wrong_latest(connection: Connection, tree: Tree) -> list[str]:
+    """What searches read of a tree, where this is its latest revision, and is not what is stored of it."""
+    columns = [tree_names.c[name] for name in _NARROW]
+    chosen = (tree_names.c.name == tree.name) & (tree_names.c.latest == tree.revision)
+    row = connection.execute(select(*columns).where(chosen)).first()
+    return [] if row is None else [name for name, x in zip(_NARROW, row, strict=True) if x != getattr(tree, name)]
+
+
+def stale_revisions(connection: Connection) -> list[tuple[str, int]]:
+    """Name and number of all revisions that other software has coupled, or that are not as this server stored them."""
+    columns = [trees.c[name] for name in SEALED]
+    rows = connection.execute(select(*columns, trees.c.seal).order_by(trees.c.name, trees.c.revision)).mappings()
+    ours = software()
+    return [
+        (row["name"], row["revision"])
+        for row in rows
+        if row["software"] != ours or row["seal"] != seal_of_tree(connection, row)
+    ]
+
+
+def count_revisions(connection: Connection) -> tuple[int, int]:
+    """How many revisions there are that this software has coupled, and how many in all."""
+    count = select(func.count()).select_from(trees)
+    done = connection.execute(count.where(trees.c.software == software())).scalar_one()
+    return done, connection.execute(count).scalar_one()
 
 
 def _all() -> Select[Any]:
-    columns = [(tree_names if name in _OWNED else trees).c[name] for name in Tree.__slots__]
+    columns = [(tree_names if name in _OWNED else trees).c[name] for name in Tree.__slots__ if name not in _MADE]
     return select(*columns).join_from(trees, tree_names, tree_names.c.name == trees.c.name)
 
 
-_OWNED = ("owner", "visibility")
+_OWNED, _MADE = ("owner", "visibility"), ("is_derived",)
+_COLUMNS = frozenset(trees.columns.keys())
+#: what is served of a revision, but for documents that are in it by their digests
+SEALED = (
+    *("name", "revision", "digest", "program", "software", "dof", "joints", "mass", "summary_digest"),
+    *("created", "based_on", "author", "note"),
+)
 _VISIBLE, _IS_LATEST = visible(tree_names), tree_names.c.latest == trees.c.revision
 
 # Built once: to build a statement takes longer than to execute it.

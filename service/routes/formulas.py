@@ -27,6 +27,7 @@ from service.views.resources import dump, formulas_view
 from substructures.errors import among, meant
 from substructures.export import first_index
 from substructures.part.part import INTERNAL, Part
+from substructures.quantities.quantity import outputs_of
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -87,7 +88,7 @@ async def get_formula(
 def _absent(part: Part, quantity: str, chosen: Chosen) -> str:
     """What a part does not have, and what was meant or where to look."""
     known = sorted({name.partition(".")[0] for name in part.program.outputs if name not in INTERNAL})
-    if not {quantity, *models.quantities(quantity)} & {*known, *part.program.outputs}:
+    if not {quantity, *outputs_of(quantity)} & {*known, *part.program.outputs}:
         return f"formula of '{quantity[:80]}'{meant(quantity, known) or ADVICE}"
     places = ("body", chosen.body, (*part.bodies, *part.ports)), ("coordinate", chosen.coordinate, part.coordinates)
     for what, name, names in places:
@@ -109,9 +110,7 @@ def _formula(
     """The formulas in a thread."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
-        rows = index.list_formulas(
-            connection, version.digest, models.quantities(quantity), chosen.body, chosen.coordinate
-        )
+        rows = index.list_formulas(connection, version.digest, outputs_of(quantity), chosen.body, chosen.coordinate)
         part = store.required_part(connection, version.digest)
     wanted = models.Wanted(quantity, chosen.body, chosen.coordinate, chosen.component)
     found = models.part_formulas(part, rows, wanted, first_index(style.format))

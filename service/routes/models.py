@@ -10,7 +10,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.analyses.exporting import ExportRequest
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.analyses.grouping import check_group
-from service.analyses.printing import needs_parts
+from service.analyses.printing import has_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.one_state import OneStateRoute
@@ -132,7 +132,7 @@ def _export(
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
     """The digests of the programs that quantities are printed from."""
-    return [tree.program, *(part_programs(store, tree) if any(map(needs_parts, quantities)) else ())]
+    return [tree.program, *(part_programs(store, tree) if any(map(has_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))

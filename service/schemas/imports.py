@@ -54,6 +54,9 @@ class ImportView(Shape):
     tree: dict[str, Any] | None = None
     report: list[RemarkView]
     checks: dict[str, CheckView]
-    names: dict[str, str] = Field(description="names in the file (of joints: 'joint NAME') and here")
+    names: dict[str, str] = Field(
+        description="names in the file (of joints: 'joint NAME', with all their coordinates) and here"
+    )
     bindings: list[BindingView]
+    gravity: list[float] | None = Field(None, description="m/s^2; of the file, for the tree: a part has none")
     stored: StoredView | None = None

@@ -10,10 +10,9 @@ KINDS = """What every item is, its optional fields in brackets. `tree` and `subs
 - `assemble`: a tree document, the body of `POST /v1/trees` (`TreeSpec`); the tree is stored.
 - `derive`: a definition, the body of `POST /v1/substructures` (`Definition`); the version is stored.
 - `verify`: `substructure` or `tree`, a reference, or `*` for the whole catalogue or all revisions of trees; the \
-certificate is made anew from what is stored.
+stored formulas are proven by deriving them anew.
 - `upgrade`: `substructure` or `tree`, a reference to something of one's own, or `*` for the latest versions or \
-revisions of all that is; it is derived anew with today's software, and the program takes the place of what is stored \
-where it is shorter.
+revisions of all that is; it is derived anew with today's software, and the program takes the place of what is stored.
 - `compare`: `a`, `b`, [`coordinates`], the body of `POST /v1/equivalences` (`EquivalenceRequest`), whose answer is \
 the result. `b` may be a list, one against many, or `*` for all versions of the catalogue: an item each.
 - `evaluate`: `tree`, `request`, [`grid` or `sample`], [`format`: `npz` (default), `arrow`]. `request` is the body of \

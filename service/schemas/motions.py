@@ -58,13 +58,13 @@ _Column = Annotated[Reals, Field(min_length=2, max_length=100_000)]
 
 
 class Table(RequestPart):
-    """Values over time [s]. Inputs: piecewise constant, linear, or a cubic spline; prescribed motions: a spline of
-    degree five.
+    """Values over time [s], piecewise constant (hold) or linear, or splines. Where ``interpolation`` is not given inputs
+    are linear and prescribed motions quintic; these must have no kink.
     """
 
     times: Annotated[_Column, SECONDS]
     values: Annotated[_Column, OF_SIGNAL]
-    interpolation: Literal["hold", "linear", "cubic"] = "linear"
+    interpolation: Literal["hold", "linear", "cubic", "quintic"] | None = None
 
     @model_validator(mode="after")
     def _ordered(self) -> Table:

@@ -162,6 +162,8 @@ class EvaluationResult(BaseModel):
     columns: dict[Literal["names", "units"], list[str]] = Field({}, description="with regressor: of the parameters")
     joints: list[str] = Field([], description="with reactions: coordinates of joints, and instance.base, by row")
     loads: list[str] = Field([], description="with powers: what each is of")
+    links: list[str] = Field([], description="with moments of inertia: instance.body by row")
+    rows: list[str] = Field([], description="with closures: closure.row by row")
 
 
 class KernelsRequest(Shape):

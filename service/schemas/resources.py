@@ -14,6 +14,8 @@ from service.schemas.shapes import Digest, Links, Shape, Time, Warned
 from substructures.documents.fields import Words
 from substructures.tree.document import REFERENCE
 
+DERIVED = "whether this server derived it of its document and stores it so; false in lists alone, until it is asked for"
+
 
 class ProblemError(Shape):
     """One thing wrong."""
@@ -80,6 +82,7 @@ class VersionView(Shape):
     certificate: dict[str, Any] = Field(description="what was checked when this was stored, with figures")
     warnings: list[Warned]
     program: Digest
+    derived_here: bool = Field(description=DERIVED)
     created: Time
     aliases: list[str]
     yanked: bool
@@ -200,6 +203,7 @@ class TreeView(Shape):
     warnings: list[Warned]
     inputs: dict[str, InputView] = Field({}, description="of loads, whether or not a formula depends on them")
     program: Digest
+    derived_here: bool = Field(description=DERIVED)
     created: Time
     based_on: int | None = Field(description="the revision that was changed")
     author: str = Field(description="id of the API key that made it; empty in older stores")
@@ -222,6 +226,7 @@ class TreeItem(Shape):
     created: Time
     owner: str = Field(description="whose the name is; catalogue: shipped")
     visibility: Visibility
+    derived_here: bool = Field(description=DERIVED)
     links: Links
 
 

@@ -52,6 +52,7 @@ def version_view(
         **{name: orjson.Fragment(getattr(version, name)) for name in _STORED},
         "warnings": part_warnings(version),
         "program": version.program,
+        "derived_here": version.is_derived,
         "created": version.created,
         "aliases": aliases,
         "yanked": version.yanked is not None,
@@ -157,6 +158,7 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
         "dof": tree.dof,
         "mass": tree.mass,
         "program": tree.program,
+        "derived_here": tree.is_derived,
         "created": tree.created,
         "based_on": tree.based_on,
         "author": tree.author,
@@ -175,7 +177,8 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
 def tree_item(tree: Tree) -> dict[str, Any]:
     """A tree in a list."""
     names = ("name", "revision", "digest", "dof", "joints", "mass", "created", "owner", "visibility")
-    return {**{name: getattr(tree, name) for name in names}, "links": {"self": tree_path(tree)}}
+    told = {**{name: getattr(tree, name) for name in names}, "derived_here": tree.is_derived}
+    return {**told, "links": {"self": tree_path(tree)}}
 
 
 def tree_page_view(page: Page[Tree], next_link: str | None) -> dict[str, Any]:

@@ -25,7 +25,8 @@ from substructures.errors import InvalidArgument, TooLarge, among
 from substructures.expr.bind import bind
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
-from substructures.quantities.formulas import DERIVED, kept
+from substructures.quantities.formulas import kept
+from substructures.quantities.quantity import DERIVED
 from substructures.tree.model import Model
 
 #: told how much is done, may raise

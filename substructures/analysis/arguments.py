@@ -5,6 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Collection
 from decimal import Decimal
+from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -21,7 +23,7 @@ Numbers = tuple[float, ...] | list[float] | Array
 
 def real(value: Any, pointer: str) -> float:
     """A finite number; no text, no truth value. Raises InvalidArgument."""
-    if isinstance(value, bool) or not isinstance(value, int | float | Decimal | np.floating | np.integer):
+    if isinstance(value, bool) or not isinstance(value, int | float | Decimal | Real):
         raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {repr(value)[:80]}")
     try:
         number = float(value)
@@ -89,6 +91,8 @@ def exact(value: Any, pointer: str) -> int | Decimal | str:
     number = real(value, pointer)
     if isinstance(value, int | Decimal):
         return value
+    if isinstance(value, Fraction):
+        return f"{value.numerator}/{value.denominator}"
     # a float means its shortest decimal text, as in a document: 0.1 is 1/10
     return int(value) if isinstance(value, np.integer) else Decimal(repr(number))
 

@@ -57,7 +57,7 @@ def compare(
     for symbol in program.symbols:
         if kinds.get(symbol.name) != symbol.kind:
             raise VerificationFailed(f"the symbol '{symbol.name[:80]}' ({symbol.kind}) is none of the documents")
-    comparison = _Comparison(program, expected)
+    comparison = _Comparison(program, expected, defaults)
     for some in draws(kinds, defaults, states):
         comparison.at(some)
         if not comparison.open:
@@ -69,15 +69,19 @@ def compare(
 class _Comparison:
     """What was found so far; None before the first state.
 
-    ``open``: elements that had no finite value at some state; ``never``: at none so far.
+    ``open``: elements that had no finite value at some state; ``never``: at none so far; ``given``: elements that the
+    documents gave one where the program had none. ``here``: the state that is looked at, and what is expected there.
     """
 
     program: Stored
     expected: Expected
+    defaults: Mapping[str, Any]
     errors: dict[str, float] = field(default_factory=dict)
     left_out: set[str] = field(default_factory=set)
     open: Elements | None = None
     never: Elements | None = None
+    given: Elements = field(default_factory=dict)
+    here: tuple[State, Outputs] = field(default_factory=lambda: ({}, Outputs()))
 
     def at(self, states: list[State]) -> None:
         """Compare what is open at some states."""
@@ -105,6 +109,7 @@ class _Comparison:
         wide: Elements = {}
         with ctx.workprec(precision):
             wanted = self.expected({name: arb(x) for name, x in state.items()})
+            self.here = state, wanted
             found = operations_in_balls(self.program, {name: arb(x) for name, x in state.items()})
             for name in self.program.outputs.keys() - wanted.keys():
                 raise VerificationFailed(f"{name[:80]} is no output that the documents know of")
@@ -154,10 +159,12 @@ class _Comparison:
         if not b.is_finite() or (index in values.others and not a.is_finite()):
             outside.setdefault(name, set()).add(index)
         elif not a.is_finite():
-            if last:
-                place = _place(name, index, values)
-                raise VerificationFailed(f"{place} has no finite value where the documents give one")
-            wide.setdefault(name, set()).add(index)
+            if last and self._is_inside():
+                raise VerificationFailed(
+                    f"{_place(name, index, values)} has no finite value where the documents give one"
+                )
+            (outside if last else wide).setdefault(name, set()).add(index)
+            self.given.setdefault(name, set()).add(index)
         elif not a.overlaps(b):
             raise VerificationFailed(_told(_place(name, index, values), a, b))
         elif not _both_zero(a, b, values, last):
@@ -167,9 +174,30 @@ class _Comparison:
             wide.setdefault(name, set()).add(index)
         return 0.0
 
+    def _is_inside(self) -> bool:
+        """Whether the documents have values here as a whole, and no parameter is negative that is not so by default.
+
+        What is put together otherwise leaves its domain where it may, sqrt(l) - sqrt(l) with l < 0: another state
+        decides.
+        """
+        state, wanted = self.here
+        negative = (n for n, x in state.items() if float(x) < 0 and x is not self.defaults.get(n))
+        if any(
+            symbol.kind == "parameter" for name in negative for symbol in self.program.symbols if symbol.name == name
+        ):
+            return False
+        return all(x.is_finite() for values in wanted.values() for x in values.entries.values())
+
     def result(self) -> dict[str, float | None]:
-        """The errors by output; None for those with an element that was finite nowhere."""
+        """The errors by output; None for those with an element that was finite nowhere. Raises VerificationFailed for
+        one that was finite nowhere in the program alone.
+        """
         never = self.never or {}
+        for name, some in never.items():
+            for index in sorted(some & self.given.get(name, set())):
+                raise VerificationFailed(
+                    f"{_place(name, index)} has a finite value nowhere, and the documents give one"
+                )
         return {name: None if never.get(name) else error for name, error in self.errors.items()}
 
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame, Moments, in_order, mass_of, massless
+from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame, Moments, in_order, mass_of, massless, theta_of
 from substructures.certificate.dynamics import motions, required
 from substructures.certificate.linear import Ball, dot, vector, zeros
 from substructures.certificate.model_at import total
@@ -46,7 +46,8 @@ def regressor_outputs(
     moving = motions(bodies, rates, second, numbers.vector(tree.get("gravity", NONE)) * -1)
     columns: list[list[Ball]] = []
     pi: list[Ball] = []
-    for link in links:
+    theta: dict[tuple[int, ...], Ball] = {}
+    for k, link in enumerate(links):
         for i in range(10):
             force, moment = required(moving[link.frame.carrier], _one(i).outwards(link.frame.A, link.frame.p))
             column = [arb(0)] * len(bodies.joints)
@@ -54,10 +55,12 @@ def regressor_outputs(
                 column[a] = dot(bodies.joints[a].v, force) + dot(bodies.joints[a].w, moment)
             columns.append(column)
         own = link.moments.inwards(link.frame.A, link.frame.p)
+        theta |= {(k, i, j): theta_of(own.J)[i, j] for i in range(3) for j in range(3)}
         pi += [own.m, *own.s.entries(), *(own.J[i, j] for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))]
     result = Outputs()
     columns_of(result, "regressor", len(bodies.joints), columns)
     vector_of(result, "inertial_parameters", pi)
+    result.array("moments_of_inertia", (len(links), 3, 3)).update(theta)
     return result
 
 

@@ -70,17 +70,23 @@ def _texts(document: Plain) -> Iterator[str]:
 def draws(kinds: Mapping[str, str], defaults: Mapping[str, Any], count: int) -> Iterator[list[State]]:
     """Sets of states, one after the other while elements are left that are not finite; ``kinds``: of all symbols.
 
-    Everything is of the order of one; then parameters have their ``defaults`` (balls); then coordinates, velocities and
-    inputs are small, too. ``count``: of a set (:func:`states_needed`).
+    Everything is of the order of one, every other state with some negative parameters; then parameters have their
+    ``defaults`` (balls), or are positive; then coordinates, velocities and inputs are small, too. ``count``: of a set
+    (:func:`states_needed`).
     """
     source = random.Random(0)  # noqa: S311 -- the same states for everybody
-    yield _signed(source, kinds, {}, 1, count)
+    yield _signed(source, kinds, {}, 1, count, True)
     yield _signed(source, kinds, defaults, 1, count)
     yield _signed(source, kinds, defaults, 16, count)
 
 
 def _signed(
-    source: random.Random, kinds: Mapping[str, str], defaults: Mapping[str, Any], smaller: int, count: int
+    source: random.Random,
+    kinds: Mapping[str, str],
+    defaults: Mapping[str, Any],
+    smaller: int,
+    count: int,
+    negative: bool = False,
 ) -> list[State]:
     states: list[State] = [{} for _ in range(count)]
     for name in sorted(kinds):
@@ -89,7 +95,7 @@ def _signed(
             size = fmpq(2**29 + source.getrandbits(30), 2**30)
             if kinds[name] in POSITIVE:
                 # a length may be negative: in every other state some are
-                is_negative = k % 2 and kinds[name] == "parameter" and sign < 0
+                is_negative = negative and k % 2 and kinds[name] == "parameter" and sign < 0
                 state[name] = defaults.get(name, -size if is_negative else size)
             else:
                 # every sign in one of two states

@@ -11,31 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.client.answers import Answer
+from substructures.quantities.quantity import labels_of
 
 Array = NDArray[Any]
-AXES = ("x", "y", "z")
-#: what the axes of quantities and series are, behind that of the states
-PLACES: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("forces", "gravity", "bias", "inverse_dynamics", "forward_dynamics", "qdd"), ("coordinates",)),
-    **dict.fromkeys(("inverse_dynamics_derivative", "forward_dynamics_derivative", "friction"), ("coordinates",)),
-    **dict.fromkeys(("power", "generalised_momenta"), ("coordinates",)),
-    **dict.fromkeys([f"canonical_equations.{name}_rates" for name in ("coordinate", "momentum")], ("coordinates",)),
-    **dict.fromkeys(("metric", "inverse_metric", "coriolis"), ("coordinates",) * 2),
-    **dict.fromkeys(("christoffel", "christoffel_second_kind"), ("coordinates",) * 3),
-    "kinematics.position": ("frames", "axes"),
-    "kinematics.rotation": ("frames", "axes", "axes"),
-    **dict.fromkeys(("kinematics.U", "kinematics.Omega"), ("frames", "coordinates", "axes")),
-    **dict.fromkeys(("momentum.linear", "momentum.angular"), ("axes",)),
-    "regressor": ("coordinates", "parameters"),
-    "inertial_parameters": ("parameters",),
-    "powers": ("loads",),
-    **{
-        f"{group}{name}{world}": ("joints", "axes")
-        for group in ("reactions.", "reaction_")
-        for name in ("force", "moment")
-        for world in ("", "_world")
-    },
-}
+#: series of motions that are called like a quantity, or like none
+SERIES = ("qdd", "friction")
 
 
 class Tabular(Answer):
@@ -47,11 +27,14 @@ class Tabular(Answer):
 
     def _labels(self, name: str, shape: Sequence[int]) -> list[list[str]]:
         """Names of the places of a quantity, numbers from 0 where they have none."""
-        named = {"axes": AXES, "parameters": self.get("columns", {}).get("names", ())}
-        named |= {kind: self.get(kind, ()) for kind in ("coordinates", "frames", "joints", "loads")}
-        found = [[str(label) for label in named[kind]] for kind in PLACES.get(name, ())]
-        fits = [len(labels) for labels in found] == list(shape)
-        return found if fits else [[str(k) for k in range(size)] for size in shape]
+        found = labels_of(name, self)
+        if name in SERIES and len(shape) == 1:
+            found = labels_of("forces", self)  # one for each coordinate, too
+        known = found if len(found) == len(shape) else [[] for _ in shape]
+        return [
+            labels if len(labels) == size else [str(k) for k in range(size)]
+            for labels, size in zip(known, shape, strict=True)
+        ]
 
     def to_pandas(self) -> Any:
         """A ``pandas.DataFrame``. Raises ImportError where pandas is not installed."""

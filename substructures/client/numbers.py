@@ -11,12 +11,10 @@ from numpy.typing import NDArray
 
 from substructures.client.frames import Array, Tabular, labelled, states
 from substructures.formats.arrays import nested, view_npz
+from substructures.quantities.quantity import LABELS, TABLE
 
 #: what an evaluation answers beside quantities
-BESIDE = (
-    *("coordinates", "count", "digest", "frames", "columns", "joints", "loads"),
-    *("failures", "warnings", "range", "states"),
-)
+BESIDE = ("coordinates", "count", "digest", *LABELS, "failures", "warnings", "range", "states")
 
 
 class Evaluation(Tabular):
@@ -30,7 +28,7 @@ class Evaluation(Tabular):
 
     def __init__(self, told: Mapping[str, Any], given: Mapping[str, Any] | None = None) -> None:
         """``given``: the request, whose states are columns of frames."""
-        super().__init__(told)
+        super().__init__(_with_dots(told))
         self._given = {**(given or {}), **self._sampled()}
 
     def _sampled(self) -> dict[str, Any]:
@@ -72,6 +70,17 @@ class Evaluation(Tabular):
                 yield from ((f"{name}.{part}", x) for part, x in value.items())
             elif name not in BESIDE:
                 yield name, value
+
+
+def _with_dots(told: Mapping[str, Any]) -> dict[str, Any]:
+    """The answer with quantities whose names have dots, which arrays in files are nested by."""
+    found = dict(told)
+    for name in TABLE:
+        group, dot, rest = name.partition(".")
+        if dot and isinstance(told.get(group), Mapping) and rest in told[group]:
+            found[name] = told[group][rest]
+            found.pop(group, None)
+    return found
 
 
 def _number(value: Any) -> Any:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import math
+import numbers
 import re
 import unicodedata
 from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
 
-import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
@@ -155,11 +155,13 @@ def _number(value: Any) -> Any:
 
 def _plain_number(value: Any) -> Any:
     """Exact number or expression text; floats are taken by their shortest decimal text."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str)):
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, str, numbers.Real)):
         raise PydanticCustomError("number-expected", "expected a number or an expression")
+    if isinstance(value, numbers.Rational):  # an integer of NumPy, a fraction
+        value = int(value.numerator) if value.denominator == 1 else f"{value.numerator}/{value.denominator}"
     if isinstance(value, str) and len(value) > LONGEST:
         raise PydanticCustomError("bad-expression", f"an expression has at most {LONGEST} characters")
-    if isinstance(value, float):
+    if isinstance(value, numbers.Real) and not isinstance(value, int):
         value = Decimal(repr(float(value)))
     if isinstance(value, Decimal) and not value.is_finite():
         raise PydanticCustomError("number-not-finite", "the number is not finite")
@@ -168,7 +170,7 @@ def _plain_number(value: Any) -> Any:
 
 def _real(value: Any) -> float:
     """A finite number; no text, no truth value."""
-    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, np.floating, np.integer)):
+    if isinstance(value, bool) or not isinstance(value, (int, float, Decimal, numbers.Real)):
         raise PydanticCustomError("number-expected", "a number is needed")
     try:
         number = float(value)

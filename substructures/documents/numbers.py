@@ -58,7 +58,8 @@ def plain_text(value: int | Decimal | float) -> str:
         if abs(value) >= 10**MAX_DIGITS:
             raise RefusedNumberError(TOO_LONG)
         return str(value)
-    number = Decimal(repr(value)) if isinstance(value, float) else value
+    # not repr(value), which numpy.float64 writes as np.float64(1.0)
+    number = Decimal(float.__repr__(value)) if isinstance(value, float) else value
     if not number.is_finite():
         not_finite(str(value))
     if plain_digits(number) > MAX_DIGITS:

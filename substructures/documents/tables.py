@@ -29,7 +29,7 @@ _USED = re.compile(r"(;\s*)([A-Za-z]\w*)(?=\s*[;)])", re.ASCII)
 #: words of the grammar at the same place
 _KINDS = ("monotone", "smooth")
 #: members that are words, and no expressions
-_WORDS = frozenset(("name", "title", "description", "tags", "license", "source", "unit", "note"))
+_WORDS = frozenset(("name", "title", "description", "tags", "license", "source", "unit", "note", "message"))
 
 
 def with_points(document: Any) -> Any:

@@ -15,7 +15,7 @@ _text = json.JSONEncoder(ensure_ascii=False).encode
 
 
 def write_json(data: Any) -> bytes:
-    """Canonical JSON of plain data: sorted keys, no spaces, UTF-8.
+    """Canonical JSON of plain data, and of NumPy's scalars and arrays in it: sorted keys, no spaces, UTF-8.
 
     Equal numbers have equal bytes: a ``Decimal`` is written without exponent and without trailing zeros, ``-0`` as
     ``0``; a ``float`` is written as its shortest decimal text. Raises :class:`InvalidDocument` for a value that is not
@@ -41,10 +41,10 @@ def _write(value: Any, path: list[str | int], out: list[str]) -> None:
         _write_list(value, path, out)
     elif isinstance(value, dict):
         _write_mapping(value, path, out)
+    elif type(value).__module__ == "numpy" and not isinstance(plain := value.tolist(), type(value)):
+        _write(plain, path, out)
     else:
-        message = (
-            f"{type(value).__name__} is not plain data: numbers, texts, lists, objects; of a client also NumPy's arrays"
-        )
+        message = f"{type(value).__name__} is not plain data: numbers, texts, lists, objects, NumPy's arrays of them"
         raise InvalidDocument.at(_pointer(path), "type", message)
 
 

@@ -18,14 +18,10 @@ from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.evaluation import POWERS, REACTIONS, Sources
-from substructures.quantities.formulas import DERIVED
-from substructures.quantities.regressor import OUTPUTS as COLUMNS
-from substructures.tree.model import Model, require_stored
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
+from substructures.quantities.sources import Sources
+from substructures.tree.model import require_stored
 
-#: outputs that a quantity consists of where these have other names
-GROUPS = {"kinematics": KINEMATICS, "momentum": ("linear_momentum", "angular_momentum")}
 ALL = "all"
 #: puts numbers into a program
 Bind = Callable[[Program], Program]
@@ -221,26 +217,16 @@ def _exported(
 
 def quantity_program(sources: Sources, quantity: str) -> Program:
     """The program of a quantity, with the outputs that belong to it alone. Raises InvalidArgument, TooLarge."""
-    model = sources.model
-    if quantity in (REACTIONS, POWERS):
-        return sources.program(quantity)
-    if quantity in COLUMNS:
-        return sources.columns().program.select([quantity])
-    if quantity in DERIVED:
-        found = sources.program(quantity)
-        return found.select([quantity]) if quantity in found.outputs else found
-    wanted = GROUPS.get(quantity, (quantity,))
+    model, wanted = sources.model, list(outputs_of(quantity))
+    if made_of(quantity) is not None:
+        found = sources.program(TABLE[quantity].source)
+        return found if {*wanted} == {*found.outputs} else found.select(wanted)
     if quantity == "christoffel":
         require_stored(model.program, wanted)
     if any(name not in model.program.outputs for name in wanted):
-        message = f"there is no quantity '{quantity[:80]}'{among(quantity, known_quantities(model))}"
+        message = f"there is no quantity '{quantity[:80]}'{among(quantity, askable(model.program.outputs))}"
         raise InvalidArgument.at("/quantities", "unknown-quantity", message)
-    return model.program.select(list(wanted))
-
-
-def known_quantities(model: Model) -> list[str]:
-    """The quantities that a model can be exported with."""
-    return list(dict.fromkeys([*model.program.outputs, *GROUPS, *DERIVED, *COLUMNS, REACTIONS, POWERS]))
+    return model.program.select(wanted)
 
 
 def joined(programs: Sequence[Program]) -> Program:

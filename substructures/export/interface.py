@@ -13,6 +13,7 @@ from math import isnan
 from typing import Any
 
 from substructures.expr.program import Symbol
+from substructures.quantities.quantity import signature as signature
 
 #: arguments in their order; ``x``: what a quantity has beside states, inputs and parameters
 ORDER = ("t", "q", "qd", "qdd", "u", "x", "p")
@@ -37,30 +38,6 @@ _KINDS = {
     "inertia": "x",
     "parameter": "p",
 }
-
-_BY_PLACE = ("metric christoffel gravity kinematics position rotation U Omega R r E Z tau interface f n K kappa F N",)
-_SIGNATURES: Mapping[str, tuple[str, ...]] = {
-    **dict.fromkeys(" ".join(_BY_PLACE).split(), ("q", "p")),
-    **dict.fromkeys(("inverse_metric", "christoffel_second_kind"), ("q", "p")),
-    **dict.fromkeys(("composite", "momentum", "linear_momentum", "angular_momentum"), ("q", "p")),
-    **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum", "generalised_momenta"), ("q", "qd", "p")),
-    **dict.fromkeys(("limits", "friction", "friction_load", PREPARE), ("p",)),
-    "potential_energy": ("t", "q", "p"),
-    "forces": ("t", "q", "qd", "u", "p"),
-    "forward_dynamics": ("t", "q", "qd", "u", "p"),
-    "inverse_dynamics": ("t", "q", "qd", "qdd", "u", "p"),
-    **dict.fromkeys(("power", "powers"), ("t", "q", "qd", "u", "p")),
-    "hamiltonian": ("t", "q", "p"),
-    "canonical_equations": ("t", "q", "u", "p"),
-    "reactions": ("t", "q", "qd", "qdd", "u", "p"),
-}
-#: of every other quantity
-_ANY = ("t", "q", "qd", "qdd", "u", "p")
-
-
-def signature(quantity: str) -> tuple[str, ...]:
-    """The arguments of the function of a quantity, without ``x``."""
-    return _SIGNATURES.get(quantity.partition("[")[0], _ANY)
 
 
 @dataclass(frozen=True)

@@ -35,7 +35,7 @@ from substructures.printers.render import LIMIT, check_form
 from substructures.printers.render import first_index as first_written
 from substructures.printers.render import render as write
 from substructures.printers.textbook import textbook
-from substructures.quantities.formulas import DERIVED
+from substructures.quantities.quantity import made_of, outputs_of
 
 _LISTINGS = {"expanded": expanded, "textbook": textbook}
 #: by name in the contract
@@ -93,8 +93,8 @@ def render(
     if interface is None:
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)
-    if quantity in DERIVED and quantity in program.outputs:  # without what tells whether it could be computed
-        program = program.select([quantity])
+    if made_of(quantity) is not None:  # without what tells whether it could be computed
+        program = program.select([name for name in outputs_of(quantity) if name in program.outputs])
     function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
     function.require_signature()
     exported = Exported(check_name(name), interface, (function,), form)

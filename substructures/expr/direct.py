@@ -51,7 +51,7 @@ _FLOAT_FUNCTIONS: dict[str, Callable[..., Any]] = {
 
 
 def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
-    """The value in floating point; ``names``: floats, or arrays of one shape, for the names of the expression.
+    """The value in floating point; ``names``: numbers, or arrays of one shape, for the names of the expression.
 
     Outside of its domain an expression is NaN or infinite, as in IEEE arithmetic.
     Raises ExpressionError for a text that cannot be read and for unknown names, ValueError for a number of more than
@@ -61,7 +61,7 @@ def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
     1.5
     """
     with np.errstate(all="ignore"):
-        return _run(given, names or {}, _float, np.asarray, lambda: np.pi, _FLOAT_FUNCTIONS, _float_power)
+        return _run(given, names or {}, _float, _floats, lambda: np.pi, _FLOAT_FUNCTIONS, _float_power)
 
 
 def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 128, complex_: bool = False) -> Any:
@@ -158,6 +158,12 @@ def _float(x: Fraction) -> np.float64:
         return np.float64(x.numerator / x.denominator)
     except OverflowError:
         return np.float64(np.inf if x > 0 else -np.inf)
+
+
+def _floats(given: Any) -> Any:
+    """What a name stands for; decimal numbers and fractions, one or lists of them, correctly rounded."""
+    found = np.asarray(given)
+    return found.astype(np.float64) if found.dtype == object else found
 
 
 def _float_power(x: Any, n: int) -> Any:

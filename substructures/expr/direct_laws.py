@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from fractions import Fraction
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -95,12 +96,11 @@ def _in_table(knots: Knots, x: Any) -> Parted:
         return UNKNOWN, [UNKNOWN]
     h, rise = knots.x[k + 1] - knots.x[k], knots.y[k + 1] - knots.y[k]
     u = (x - places[k]) / _ball(h)
-    if knots.kind == "smooth":
-        return _in_spline(knots, k, u)
     if knots.kind == "linear":
         return _ball(knots.y[k]) + _ball(rise) * u, [_ball(rise / h)]
     # Hermite's cubic in its basis
-    s, r = (_ball(slope * h) for slope in _pchip(knots)[k : k + 2])
+    slopes = _spline(knots) if knots.kind == "smooth" else _pchip(knots)
+    s, r = (_ball(slope * h) for slope in slopes[k : k + 2])
     a, b = _ball(knots.y[k]), _ball(knots.y[k + 1])
     one = 1 - u
     value = a * one * one * (1 + 2 * u) + b * u * u * (3 - 2 * u) + s * u * one * one - r * u * u * one
@@ -131,8 +131,11 @@ def _pchip(knots: Knots) -> list[Fraction]:
     return found
 
 
-def _in_spline(knots: Knots, k: int, u: Any) -> Parted:
-    """Interval k of the spline by its second derivatives M: y = a (1 - u) + b u + h^2/6 ((1-u)^3 - (1-u)) M_k + ..."""
+@lru_cache(maxsize=100)
+def _spline(knots: Knots) -> list[Fraction]:
+    """Slopes at the knots of the spline that ends flat, by its second derivatives M, which are exact: rise/h -
+    h/6 (2 M_k + M_{k+1}); each as the shortest decimal of the double next to it, as tables are defined.
+    """
     x, y, last = knots.x, knots.y, len(knots.x) - 1
     h = [x[i + 1] - x[i] for i in range(last)]
     rise = [y[i + 1] - y[i] for i in range(last)]
@@ -146,12 +149,9 @@ def _in_spline(knots: Knots, k: int, u: Any) -> Parted:
         slope = _exactly(6 * rise[i] / h[i])
         right[i, 0] += slope
         right[i + 1, 0] -= slope
-    M = system.solve(right)
-    one, step = 1 - u, arb(_exactly(h[k]))
-    bent = arb(M[k, 0]) * (one * one * one - one) + arb(M[k + 1, 0]) * (u * u * u - u)
-    value = _ball(y[k]) * one + _ball(y[k + 1]) * u + step * step / 6 * bent
-    turned = arb(M[k + 1, 0]) * (3 * u * u - 1) - arb(M[k, 0]) * (3 * one * one - 1)
-    return value, [_ball(rise[k] / h[k]) + step / 6 * turned]
+    M = [Fraction(int(row.p), int(row.q)) for row in system.solve(right).entries()]
+    exact = [rise[i] / h[i] - h[i] / 6 * (2 * M[i] + M[i + 1]) for i in range(last)]
+    return [*(Fraction(str(float(s))) for s in exact), Fraction(0)]
 
 
 def _exactly(x: Fraction) -> Any:

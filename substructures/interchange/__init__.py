@@ -5,11 +5,12 @@ module              what is there
 ==================  ================================================================================================
 importing           all of it: bytes to definition (or tree), report, checks and names
 kinds               which format a file has, and its reader
-urdf, mjcf, sdf     readers of XML formats, all to ``robot.Robot``
+urdf, mjcf, sdf     readers of XML formats, all to ``robot.Robot``; ``known``: the names that each of them has
 tables, symoro      readers of rows of Denavit-Hartenberg parameters, straight to definitions
 robot, merge        links on parents with motions between them; links that do not move against each other as one
 bindings            coordinates that follow others: mimic joints
 as_part, names      a robot as the definition of a substructure; names of files as names of definitions
+report              remarks with their lines; what is lost is kept in definitions as ``left_out``
 cut                 a robot that is cut at named links as several definitions and a tree
 equivalence         whether two models are the same; ``culprits``: which body and parameter is not
 xml, numbers        elements with their lines and exact numbers; ``rotations`` and inertias as doubles

@@ -51,6 +51,7 @@ class PartOfFile:
     definition: dict[str, Any]
     names: dict[str, str]
     bindings: list[dict[str, Any]]
+    coordinates: dict[str, str]  #: of every motion
     loop_ports: list[tuple[str, str | None]]  #: of every loop the ports of its ends, None: the world
 
 
@@ -106,13 +107,26 @@ class _Builder:
             "ports": self.ports[:MAX_PORTS],
             "loads": self.loads,
             "parameters": self.parameters,
+            "left_out": [mimic.left_out(self.joints.given) for mimic in self.robot.mimics],
         }
         return PartOfFile(
             {key: x for key, x in document.items() if x},
-            {**self.links.given, **{f"joint {k}": v for k, v in self.joints.given.items()}},
-            [self._binding(m) for m in self.robot.mimics],
+            {**self.links.given, **self._joint_names()},
+            [self._binding(m) for m in self.robot.mimics if {m.joint, m.of} <= self.joints.given.keys()],
+            self.joints.given,
             loop_ports,
         )
+
+    def _joint_names(self) -> dict[str, str]:
+        """What the coordinates of every joint of the file that moves are called, in order."""
+        found: dict[str, str] = {}
+        for link in self._links():
+            own = [self.joints.given[motion.name] for motion in link.motions]
+            if link.joint and own:
+                found[f"joint {link.joint}"] = ", ".join(own)
+            else:
+                found |= {f"joint {motion.name}": name for motion, name in zip(link.motions, own, strict=True)}
+        return found
 
     def symbols_taken(self) -> None:
         """Names of coordinates may not be those of parameters."""
@@ -124,6 +138,9 @@ class _Builder:
     def _links(self) -> Iterator[Link]:
         """With roots that move freely, if they are to."""
         for link in self.robot.links:
+            if link.unweighed is not None and self.options.base == "floating":
+                message = "the mass of a mesh needs its file: give the body an <inertial>, or the geom mass='0'"
+                raise refuse(link.unweighed, "mesh-inertia", message)
             if link.parent is None and not link.motions and self.options.base == "floating":
                 yield replace(link, motions=(Motion(f"{link.name}_free", "free", link.place),))
             else:

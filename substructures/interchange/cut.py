@@ -104,7 +104,9 @@ def _robot_of(robot: Robot, piece: str, pieces: Mapping[str, str]) -> Robot:
         if loop.other is not None:
             ends.append(NamedFrame(f"{loop.name}_to", loop.other, loop.other_position, loop.other_rpy))
     frames = tuple(frame for frame in (*ends, *robot.frames) if pieces[frame.link] == piece)
-    return replace(robot, links=links, frames=frames, mimics=(), loops=())
+    moved = {motion.name for link in links for motion in link.motions}
+    mimics = tuple(mimic for mimic in robot.mimics if mimic.joint in moved)
+    return replace(robot, links=links, frames=frames, mimics=mimics, loops=())
 
 
 def _options(robot: Robot, piece: str, options: Options) -> Options:
@@ -148,5 +150,7 @@ def _names(instances: Mapping[str, str], parts: Mapping[str, PartOfFile]) -> dic
 
 def _bindings(robot: Robot, instances: Mapping[str, str], parts: Mapping[str, PartOfFile]) -> list[dict[str, Any]]:
     """Mimic joints, also between parts."""
-    names = _names(instances, parts)
-    return [m.plain(names[f"joint {m.joint}"], names[f"joint {m.of}"]) for m in robot.mimics]
+    names: dict[str, str] = {}
+    for piece, part in parts.items():
+        names |= {motion: f"{instances[piece]}.{name}" for motion, name in part.coordinates.items()}
+    return [m.plain(names[m.joint], names[m.of]) for m in robot.mimics]

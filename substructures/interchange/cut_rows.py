@@ -92,7 +92,8 @@ def _part(
     ]
     used = {word for body in bodies for key in body if key not in ("name", "parent") for word in _words(body[key])}
     parameters = {name: value for name, value in definition.get("parameters", {}).items() if name in used}
-    kept = {key: value for key, value in definition.items() if key not in ("bodies", "parameters", "ports")}
+    own = ("bodies", "parameters", "ports", *(("left_out",) if piece else ()))
+    kept = {key: value for key, value in definition.items() if key not in own}
     name = part_name(definition["name"], piece or MAIN)
     made = kept | {"name": name, "bodies": bodies, "ports": list(ports)}
     return made | ({"parameters": parameters} if parameters else {})

@@ -13,6 +13,7 @@ from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
 from substructures.interchange.cut_rows import cut_rows
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
+from substructures.interchange.report import MOST_REMARKS, Report
 from substructures.interchange.robot import Robot
 
 #: most characters of the name of a file that are kept
@@ -27,7 +28,8 @@ class Imported:
     it was cut, a part for every link that was named, mounted on the others.
 
     ``report``: remarks with place and level; ``checks``: of form, topology and physics, whether there are warnings;
-    ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints.
+    ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints; ``gravity``: of the
+    file, which trees have, and parts have not.
     """
 
     kind: str
@@ -37,6 +39,7 @@ class Imported:
     checks: dict[str, dict[str, Any]]
     names: dict[str, str]
     bindings: list[dict[str, Any]]
+    gravity: list[Any] | None = None
 
     def plain(self) -> dict[str, Any]:
         """As JSON data."""
@@ -47,6 +50,7 @@ class Imported:
             "checks": self.checks,
             "names": self.names,
             "bindings": self.bindings,
+            "gravity": self.gravity,
         }
 
 
@@ -70,7 +74,7 @@ def import_file(
     """
     rows = read_rows(data, kind, options.parameters != "none")
     if rows is not None:
-        definition = rows[1] | ({} if name is None else {"name": library_name(name)})
+        definition = _with_losses(rows[1], rows[2]) | ({} if name is None else {"name": library_name(name)})
         tree = cut_rows(definition, cut) if cut else None
         for each in [] if tree is None else tree["instances"]:
             each["definition"] = _told(each["definition"], rows[0], data, file, license_of_file)
@@ -79,14 +83,21 @@ def import_file(
     found, robot = read_robot(data, kind, included)
     if cut:
         made = cut_robot(robot, cut, options, name)
+        first = made.tree["instances"][0]
+        first["definition"] = _with_losses(first["definition"], robot.report)
         for instance in made.tree["instances"]:
             instance["definition"] = _told(instance["definition"], found, data, file, license_of_file)
         main, report = made.tree["instances"][0]["definition"], robot.report
-        return Imported(found, main, made.tree, report.plain(), report.checks(), made.names, made.bindings)
+        told = report.plain(), report.checks(), made.names, made.bindings, gravity_of(robot).get("gravity")
+        return Imported(found, main, made.tree, *told)
     part = as_part(robot, options, name)
-    definition = _told(part.definition, found, data, file, license_of_file)
+    definition = _told(_with_losses(part.definition, robot.report), found, data, file, license_of_file)
     tree, report = _tree(robot, part, definition), robot.report
-    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings)
+    gravity = gravity_of(robot).get("gravity")
+    if tree is None and robot.gravity_place is not None:
+        message = f'gravity is that of a tree: give it "gravity": [{", ".join(map(str, gravity or ()))}]'
+        report.warning(robot.gravity_place, message)
+    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings, gravity)
 
 
 def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
@@ -102,6 +113,12 @@ def text_of_file(given: Mapping[str, Any]) -> bytes:
     if set(given) - {"file", "kind"} or not isinstance(given["file"], str):
         raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
     return given["file"].encode("utf-8", "replace")
+
+
+def _with_losses(document: dict[str, Any], report: Report) -> dict[str, Any]:
+    """With what is left out of the file."""
+    left_out = [*document.get("left_out", ()), *report.losses()]
+    return document | ({"left_out": left_out[:MOST_REMARKS]} if left_out else {})
 
 
 def _told(document: dict[str, Any], kind: str, data: bytes, file: str, license_of_file: str) -> dict[str, Any]:

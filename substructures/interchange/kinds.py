@@ -10,11 +10,11 @@ from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Report, refuse
-from substructures.interchange.robot import Robot
-from substructures.interchange.sdf import read_sdf
+from substructures.interchange.robot import Robot, tell_of_missing_masses
+from substructures.interchange.sdf.reader import read_sdf
 from substructures.interchange.symoro import is_par, read_par
 from substructures.interchange.tables import read_csv, read_table
-from substructures.interchange.urdf import read_urdf
+from substructures.interchange.urdf.reader import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
 _CELLS = re.compile(rb"[,;\t]")
@@ -29,6 +29,10 @@ _ROOTS: Mapping[str, tuple[str, Reader]] = {
 #: most bytes of what is no XML: 200 rows with long expressions
 MAX_ROWS = 2**20
 KINDS = ("urdf", "mjcf", "sdf", "dh", "par")
+_NO_XML = (
+    "this is neither XML (URDF, MJCF, SDF), nor a SYMORO file, nor a table of Denavit-Hartenberg parameters: the first "
+    "line of a table names its columns, a, alpha, d, theta among them (name,type,a,alpha,d,theta,mass, ...)"
+)
 
 
 def is_foreign(data: bytes) -> bool:
@@ -72,6 +76,8 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
+    if data.strip() and b"\0" not in data and not is_xml(data):  # it is text
+        raise InvalidDocument.at("", "unknown-format", _NO_XML)
     root = read_xml(data)
     found = _ROOTS.get(root.tag)
     if found is None:
@@ -81,4 +87,6 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     name, reader = found
     if kind is not None and kind != name:
         raise refuse(root.place, "wrong-kind", f"this is {name.upper()}, not {kind.upper()}")
-    return name, reader(root, {} if included is None else included)
+    robot = reader(root, {} if included is None else included)
+    tell_of_missing_masses(robot)
+    return name, robot

@@ -7,7 +7,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, decimal_of, is_zero, triple, value
+from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, cleaned, decimal_of, is_zero, triple, value
+from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial
 from substructures.interchange.rotations import from_rpy, six_of, steiner, tensor, to_rpy
 
@@ -30,8 +31,9 @@ class Seat:
             return self.position
         if not self.is_turned:
             return plus(self.position, p)
-        moved = np.array([value(x) for x in self.position]) + from_rpy(self.rpy) @ [value(x) for x in p]
-        return vector(moved)
+        origin = np.array([value(x) for x in self.position])
+        moved = from_rpy(self.rpy) @ [value(x) for x in p]
+        return vector(origin + moved, float(max(np.abs(origin).max(), np.abs(moved).max())))
 
     def beyond(self, other: Seat) -> Seat:
         """A frame that is placed in it."""
@@ -45,13 +47,13 @@ class Seat:
         six = own.inertia
         if self.is_turned and not all(map(is_zero, six)):
             R = from_rpy(self.rpy)
-            six = tuple(map(decimal_of, six_of(R @ tensor([value(x) for x in six]) @ R.T)))
+            six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
         return Inertial(own.mass, self.point(own.com), six)
 
 
-def vector(xyz: Iterable[float]) -> Triple:
-    """Computed doubles as numbers."""
-    return triple(tuple(decimal_of(float(x)) for x in xyz))
+def vector(xyz: Iterable[float], scale: float = 0.0) -> Triple:
+    """Computed doubles as numbers; ``scale``: of what they were computed of."""
+    return triple(cleaned(xyz, scale))
 
 
 def plus(p: Triple, q: Triple) -> Triple:
@@ -75,7 +77,7 @@ def together(parts: list[Inertial]) -> Inertial:
 
     A single one with mass is taken as it is. Without mass, tensors are summed.
     """
-    parts = [p for p in parts if not (is_zero(p.mass) and all(map(is_zero, p.inertia)))]
+    parts = [p for p in parts if not p.is_nothing]
     if not parts:
         return Inertial()
     if len(parts) == 1:
@@ -86,9 +88,26 @@ def together(parts: list[Inertial]) -> Inertial:
     com = np.average(c, axis=0, weights=m) if mass else np.zeros(3)
     moved = [steiner(a, b - com) for a, b in zip(m, c, strict=True)]
     theta = np.sum([tensor([value(x) for x in p.inertia]) for p in parts], axis=0) + np.sum(moved, axis=0)
-    # what is only rounding of products that cancel
-    theta[np.abs(theta) < 1e-15 * np.sum(np.abs(moved))] = 0
     total: Number = ZERO
     for p in parts:
         total = _sum(total, p.mass)
-    return Inertial(total, vector(com), tuple(map(decimal_of, six_of(theta))))
+    return Inertial(total, vector(com), cleaned(six_of(theta), float(np.abs(moved).max())))
+
+
+def judge(place: Place, mass: Number, com: Triple, six: tuple[Number, ...], report: Report) -> None:
+    """Warn of masses and tensors that no rigid body can have, and of mass centres that are far away."""
+    m, numbers = value(mass), [value(x) for x in six]
+    if m < 0:
+        raise refuse(place, "negative-mass", f"the mass {mass} kg is negative")
+    moments = np.linalg.eigvalsh(tensor(numbers))
+    largest = max(float(np.abs(moments).max()), 1e-300)
+    if moments[0] < -1e-9 * largest or moments[0] + moments[1] < moments[2] * (1 - 1e-9):
+        shown = ", ".join(f"{x:.4g}" for x in moments)
+        report.warning(
+            place, f"no rigid body has the principal moments {shown} kg m^2 (triangle inequality)", "physics"
+        )
+    if m == 0 and any(numbers):
+        report.warning(place, "a moment of inertia without a mass", "physics")
+    distance = float(np.linalg.norm([value(x) for x in com]))
+    if m > 0 and distance > 10 and distance**2 * m > 100 * largest:
+        report.warning(place, f"the mass centre is {distance:.3g} m away: are these millimetres?", "physics")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Iterable, Sequence
 from decimal import Decimal
 from fractions import Fraction
 
@@ -20,6 +21,11 @@ ORIGIN: Triple = (ZERO, ZERO, ZERO)
 ANGLE_TOLERANCE = 1e-11
 _DECIMAL = re.compile(r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d{1,3})?")
 _MAX_DIGITS = 60
+#: of sums of some products, relative to their terms
+ROUNDING = 1e-15
+#: ratios of the entries of a direction have denominators up to this, where it is in whole numbers
+_MOST_WHOLE = 12
+_DIGITS_OF_PEOPLE = 9
 
 
 def number_of(text: str, place: Place, name: str) -> Decimal:
@@ -32,6 +38,11 @@ def number_of(text: str, place: Place, name: str) -> Decimal:
     if found and not -100 <= found.adjusted() <= 100:
         raise refuse(place, "bad-number", f"'{name}' is beyond 1e-100 to 1e100: {word}")
     return found if found else ZERO
+
+
+def is_number(text: str) -> bool:
+    """Whether a text is a decimal number, of any length."""
+    return bool(_DECIMAL.fullmatch(text.strip()))
 
 
 def value(x: Number) -> float:
@@ -48,6 +59,51 @@ _PI = re.compile(r"(-)?(?:(\d+)\*)?pi(?:/(\d+))?")
 def decimal_of(x: float) -> Decimal:
     """A computed double to 16 significant digits; zero below 1e-100."""
     return Decimal(f"{x:.16g}") if abs(x) > 1e-100 else ZERO
+
+
+def cleaned(numbers: Iterable[float], scale: float = 0.0) -> tuple[Decimal, ...]:
+    """Computed doubles as decimals: what is within rounding of a number of twelve digits is this one.
+
+    ``scale``: of what they were computed of, where that is larger than they are.
+
+    >>> cleaned([0.1 + 0.2, 1.1e-16, 1 / 3])
+    (Decimal('0.3'), Decimal('0'), Decimal('0.3333333333333333'))
+    """
+    given = [float(x) for x in numbers]
+    size = max(scale, *map(abs, given), 0.0)
+    if not 0 < size < math.inf:
+        return tuple(map(decimal_of, given))
+    digits = 12 - math.floor(math.log10(size))
+    short = [round(x, digits) for x in given]
+    return tuple(decimal_of(y if abs(x - y) < ROUNDING * size else x) for x, y in zip(given, short, strict=True))
+
+
+def undusted(numbers: tuple[Number, ...]) -> tuple[Number, ...]:
+    """Numbers of a file, without what programs that wrote it left of rounding: entries below 1e-15 of the largest."""
+    least = ROUNDING * max((abs(value(x)) for x in numbers), default=0.0)
+    return tuple(ZERO if abs(value(x)) < least else x for x in numbers)
+
+
+def direction(xyz: Sequence[float]) -> Triple:
+    """A vector in the direction of another one, in whole numbers where it is so to within 1e-11.
+
+    >>> direction([0.7071067811865475, 1.1e-16, -0.7071067811865476]), direction([0.6, 0.0, 0.8])
+    ((Decimal('1'), Decimal('0'), Decimal('-1')), (Decimal('3'), Decimal('0'), Decimal('4')))
+    """
+    largest = max(map(abs, xyz))
+    ratios = [Fraction(x / largest).limit_denominator(_MOST_WHOLE) for x in xyz]
+    if any(abs(x / largest - r) > ANGLE_TOLERANCE for x, r in zip(xyz, ratios, strict=True)):
+        return triple(cleaned(xyz))
+    whole = math.lcm(*(r.denominator for r in ratios))
+    return triple(tuple(Decimal(int(r * whole)) for r in ratios))
+
+
+def axis_of(xyz: Triple) -> Triple:
+    """An axis of a file as it is given; in whole numbers where it is so to within 1e-11, and is written with more
+    digits than a person would.
+    """
+    is_computed = any(isinstance(x, Decimal) and len(x.as_tuple().digits) > _DIGITS_OF_PEOPLE for x in xyz)
+    return direction([value(x) for x in xyz]) if is_computed else xyz
 
 
 def triple(xyz: tuple[Number, ...]) -> Triple:

@@ -13,6 +13,8 @@ Level = Literal["ignored", "merged", "warning"]
 #: what a remark is about: the form of the file, how links hang together, what no body can be
 Tier = Literal["schema", "topology", "physics"]
 TIERS: tuple[Tier, ...] = ("schema", "topology", "physics")
+#: characters of a message that a definition keeps
+LONGEST = 2000
 #: so many remarks are listed
 MOST_REMARKS = 1000
 
@@ -30,12 +32,13 @@ class Place:
 
 @dataclass(frozen=True, slots=True)
 class Remark:
-    """Something that the reader left out, merged, or finds hardly meant."""
+    """Something that the reader left out, merged, or finds hardly meant; ``is_loss``: what is stored tells it, too."""
 
     place: Place
     level: Level
     tier: Tier
     message: str
+    is_loss: bool = False
 
     def plain(self) -> dict[str, Any]:
         """As JSON data."""
@@ -66,6 +69,21 @@ class Report:
     def warning(self, place: Place, message: str, tier: Tier = "schema") -> None:
         """Something that has an influence, or that is hardly meant."""
         self._add(Remark(place, "warning", tier, message))
+
+    def lost(self, place: Place, message: str, tier: Tier = "schema") -> None:
+        """Something that has an influence and is left out: a warning here, and of what is stored of the file."""
+        self._add(Remark(place, "warning", tier, message, is_loss=True))
+
+    def losses(self) -> list[dict[str, Any]]:
+        """What is left out, as a field of a definition; the same at several places once."""
+        found: dict[str, list[Place]] = {}
+        for remark in self.remarks:
+            if remark.is_loss:
+                found.setdefault(remark.message, []).append(remark.place)
+        return [
+            {"message": f"{places[0]}{f' and {len(places) - 1} more' if places[1:] else ''}: {message}"[:LONGEST]}
+            for message, places in found.items()
+        ]
 
     def _add(self, remark: Remark) -> None:
         if len(self.remarks) < MOST_REMARKS and remark not in self.remarks[-20:]:

@@ -14,8 +14,8 @@ from dataclasses import dataclass, field, replace
 from typing import Literal
 
 from substructures.errors import among
-from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple
-from substructures.interchange.report import Place, Report, refuse
+from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, is_zero
+from substructures.interchange.report import LONGEST, Place, Report, refuse
 
 MotionType = Literal["revolute", "prismatic", "spherical", "free"]
 
@@ -45,10 +45,19 @@ class Inertial:
     com: Triple = ORIGIN
     inertia: tuple[Number, ...] = (ZERO,) * 6
 
+    @property
+    def is_nothing(self) -> bool:
+        """Whether there is neither mass nor moment of inertia."""
+        return all(map(is_zero, (self.mass, *self.inertia)))
+
 
 @dataclass(frozen=True)
 class Link:
-    """A body with its placement on its parent and the motions in between."""
+    """A body with its placement on its parent and the motions in between.
+
+    ``joint``: the one of the file that carries it, where its motions are parts of this; ``has_shape``: whether it is
+    seen; ``unweighed``: where something is whose mass is not known.
+    """
 
     name: str
     parent: str | None
@@ -57,6 +66,9 @@ class Link:
     rpy: Triple = ORIGIN
     motions: tuple[Motion, ...] = ()
     inertial: Inertial = field(default_factory=Inertial)
+    joint: str = ""
+    has_shape: bool = False
+    unweighed: Place | None = None
 
 
 @dataclass(frozen=True)
@@ -78,6 +90,22 @@ class Mimic:
     multiplier: Number
     offset: Number
     place: Place
+
+    @property
+    def message(self) -> str:
+        """What is said of it."""
+        return (
+            f"'{self.joint}' = {self.multiplier} * '{self.of}' + {self.offset}: both coordinates are free here; add "
+            "the velocity constraint that is told in 'bindings' to simulations and velocity-equations"
+        )
+
+    def left_out(self, names: Mapping[str, str]) -> dict[str, object]:
+        """As a field of a definition with the coordinates ``names`` by joints; as words where it has not got both."""
+        told: dict[str, object] = {"message": f"{self.place}: {self.message}"[:LONGEST]}
+        if {self.joint, self.of} <= names.keys():
+            factors = {"multiplier": self.multiplier, "offset": self.offset}
+            told["relation"] = {"coordinate": names[self.joint], "of": names[self.of], **factors}
+        return told
 
     def plain(self, coordinate: str, of: str) -> dict[str, object]:
         """As JSON data, with the names that both coordinates have here, and as a constraint q' - k q_of' = 0."""
@@ -103,7 +131,9 @@ class Loop:
 
 @dataclass(frozen=True)
 class Robot:
-    """A file, read: links with parents before children. ``gravity``: where the file gives it."""
+    """A file, read: links with parents before children. ``gravity``: where the file, or its format, gives it;
+    ``gravity_place``: where the file does.
+    """
 
     name: str
     links: tuple[Link, ...]
@@ -112,10 +142,27 @@ class Robot:
     mimics: tuple[Mimic, ...] = ()
     loops: tuple[Loop, ...] = ()
     gravity: Triple | None = None
+    gravity_place: Place | None = None
 
     def with_links(self, links: Mapping[str, Link]) -> Robot:
         """With some links in place of those of the same name."""
         return replace(self, links=tuple(links.get(link.name, link) for link in self.links))
+
+
+def tell_of_missing_masses(robot: Robot) -> None:
+    """A warning for every link that moves without any mass, alone or with what is fixed to it, and is seen or carries
+    nothing: its mass is not in the file.
+    """
+    group: dict[str, str] = {}  # of every link the one that moves it
+    for link in robot.links:
+        group[link.name] = link.name if link.motions or link.parent is None else group[link.parent]
+    weighed = {group[link.name] for link in robot.links if not link.inertial.is_nothing}
+    carrying = {group[link.parent] for link in robot.links if link.motions and link.parent is not None}
+    shown = {group[link.name] for link in robot.links if link.has_shape}
+    for link in robot.links:
+        if link.motions and link.name not in weighed and (link.name in shown or link.name not in carrying):
+            message = "the link moves and no mass is given for it: it is taken as massless"
+            robot.report.lost(link.place, message, "physics")
 
 
 def in_order(links: list[Link]) -> tuple[Link, ...]:

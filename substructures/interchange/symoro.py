@@ -128,7 +128,7 @@ class _Reader:
         for name in _FORCES:
             if self.entry(name, k) not in ("0", "") and (kind != "fixed" or name != "FS"):
                 what = "dry friction" if name == "FS" else "an external force or moment"
-                self.report.warning(self.place(name, k), f"{what} is left out: add a load for it")
+                self.report.lost(self.place(name, k), f"{what} is left out: add a load for it")
         mass = self.number("M", k)
         body: dict[str, Any] = {"name": f"link{k + 1}", "parent": self._parent(k), "joint": joint, "mass": mass}
         moments = [self.number(name, k) for name in ("MX", "MY", "MZ")]

@@ -8,13 +8,15 @@
 CSV: comment lines ``# convention: modified``, ``# length: mm``, ``# angle: deg``, then a head and a row for each joint.
 JSON: ``{"dh": [rows], "convention": ..., "length": ..., "angle": ...}``. Columns: name, type, a, alpha, d, theta, mass
 [kg], cx, cy, cz, Ixx, Iyy, Izz, Ixy, Ixz, Iyz [kg m^2], armature, damping [SI], min, max; what moves has its offset
-in the table.
+in the table. A cell may be an expression such as ``pi/2`` or ``L1 + L2`` in SI units, whose names are parameters; a
+name alone where a joint moves (theta of a revolute, d of a prismatic one) is that of its coordinate.
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Iterator, Mapping
+import re
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
@@ -22,7 +24,7 @@ from typing import Any
 from substructures.documents.text import decoded
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import meant
-from substructures.interchange.names import Names, library_name
+from substructures.interchange.names import Names, Symbols, library_name, symbols_in
 from substructures.interchange.numbers import number_of
 from substructures.interchange.report import Place, Report, refuse
 
@@ -35,6 +37,9 @@ _COLUMNS = ("name", "type", *_NUMBERS)
 _TYPES = {"revolute": "revolute", "r": "revolute", "prismatic": "prismatic", "p": "prismatic"}
 _MOST_ROWS = 200
 _SETTINGS = ("convention", "length", "angle", "name")
+_SI = {"length": "m", "angle": "rad", "mass": "kg", "I": "kg m^2"}
+#: a name, perhaps with a constant added
+_COORDINATE = re.compile(r"\s*([A-Za-z]\w*)\s*([-+].*)?", re.ASCII)
 
 
 @dataclass
@@ -109,28 +114,31 @@ def _known(place: Place, names: list[str]) -> None:
 
 
 def _definition(table: _Table, symbolic: bool) -> tuple[dict[str, Any], Report]:
-    report, names = Report(), Names()
+    report, names, symbols = Report(), Names(), Symbols()
     convention = table.settings.get("convention", "")
     if convention not in CONVENTIONS:
         message = f"say 'convention: standard' or 'convention: modified', found '{convention[:40]}'"
         raise refuse(Place(1, "table") if table.rows[0][0].line else Place(0, "/convention"), "convention", message)
     units = _unit(table, "length", "m"), _unit(table, "angle", "rad")
-    bodies = list(_bodies(table, names, units, convention == "standard"))
+    bodies = list(_bodies(table, names, _Reading(units, symbols, report), convention == "standard"))
     if not any("mass" in row for _, row in table.rows):
         report.warning(table.rows[0][0], "no masses: the part has a geometry, but its metric is zero", "physics")
     title = table.settings.get("name", "")
     ports = [{"name": names.new("tip"), "body": bodies[-1]["name"]}]
     document = {"name": library_name(title, "dh-table"), "title": title[:200], "bodies": bodies, "ports": ports}
-    return document | ({"parameters": _parameters(bodies)} if symbolic else {}), report
+    parameters = symbols.parameters(body["joint"]["coordinate"] for body in bodies if "coordinate" in body["joint"])
+    if symbolic:
+        parameters |= _parameters(bodies, parameters)
+    return document | ({"parameters": parameters} if parameters else {}), report
 
 
-def _parameters(bodies: list[dict[str, Any]]) -> dict[str, dict[str, Any]]:
+def _parameters(bodies: list[dict[str, Any]], taken: Iterable[str]) -> dict[str, dict[str, Any]]:
     """Masses, mass centres and moments that are not zero, under names; these take their places in the bodies."""
     found: dict[str, dict[str, Any]] = {}
-    names = Names(body["joint"].get("coordinate", "") for body in bodies)
+    names = Names((*taken, *(body["joint"].get("coordinate", "") for body in bodies)))
 
     def named(wanted: str, x: Any, unit: str) -> Any:
-        if not x:
+        if not x or isinstance(x, str):
             return x
         name = names.new(wanted)
         found[name] = dict(x) if isinstance(x, Mapping) else {"value": x, "unit": unit}
@@ -157,13 +165,14 @@ def _unit(table: _Table, name: str, default: str) -> str:
     raise refuse(place, "unknown-unit", f"'{given[:40]}' is no unit of a {name}; expected for example {default}")
 
 
-def _bodies(table: _Table, names: Names, units: tuple[str, str], is_standard: bool) -> Iterator[dict[str, Any]]:
+def _bodies(table: _Table, names: Names, reading: _Reading, is_standard: bool) -> Iterator[dict[str, Any]]:
     parent = "base"
     coordinates = Names()
     for i, (place, row) in enumerate(table.rows, 1):
-        cell = _Cells(place, row, units)
         name = names.new(row.get("name", f"link{i}"))
-        joint = _joint(place, row, cell) | {"coordinate": coordinates.new(row.get("name", f"q{i}"))}
+        row, coordinate = _without_coordinate(place, row, reading)
+        cell = _Cells(place, row, reading)
+        joint = _joint(place, row, cell) | {"coordinate": coordinates.new(coordinate or row.get("name", f"q{i}"))}
         seat = {"theta": cell("alpha", "angle"), "d": cell("a", "length")}
         mass = {"mass": cell("mass", ""), "com": [cell(c, "length") for c in ("cx", "cy", "cz")]}
         mass["inertia"] = {e: cell(f"I{e}", "") for e in _MOMENTS}
@@ -174,6 +183,18 @@ def _bodies(table: _Table, names: Names, units: tuple[str, str], is_standard: bo
         else:
             yield {"name": name, "parent": parent, "joint": joint | seat, **mass}
         parent = name
+
+
+def _without_coordinate(place: Place, row: dict[str, str], reading: _Reading) -> tuple[dict[str, str], str]:
+    """A row with a constant in the place of what moves, and the name of the coordinate, where it stands there."""
+    column = "d" if _TYPES.get(row.get("type", "r").lower()) == "prismatic" else "theta"
+    text = row.get(column, "0")
+    found = _COORDINATE.fullmatch(text)
+    if found is None or not symbols_in(found[1]):
+        return row, ""
+    here = Place(place.line, f"{place.element}, {column}")
+    reading.report.merged(here, f"'{found[1][:60]}' is the coordinate; what is added to it is its offset")
+    return row | {column: (found[2] or "0").removeprefix("+").strip()}, found[1]
 
 
 def _joint(place: Place, row: Mapping[str, str], cell: _Cells) -> dict[str, Any]:
@@ -190,16 +211,35 @@ def _joint(place: Place, row: Mapping[str, str], cell: _Cells) -> dict[str, Any]
 
 
 @dataclass(frozen=True)
+class _Reading:
+    """What holds for all rows: units of lengths and angles, the symbols, the report."""
+
+    units: tuple[str, str]
+    symbols: Symbols
+    report: Report
+
+
+@dataclass(frozen=True)
 class _Cells:
     """The numbers of a row, with the unit of the table."""
 
     place: Place
     row: Mapping[str, str]
-    units: tuple[str, str]
+    reading: _Reading
 
-    def __call__(self, name: str, kind: str) -> Decimal | dict[str, Any]:
-        """A number; 0 where the cell is empty."""
-        number = number_of(self.row.get(name, "0"), Place(self.place.line, f"{self.place.element}, {name}"), name)
-        if not kind or not number:
-            return number
-        return {"value": number, "unit": self.units[0] if kind == "length" else self.units[1]}
+    def __call__(self, name: str, kind: str) -> Decimal | str | dict[str, Any]:
+        """A number, or an expression in constants and parameters; 0 where the cell is empty."""
+        text, place = self.row.get(name, "0"), Place(self.place.line, f"{self.place.element}, {name}")
+        unit = {"length": self.reading.units[0], "angle": self.reading.units[1]}.get(kind, "")
+        found = symbols_in(text)
+        if found is None:
+            number = number_of(text, place, name)
+            return {"value": number, "unit": unit} if unit and number else number
+        is_scaled = bool(unit) and not read_unit(unit).is_si
+        if is_scaled and "pi" not in text and not found:
+            return {"value": text, "unit": unit}
+        if is_scaled and found != [text.strip()]:
+            message = f"'{text[:60]}' beside numbers in {unit}: write the table in SI units, or a parameter alone"
+            raise refuse(place, "unit-of-expression", message)
+        self.reading.symbols.add(found, text, _SI.get(kind) or _SI.get(name[0] if name != "mass" else name, ""))
+        return text.strip()

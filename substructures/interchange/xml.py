@@ -1,6 +1,8 @@
 """XML with the line of every element, without entities, external files and document types (defusedxml).
 
-Limits are on bytes, depth and number of elements; what exceeds them is refused before anything is built of it.
+Limits are on bytes, depth and number of elements; what exceeds them is refused before anything is built of it. Names
+are taken without their prefixes, which need not be declared, and the XML declaration may stand behind blank lines and
+comments: many robot files are written so.
 """
 
 from __future__ import annotations
@@ -9,10 +11,11 @@ import re
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
-from xml.etree.ElementTree import ParseError
+from xml.sax import SAXParseException
+from xml.sax.handler import ContentHandler
 
 from defusedxml.common import DefusedXmlException
-from defusedxml.ElementTree import DefusedXMLParser
+from defusedxml.expatreader import DefusedExpatParser
 
 from substructures.errors import InvalidDocument
 from substructures.interchange.numbers import Number, number_of
@@ -25,6 +28,9 @@ MAX_ELEMENTS = 200_000
 SHOWN = 60
 _NAMED = ("name", "class", "link", "joint", "body")
 _BEGINNING = re.compile(rb"^(?:\xef\xbb\xbf)?\s*<!doctype\s+html|^(?:\xef\xbb\xbf)?\s*<html", re.IGNORECASE)
+#: blank space, or the beginning of a comment
+_BEFORE = re.compile(rb"\s+|(<!--)")
+_DECLARATION = re.compile(rb"<\?xml\s[^<>]{0,200}\?>")
 
 
 @dataclass(slots=True)
@@ -83,25 +89,33 @@ def numbers_in(text: str, count: int | None, place: Place, name: str) -> tuple[N
     return tuple(number_of(word, place, name) for word in words)
 
 
-class _Builder:
-    """Target of the parser: builds nodes, counts depth and elements."""
+class _Builder(ContentHandler):
+    """Builds nodes; counts depth and elements."""
 
-    def __init__(self) -> None:
-        self.parser: Any = None
+    def __init__(self, parser: DefusedExpatParser) -> None:
+        super().__init__()
+        self.parser = parser
         self.stack: list[Node] = []
         self.root: Node | None = None
         self.count = 0
+        self.spaces: dict[str, str] = {}  #: namespaces by prefix
 
-    def start(self, tag: str, attributes: dict[str, str]) -> None:
-        node = Node(_local(tag), {_local(k): v for k, v in attributes.items()}, self.parser.CurrentLineNumber)
+    def startElement(self, name: str, attrs: Any) -> None:
+        given = dict(attrs.items())
+        self.spaces |= {key[6:]: uri for key, uri in given.items() if key.startswith("xmlns:")}
+        plain = {key: x for key, x in given.items() if ":" not in key and key != "xmlns"}
+        prefixed = {_local(key): x for key, x in given.items() if ":" in key and not key.startswith("xmlns:")}
+        node = Node(_local(name), prefixed | plain, self.parser.getLineNumber())
         self.count += 1
         if self.count > MAX_ELEMENTS:
             raise refuse(node.place, "too-large", f"more than {MAX_ELEMENTS:,} elements")
         if len(self.stack) >= MAX_DEPTH:
             raise refuse(node.place, "nesting", f"nested deeper than {MAX_DEPTH} levels")
-        if "XInclude" in tag:
+        prefix = name.partition(":")[0] if ":" in name else ""
+        space = self.spaces.get(prefix, "") + prefix
+        if "XInclude" in space or space == "xi":
             raise refuse(node.place, "external-file", "XInclude is not followed: put the file's content here")
-        if "xacro" in tag:
+        if "xacro" in space:
             raise refuse(node.place, "xacro", "this is a xacro file: expand it first, `xacro file.xacro > file.urdf`")
         if self.stack:
             self.stack[-1].children.append(node)
@@ -109,19 +123,30 @@ class _Builder:
             self.root = node
         self.stack.append(node)
 
-    def end(self, _tag: str) -> None:
+    def endElement(self, name: str) -> None:  # noqa: ARG002
         self.stack.pop()
 
-    def data(self, text: str) -> None:
-        if self.stack and not text.isspace():
-            self.stack[-1].text += text
-
-    def close(self) -> Node | None:
-        return self.root
+    def characters(self, content: str) -> None:
+        if self.stack and not content.isspace():
+            self.stack[-1].text += content
 
 
 def _local(name: str) -> str:
-    return name.rpartition("}")[2]
+    return name.rpartition(":")[2]
+
+
+def _declared_first(data: bytes) -> bytes:
+    """The file with its XML declaration at the beginning, where XML wants it; all lines keep their numbers."""
+    here = 3 if data.startswith(b"\xef\xbb\xbf") else 0
+    while found := _BEFORE.match(data, here):
+        end = data.find(b"-->", found.end()) + 3 if found[1] else found.end()
+        if end < found.end():
+            return data  # a comment that is not closed
+        here = end
+    declaration = _DECLARATION.match(data, here)
+    if declaration is None:
+        return data
+    return declaration[0] + data[:here].removeprefix(b"\xef\xbb\xbf") + data[declaration.end() :]
 
 
 def read_xml(data: bytes) -> Node:
@@ -130,20 +155,20 @@ def read_xml(data: bytes) -> Node:
         raise InvalidDocument.at("", "too-large", f"the file has {len(data):,} bytes; the limit is {MAX_BYTES:,}")
     if _BEGINNING.match(data[:200]):
         raise refuse(Place(1, "<html>"), "html", "this is a web page, no robot: download the raw file")
-    target = _Builder()
-    parser = DefusedXMLParser(target=target, forbid_dtd=True, forbid_entities=True, forbid_external=True)
-    target.parser = parser.parser
+    parser = DefusedExpatParser(forbid_dtd=True, forbid_entities=True, forbid_external=True)
+    target = _Builder(parser)
+    parser.setContentHandler(target)
     try:
-        parser.feed(data)
-        root = parser.close()
+        parser.feed(_declared_first(data))
+        parser.close()
     except DefusedXmlException as error:
-        line = parser.parser.CurrentLineNumber
         message = f"document types, entities and external files are refused ({type(error).__name__}): write them out"
-        raise refuse(Place(line, "<!DOCTYPE>"), "forbidden-xml", message) from None
-    except ParseError as error:
-        raise refuse(Place(error.position[0], "XML"), "not-well-formed", f"{error}") from None
+        raise refuse(Place(parser.getLineNumber() or 1, "<!DOCTYPE>"), "forbidden-xml", message) from None
+    except SAXParseException as error:
+        place = Place(error.getLineNumber() or 1, "XML")
+        raise refuse(place, "not-well-formed", error.getMessage()) from None
     except (ValueError, LookupError) as error:  # encodings that are not known, or not of one byte
         raise refuse(Place(1, "<?xml?>"), "encoding", f"{error}: save the file as UTF-8") from None
-    if not isinstance(root, Node):
+    if target.root is None:
         raise refuse(Place(1, "XML"), "not-well-formed", "the file has no element")
-    return root
+    return target.root

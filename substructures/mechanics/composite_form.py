@@ -91,6 +91,12 @@ def binet(theta: Symmetric, half: Scalar = Fraction(1, 2)) -> Symmetric:
     return half * (yy + zz - xx), half * (zz + xx - yy), half * (xx + yy - zz), -xy, -xz, -yz
 
 
+def moments_of_inertia(J: Symmetric) -> Symmetric:
+    """Theta = tr(J) 1 - J (xx, yy, zz, xy, xz, yz), moments about the axes and negative products, from Binet's J."""
+    xx, yy, zz, xy, xz, yz = J
+    return yy + zz, zz + xx, xx + yy, -xy, -xz, -yz
+
+
 def composites(joints: Sequence[OneDofJoint], bodies: Sequence[Inertia]) -> dict[int, Inertia]:
     """Inertia of every carrier with all that hangs on it: about O_k in frame k, of the whole about the interface.
 

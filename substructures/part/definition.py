@@ -328,6 +328,25 @@ class Input(Measured):
         return data if is_stored(info) else _in_its_unit(data, "default")
 
 
+class Relation(DocumentPart):
+    """q = multiplier * (q of the coordinate ``of``) + offset."""
+
+    coordinate: Name
+    of: Name
+    multiplier: Number = Field(1, description="constant")
+    offset: Number = Field(0, description="constant; rad or m")
+
+
+class LeftOut(DocumentPart):
+    """Something that the source of a definition says and its equations do not have: part and trees are warned of it.
+
+    ``relation``: between two coordinates that are both free here; states that do not fit it are told.
+    """
+
+    message: str = Field(max_length=2000)
+    relation: Relation | None = None
+
+
 class WithTables(Document):
     """A document with curves as CSV text, whose points it has from then on in the place of their names."""
 
@@ -359,6 +378,7 @@ class Definition(WithTables):
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
     ports: tuple[Port, ...] = Field((), max_length=500)
     loads: tuple[Load, ...] = Field((), max_length=1000)
+    left_out: tuple[LeftOut, ...] = Field((), max_length=1000, description="what the source says beside the equations")
 
     def __repr__(self) -> str:
         """Two lines: its name and title, and the names in it."""

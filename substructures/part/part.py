@@ -17,6 +17,7 @@ from substructures.part.certificate import certify_part, require_no_less, told_a
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
+from substructures.part.left_out import left_out_warnings, require_relations, weightless_warnings
 from substructures.part.loads import read_loads
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
@@ -211,15 +212,17 @@ def derive(
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+    is_stored: bool = False,
 ) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
     ``admit`` is told how many operations to expect before the work begins, and may raise instead. ``coupled``: what is
-    known of a part that was coupled of others, given how it is read and whether it is large.
+    known of a part that was coupled of others, given how it is read and whether it is large. ``is_stored``: the
+    definition was accepted once, so that contradictions of its units, which were texts in older versions, are warnings.
     Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
-    m, units, result = _derived(definition, max_nodes, admit, coupled)
+    m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
     return Part(definition, result, _certificate(m, result, units, perf_counter() - start))
 
 
@@ -234,8 +237,9 @@ def _derived(
     max_nodes: int,
     admit: Callable[[int], None] | None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
+    is_stored: bool = False,
 ) -> tuple[Mechanism, UnitCheck, Program]:
-    m, units, entries = _opened(definition)
+    m, units, entries = _opened(definition, is_stored)
     if admit is not None:
         admit(expected_operations([(j.parent, j.s) for j in m.topology.joints]))
     known = None if coupled is None else lambda: coupled(m, entries.is_large)
@@ -246,10 +250,12 @@ def _derived(
     return m, units, result
 
 
-def _opened(definition: Definition) -> tuple[Mechanism, UnitCheck, Entries]:
+def _opened(definition: Definition, is_stored: bool) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
+    require_relations(definition, m.topology.coordinates)
     units = check_units(definition, m.topology)
-    units.require()
+    if not is_stored:
+        units.require()
     # a definition of 500 bodies may have millions: refused before any work is done
     entries = entries_of([(j.parent, j.s) for j in m.topology.joints])
     entries.require("the mechanism")
@@ -271,6 +277,7 @@ def _certificate(m: Mechanism, result: Program, units: UnitCheck, seconds: float
     # contradictions in what was stored when units were texts; new definitions were refused
     old = [asdict(fault) for fault in units.faults]
     warnings = [*certificate["warnings"], *units.warnings, *old, *unused, *m.scope.notices]
+    warnings += [*left_out_warnings(m.definition), *weightless_warnings(result, m.topology.coordinates)]
     return certificate | {"warnings": warnings, "converted": units.converted}
 
 

@@ -18,10 +18,14 @@ SUM, NEGATION, PRODUCT, POWER, ATOM = range(5)
 
 
 class Piece(NamedTuple):
-    """A formula as text, with the precedence of its outermost operation."""
+    """A formula as text, with the precedence of its outermost operation.
+
+    ``closed``: where it ends with an argument without parentheses, cos q, the same with them, as before another factor.
+    """
 
     text: str
     precedence: int = ATOM
+    closed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +174,15 @@ class Language(ABC):
     def inside(self, piece: Piece, least: int) -> str:
         """Text of an operand, in parentheses when it binds less than demanded."""
         return piece.text if piece.precedence >= least else self.parentheses(piece.text)
+
+    def before(self, a: Piece, right: str) -> str:
+        """Text of a factor before another one: cos(q) m, since cos q m is the cosine of q m; but cos q sin p."""
+        left = self.inside(a, PRODUCT)
+        return a.closed if a.closed and left == a.text and not self.begins_with_function(right) else left
+
+    def begins_with_function(self, text: str) -> bool:  # noqa: ARG002 - here arguments have parentheses
+        """Whether a factor is a cosine or the like, which no argument without parentheses goes on with."""
+        return False
 
     def parentheses(self, text: str) -> str:
         """The text in parentheses."""

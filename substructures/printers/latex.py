@@ -101,16 +101,21 @@ class Latex(Language):
         return Piece(power, POWER) if mantissa == "1" else Piece(rf"{mantissa} \cdot {power}", PRODUCT)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
-        """The exponent stands before the angle, which needs no parentheses as a single name."""
+        """The exponent stands before the angle, which needs no parentheses as a single name that nothing follows."""
         head = self.functions[op] + (f"^{{{power}}}" if power != 1 else "")
-        text = " " + angle.text if angle.precedence == ATOM else _argument(angle.text)
-        return Piece(head + text, POWER)
+        closed = head + _argument(angle.text)
+        return Piece(f"{head} {angle.text}", POWER, closed) if angle.precedence == ATOM else Piece(closed, POWER)
+
+    def begins_with_function(self, text: str) -> bool:
+        """Whether it is a sine, a cosine or another one with a name."""
+        return text.startswith(tuple(self.functions.values()))
 
     def mul(self, a: Piece, b: Piece) -> Piece:
         """A thin space, or a dot before digits."""
-        left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
+        right = self.inside(b, PRODUCT)
         sign = r" \cdot " if right[0].isdigit() or right.startswith(r"\frac") else r" \, "
-        return Piece(left + sign + right, PRODUCT)
+        left = self.before(a, right) + sign
+        return Piece(left + right, PRODUCT, left + b.closed if b.closed and right == b.text else "")
 
     def is_too_wide(self, above: Piece, below: Piece) -> bool:
         """Whether a line has no room for more than that."""
@@ -123,10 +128,9 @@ class Latex(Language):
             power = f"{self.parentheses(b.text)}^{{-1}}"
             if b.precedence == POWER and b.text.endswith(_ROOT):
                 power = b.text.removesuffix(_ROOT) + CLOSING + "^{-1/2}"
-            return Piece(power, POWER) if a.text == "1" else Piece(f"{self.inside(a, PRODUCT)} \\, {power}", PRODUCT)
+            return Piece(power, POWER) if a.text == "1" else Piece(f"{self.before(a, power)} \\, {power}", PRODUCT)
         if width(above) > LINE - 50:
-            left = self.inside(a, PRODUCT) if a.precedence != SUM else self.parentheses(a.text)
-            return Piece(rf"\frac{{1}}{{{below}}} \, {left}", PRODUCT)
+            return self.mul(Piece(rf"\frac{{1}}{{{below}}}", PRODUCT), a)
         return Piece(rf"\frac{{{above}}}{{{below}}}", PRODUCT)
 
     def power(self, a: Piece, n: int) -> Piece:

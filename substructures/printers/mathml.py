@@ -61,6 +61,9 @@ _RULES = {
 }
 #: between factors: a thin space
 TIMES = '<mo lspace="0" rspace="0.17em">&#x2062;</mo>'
+#: between a function and its argument, and how a function with a name begins
+APPLIED = operator("&#x2061;")
+_FUNCTION = re.compile(r"<mrow>(?:<msup>)?<mi>[a-z0-9]+</mi>(?:<mn>\d+</mn></msup>)?<mo>&#x2061;")
 #: parentheses between which lines may end
 OPENING, CLOSING = '<mo stretchy="false">(</mo>', '<mo stretchy="false">)</mo>'
 #: names, numbers and signs of a formula that is broken before the signs of sums wherever they stand
@@ -153,11 +156,12 @@ class MathML(Language):
 
     def mul(self, a: Piece, b: Piece) -> Piece:
         """A thin space, or a dot before digits."""
-        left, right = self.inside(a, PRODUCT), self.inside(b, PRODUCT)
+        right = self.inside(b, PRODUCT)
         sign = DOT if right.startswith(("<mn>", "<mfrac>")) else TIMES
         # a line may end before what is broken
         sign += TERM if right.startswith(OPENING) else ""
-        return Piece(left + sign + right, PRODUCT)
+        left = self.before(a, right) + sign
+        return Piece(left + right, PRODUCT, left + b.closed if b.closed and right == b.text else "")
 
     def is_too_wide(self, above: Piece, below: Piece) -> bool:
         """Whether a line that is not broken may have no room for one of them."""
@@ -185,10 +189,16 @@ class MathML(Language):
         return Piece(f"<msup>{row(solid(text), '')}{exponent}</msup>", POWER)
 
     def trig(self, op: str, angle: Piece, power: int) -> Piece:
-        """The exponent stands before the angle, which needs no parentheses as a single name."""
+        """The exponent stands before the angle, which needs no parentheses as a single name that nothing follows."""
         head = f"<mi>{op}</mi>" if power == 1 else f"<msup><mi>{op}</mi><mn>{power}</mn></msup>"
-        text = '<mspace width="0.17em"/>' + angle.text if angle.precedence == ATOM else self._argument(angle.text)
-        return Piece(row(head, operator("&#x2061;"), text), POWER)
+        closed = row(head, APPLIED, self._argument(angle.text))
+        if angle.precedence != ATOM:
+            return Piece(closed, POWER)
+        return Piece(row(head, APPLIED, '<mspace width="0.17em"/>' + angle.text), POWER, closed)
+
+    def begins_with_function(self, text: str) -> bool:
+        """Whether it is a sine, a cosine or another one with a name."""
+        return _FUNCTION.match(text) is not None
 
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A root sign, bars of an absolute value, or the function's name."""
@@ -199,7 +209,7 @@ class MathML(Language):
         if op == "abs":
             return Piece(row(operator("|"), solid(args[0].text), operator("|")))
         inner = operator(",").join(solid(a.text) for a in args)
-        return Piece(row(f"<mi>{self.functions.get(op, op)}</mi>", operator("&#x2061;"), self._argument(inner)))
+        return Piece(row(f"<mi>{self.functions.get(op, op)}</mi>", APPLIED, self._argument(inner)))
 
     def _argument(self, text: str) -> str:
         return row(operator("("), solid(text), operator(")"))

@@ -7,6 +7,7 @@ from collections.abc import Iterable, Sequence
 
 from substructures.expr.operations import Output, Symbol
 from substructures.expr.syntax import RESERVED
+from substructures.quantities.quantity import OUTPUTS
 
 _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*", re.ASCII)
@@ -19,30 +20,9 @@ _UPPER = "omega Gamma Delta Theta Lambda Xi Pi Sigma Upsilon Phi Psi Omega"
 _OF_COORDINATES = {"tau": "tau", "p": "p", "momentum": "p"}
 #: those of quantities that belong to axes
 _OF_AXES = {"linear_momentum": "p", "angular_momentum": "L"}
-#: letters of quantities in LaTeX
-LETTERS = {
-    "metric": "g",
-    "christoffel": r"\Gamma",
-    "forces": "Q",
-    "coriolis": "C",
-    "forward_dynamics": r"\ddot{q}",
-    "inverse_metric": "g",
-    "christoffel_second": r"\Gamma",
-    "riemann": "R",
-    "ricci": "R",
-    "scalar_curvature": "R",
-    "energy": "E",
-    "kinetic_energy": "T",
-    "potential_energy": "V",
-    "lagrangian": "L",
-    "hamiltonian": "H",
-    "routhian": "R",
-    "power": "P",
-    "inverse_dynamics": r"\tau",
-    "nonlinear_effects": "h",
-}
-#: how many of the first indices stand above
-RAISED = {"inverse_metric": 2, "christoffel_second": 1}
+#: letters of quantities in LaTeX, and how many of the first indices stand above
+LETTERS = {name: array.symbol for name, array in OUTPUTS.items() if array.symbol}
+RAISED = {name: array.raised for name, array in OUTPUTS.items() if array.raised}
 _FONT = re.compile(r"\\math(?:rm|it)|[{}]")
 GREEK = frozenset(_LOWER.split()) | frozenset(_UPPER.split())
 MAX_COMMENT = 200

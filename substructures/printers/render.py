@@ -15,7 +15,6 @@ from substructures.expr.operations import MAX_ELEMENTS
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
-from substructures.expr.walk import transfer
 from substructures.printers.definitions import Definitions, defined, joined
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
@@ -27,7 +26,7 @@ from substructures.printers.names import instance_of, short_names
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms, at_once, textbook, textbook_inlined
 from substructures.textbook import read
-from substructures.textbook.forms import atoms_of, to_expr
+from substructures.textbook.forms import to_expr
 
 LANGUAGES: Mapping[str, type[Language]] = {
     "text": Text,
@@ -294,8 +293,7 @@ def _json(program: Program, form: str, limit: int) -> str:
 def _textbook_program(program: Program) -> Program:
     """A program that computes the textbook forms."""
     reading, new = read(program), Graph()
-    atoms = atoms_of(reading.forms)
-    moved = dict(zip(atoms, transfer(atoms, new, {}), strict=True))
+    moved = reading.atoms_in(new)
     formulas = {}
     for name, output in program.outputs.items():
         entries = {i: to_expr(f, new, moved) for i, f in zip(output.index, reading.outputs[name], strict=True)}

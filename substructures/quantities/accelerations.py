@@ -12,9 +12,10 @@ from substructures.compile.kernel import Places
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED, closed_solve, condition, definite_solve
 from substructures.mechanics.closure_rows import POSITIONS, RowSizes, row_sizes
+from substructures.quantities.closure_columns import row_bounds
 from substructures.quantities.derivatives import FD
 from substructures.quantities.formulas import DYNAMICS
-from substructures.quantities.table import CONDITION
+from substructures.quantities.quantity import CONDITION
 from substructures.tree.model import Model
 
 #: numbers of a block where an intermediate result is larger than the result
@@ -96,12 +97,15 @@ def closure_sizes(
     residual, jacobian, _ = CLOSED
     count = len(q)
 
-    def look(places: Array) -> tuple[Array, Array]:
-        """G and phi at other positions."""
+    def at(places: Array) -> dict[str, Any]:
+        """The values at other positions."""
         times = len(places) // count
         given = {name: np.tile(x, times) if np.shape(x) == (count,) else x for name, x in values.items()}
-        given |= {name: places[:, a] for a, name in enumerate(model.coordinates)}
-        there = evaluator(program, given, [jacobian, residual], len(places))
+        return given | {name: places[:, a] for a, name in enumerate(model.coordinates)}
+
+    def look(places: Array) -> tuple[Array, Array]:
+        """G and phi there."""
+        there = evaluator(program, at(places), [jacobian, residual], len(places))
         return there[jacobian], there[residual]
 
-    return row_sizes(model.joints, q, look)
+    return row_sizes(model.joints, q, look, lambda places: row_bounds(model, at(places), len(places)))

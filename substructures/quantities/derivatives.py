@@ -50,7 +50,7 @@ def _along(r: Workspace, rows: Sequence[Expr], fixed: frozenset[str] = frozenset
     return directional(rows, {s.name: r.graph.symbol(direction(s.name)) for s in varied})
 
 
-def inverse_dynamics_derivative(model: Model) -> Program:
+def inverse_dynamics_derivative(model: Model, _: int = MAX_NODES) -> Program:
     """Inverse dynamics and its directional derivative, one program with two outputs.
 
     ``inverse_dynamics`` (n,) [N m, N]; ``inverse_dynamics_derivative`` (n,): its derivative along the symbols ``d.*``

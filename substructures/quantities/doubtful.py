@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.quantities.conditioning import Doubt, Look, closed_doubts, doubts, is_usable
-from substructures.quantities.table import CONDITION, QUANTITIES, REACTIONS, Quantity
+from substructures.quantities.quantity import CONDITION, REACTIONS, TABLE, Quantity
 
 _OPEN = (
     "the state does not meet the closures (also their velocities), or they lose rank there, or the metric is singular: "
@@ -50,8 +50,8 @@ def told_of(
     """What is to be said of accelerations and their derivatives, by quantity and state."""
     told = {}
     for name in names:
-        outputs = found[QUANTITIES[name].source]
-        if not QUANTITIES[name].pivots:
+        outputs = found[TABLE[name].source]
+        if not TABLE[name].pivots:
             continue
         if CONDITION in outputs:
             told[name] = closed_doubts(results[name], outputs[CONDITION], _OPEN)

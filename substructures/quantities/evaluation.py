@@ -22,13 +22,29 @@ from substructures.quantities.accelerations import (
     accelerations_on_closures,
     conditions,
 )
-from substructures.quantities.canonical import MOMENTA, momentum
+from substructures.quantities.canonical import momentum
 from substructures.quantities.conditioning import Look, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
-from substructures.quantities.derivatives import FD
 from substructures.quantities.doubtful import advice, result_of, state_warnings, told_of
+from substructures.quantities.quantity import (
+    CONDITION,
+    FORWARD,
+    MODEL,
+    OUTPUTS,
+    QUANTITIES,
+    REACTIONS,
+    TABLE,
+)
 from substructures.quantities.reaction_numbers import reaction_numbers
-from substructures.quantities.result import Evaluation, Failure, ParameterColumns, failures_of, without_axis
+from substructures.quantities.result import Evaluation, Failure, failures_of, without_axis
+from substructures.quantities.sources import (
+    PARTS,
+    Sources,
+    cost,
+    numbers_per_state,
+    read_quantities,
+    steps,
+)
 from substructures.quantities.states import (
     ArgumentsByName,
     StateInput,
@@ -38,29 +54,11 @@ from substructures.quantities.states import (
     read_states,
     require,
 )
-from substructures.quantities.table import (
-    AXES,
-    CONDITION,
-    MODEL,
-    PARTS,
-    POWERS,
-    QUANTITIES,
-    REACTIONS,
-    REGRESSOR,
-    Sources,
-    cost,
-    numbers_per_state,
-    read_quantities,
-    steps,
-)
 from substructures.quantities.warnings import Notice, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
-    "POWERS",
     "QUANTITIES",
-    "REACTIONS",
-    "REGRESSOR",
     "Direction",
     "Evaluation",
     "Evaluator",
@@ -212,7 +210,7 @@ def _asked(
     sources = _of_joints(sources, names, given.get("joints"))
     states = read_states(sources.model, given, limit)
     values = _values(sources, given, given.get("along"), states, names)
-    if any(name in MOMENTA for name in names):
+    if any(TABLE[name].of_momenta for name in names):
         values |= _momenta(sources, evaluator, values, states.count)
     chosen, inputs = (tuple(given.get(field) or ()) for field in ("parameters", "inputs"))
     return _Asked(sources, names, form, evaluator, states, values, chosen, inputs)
@@ -225,7 +223,7 @@ def _of_joints(sources: Sources, names: Sequence[str], joints: Sequence[str] | N
     if REACTIONS not in names:
         raise InvalidArgument.at("/joints", "not-supported", "'joints' goes with the quantity 'reactions'")
     found = replace(sources, joints=(joints,) if isinstance(joints, str) else tuple(joints))
-    found.transmitted()
+    found.of(REACTIONS)
     return found
 
 
@@ -253,8 +251,8 @@ def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[E
 
 def _told_of_values(asked: _Asked, q: Array, values: Mapping[str, Any], first: int) -> list[Notice]:
     sources, chosen = asked.sources, {name: values[name] for name in asked.chosen}
-    is_regressor = any(QUANTITIES[name].source == REGRESSOR for name in asked.names)
-    return value_warnings(sources, chosen, asked.inputs, q, sources.columns().parameters if is_regressor else (), first)
+    others = {symbol.name for each in sources.derived(asked.names) for symbol in each.program.symbols}
+    return value_warnings(sources, chosen, asked.inputs, q, others, first)
 
 
 def _answered(
@@ -263,9 +261,8 @@ def _answered(
     """The numbers of some states; ``warnings`` about their values."""
     sources, names, model = asked.sources, asked.names, asked.sources.model
     found = _computed(asked, values, states.count)
-    results = {name: result_of(QUANTITIES[name], found[QUANTITIES[name].source]) for name in names}
+    results = {name: result_of(TABLE[name], found[TABLE[name].source]) for name in names}
     told = told_of(names, found, results, _looking(model, values, states.count))
-    columns = sources.columns() if REGRESSOR in found else None
     shown = {name: asked.form.shown(result) for name, result in results.items()}
     failures: tuple[Failure, ...] = ()
     if asked.form.float32 or not _is_finite(names, found):
@@ -279,19 +276,16 @@ def _answered(
         model.program.digest,
         {name: without_axis(value) for name, value in shown.items()} if states.single else shown,
         failures,
-        model.frames if "kinematics" in results else None,
-        None if columns is None else ParameterColumns(columns.names, columns.units),
+        sources.labels(names),
         states.single,
         (*warnings, *state_warnings(results, told, states.single)),
-        sources.transmitted().rows if REACTIONS in found else None,
-        sources.by_load().rows if POWERS in found else None,
     )
 
 
 def _is_finite(names: Sequence[str], found: Mapping[str, Mapping[str, Array]]) -> bool:
     """Whether the engine has seen that all results are, and nothing is put in their places for another reason."""
     seen = all(isinstance(outputs, Evaluated) and outputs.finite for outputs in found.values())
-    return seen and not any(QUANTITIES[name].pivots for name in names)
+    return seen and not any(TABLE[name].pivots for name in names)
 
 
 def check(
@@ -335,19 +329,19 @@ def _computed(asked: _Asked, values: Mapping[str, Any], count: int) -> dict[str,
             found[MODEL] = with_elements(sources.numbers(values, names, count), places)
             continue
         if program is None:
-            nothing = {name: np.full((count, *(model.dof,) * AXES.get(name, 1)), np.nan) for name in names}
-            found[source] = nothing | {"pivots": np.zeros((count, model.dof))}
+            found[source] = {name: np.full((count, *_shape(name, model.dof)), np.nan) for name in names}
+            found[source]["pivots"] = np.zeros((count, model.dof))
             continue
         if source == REACTIONS:
-            motion = result_of(QUANTITIES[FD], found[FD]) if FD in found else None
+            motion = result_of(TABLE[FORWARD], found[FORWARD]) if FORWARD in found else None
             found[source] = reaction_numbers(model, sources.program, values, motion, evaluator, count)
             continue
         require(program, names, values)
         if source == CONDITION:
             found[source] = {CONDITION: conditions(model, values, evaluator, count)}
-        elif source == FD and model.closures:
+        elif source == FORWARD and model.closures:
             found[source] = accelerations_on_closures(model, program, values, evaluator, count)
-        elif program is model.program and source == FD:
+        elif program is model.program and source == FORWARD:
             found[source] = accelerations(model, values, evaluator, count)
         else:
             # engines that do not know of places are not asked for them
@@ -356,6 +350,11 @@ def _computed(asked: _Asked, values: Mapping[str, Any], count: int) -> dict[str,
             if "inertias" in names:
                 found[source] = solved_anew(found[source], source, look)
     return found
+
+
+def _shape(output: str, n: int) -> tuple[int, ...]:
+    """Of an output that has no result in any state, of one axis where it only tells that there is none."""
+    return OUTPUTS[output].shape({"coordinates": n}) if output in OUTPUTS else (n,)
 
 
 def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
@@ -377,7 +376,7 @@ def _values(
     """Values of all symbols. Raises InvalidArgument for an argument that a quantity needs."""
     model = sources.model
     # the first quantity that needs an argument is the one that a message names
-    needed = {field: name for name in reversed(quantities) for field in QUANTITIES[name].requires}
+    needed = {field: name for name in reversed(quantities) for field in TABLE[name].requires}
     if "qdd" in needed and states.qdd is None and model.dof:
         raise InvalidArgument.at("/qdd", "missing", f"{needed['qdd']} needs accelerations 'qdd'")
     if "reactions" in quantities and states.qdd is not None and model.closures:

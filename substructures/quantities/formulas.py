@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from substructures.certificate.served import SERVED
 from substructures.errors import TooLarge
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
-from substructures.quantities import canonical, derivatives
 from substructures.quantities.canonical import momentum
 from substructures.quantities.certificate import certified
 from substructures.quantities.memo import ProgramCache
+from substructures.quantities.quantity import DERIVED, PROGRAMS
 from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model, require_stored
 
@@ -21,7 +19,7 @@ from substructures.tree.model import Model, require_stored
 DYNAMICS = ("metric", "bias", "forces")
 
 
-def _coriolis(model: Model, max_nodes: int) -> Program:
+def coriolis(model: Model, max_nodes: int) -> Program:
     """C_ab = Gamma_abc q'^c."""
     require_stored(model.program, ["christoffel"])
     products = sum(1 for _ in model.program.outputs["christoffel"].expanded())
@@ -34,12 +32,13 @@ def _coriolis(model: Model, max_nodes: int) -> Program:
     return r.program({"coriolis": Formulas((r.n, r.n), entries)})
 
 
-def _inverse_dynamics(model: Model, _: int) -> Program:
+def inverse_dynamics(model: Model, _: int) -> Program:
+    """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a."""
     r = Workspace(model)
     return r.program({ID: vector(r.inverse_dynamics())})
 
 
-def _kinetic_energy(model: Model, _: int) -> Program:
+def kinetic_energy(model: Model, _: int) -> Program:
     """1/2 g_ab q'^a q'^b."""
     r = Workspace(model)
     # p_a = g_ab q'^b, then 2 T = p_a q'^a
@@ -48,13 +47,13 @@ def _kinetic_energy(model: Model, _: int) -> Program:
     return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
 
 
-def _generalised_momenta(model: Model, _: int) -> Program:
+def generalised_momenta(model: Model, _: int) -> Program:
     """p_a = g_ab q'^b = dL/dq'^a."""
     r = Workspace(model)
     return r.program({"generalised_momenta": Formulas((r.n,), r.times_velocity(r.elements("metric")))})
 
 
-def _lagrangian(model: Model, _: int) -> Program:
+def lagrangian(model: Model, _: int) -> Program:
     """L = T - V."""
     r = Workspace(model)
     momentum = r.times_velocity(r.elements("metric"))
@@ -62,13 +61,13 @@ def _lagrangian(model: Model, _: int) -> Program:
     return r.program({"lagrangian": Formulas((), {(): twice / 2 - r.scalar("potential_energy")})})
 
 
-def _power(model: Model, _: int) -> Program:
+def power(model: Model, _: int) -> Program:
     """Q_a q'^a, not summed."""
     r = Workspace(model)
     return r.program({"power": vector([Q * r.velocity_symbol(a) for a, Q in enumerate(r.vector("forces"))])})
 
 
-def _total_momentum(model: Model, _: int) -> Program:
+def total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities."""
     r, outputs = Workspace(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
@@ -80,31 +79,6 @@ def _total_momentum(model: Model, _: int) -> Program:
     return r.program(outputs)
 
 
-#: outputs of the model that quantities are made of, others of the equations of motion
-NEEDS = {
-    "coriolis": ("christoffel",),
-    "lagrangian": ("metric", "potential_energy"),
-    "total_momentum": ("linear_momentum", "angular_momentum"),
-    "christoffel_second_kind": ("metric", "christoffel"),
-    "hamiltonian": ("metric", "potential_energy"),
-}
-_FORMULAS: dict[str, Callable[[Model, int], Program]] = {
-    "coriolis": _coriolis,
-    "inverse_dynamics": _inverse_dynamics,
-    "forward_dynamics": derivatives.forward_dynamics,
-    "kinetic_energy": _kinetic_energy,
-    "lagrangian": _lagrangian,
-    "generalised_momenta": _generalised_momenta,
-    "power": _power,
-    "total_momentum": _total_momentum,
-    "inverse_metric": canonical.inverse_metric,
-    "christoffel_second_kind": canonical.christoffel_second_kind,
-    "hamiltonian": canonical.hamiltonian,
-    "canonical_equations": canonical.canonical_equations,
-    "inverse_dynamics_derivative": lambda model, _: derivatives.inverse_dynamics_derivative(model),
-    "forward_dynamics_derivative": derivatives.forward_dynamics_derivative,
-}
-DERIVED = tuple(_FORMULAS)
 CLOSED_DYNAMICS = "closed_dynamics"
 
 
@@ -127,11 +101,14 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """
     if quantity == CLOSED_DYNAMICS:  # no larger than the model
         return model.program.select([*DYNAMICS, *CLOSED])
-    result = hoisted(_FORMULAS[quantity](model, max_nodes))
+    if quantity not in DERIVED:
+        raise KeyError(quantity)
+    made = PROGRAMS[quantity]
+    result = hoisted(made.function(model, max_nodes))
     if len(result) > max_nodes:
         raise TooLarge(f"the program of '{quantity}' (in operations)", len(result), max_nodes)
     more = dict.fromkeys(map(momentum, model.coordinates), "parameter")
-    return certified(result, model, SERVED[quantity], quantity, needs=NEEDS.get(quantity, DYNAMICS), more=more)
+    return certified(result, model, SERVED[quantity], quantity, needs=made.needs.split(), more=more)
 
 
 _programs = ProgramCache()

@@ -7,7 +7,7 @@ once for all trees. The evaluated square commutes with the symbolic one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
 from pathlib import Path
@@ -55,6 +55,11 @@ ASKED_FOR = {
 BLOCK = 2048
 #: elements of dense Christoffel symbols at a time
 DENSE = 20_000_000
+
+
+def gives(names: Iterable[str]) -> bool:
+    """Whether a tree of parts gives these outputs: all but rows of closures, which only the formulas of a tree have."""
+    return not any(name.startswith("closure.") for name in names)
 
 
 class CompiledParts:

@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -119,9 +120,9 @@ def numeric(given: Any, pointer: str) -> Array:
 def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
     if isinstance(given, (list, tuple)) and depth < 3:
         for i, x in enumerate(given):
-            if not isinstance(x, (int, float, Decimal)) or isinstance(x, bool):
+            if not isinstance(x, (int, float, Decimal, Real)) or isinstance(x, bool):
                 _check_numbers(x, f"{pointer}/{i}", depth + 1)
-    elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal)):
+    elif isinstance(given, bool) or not isinstance(given, (int, float, Decimal, Real)):
         raise InvalidArgument.at(pointer, "number-expected", f"a number is needed, found {_shown(given)}")
 
 

@@ -13,19 +13,10 @@ from substructures.array import Array
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
-from substructures.quantities.derivatives import FD
-from substructures.quantities.result import Evaluation, ParameterColumns, without_axis
+from substructures.quantities.quantity import CONDITION, FORWARD, REACTIONS, TABLE
+from substructures.quantities.result import Evaluation, without_axis
+from substructures.quantities.sources import PARTS, Sources, read_quantities, steps
 from substructures.quantities.states import default_numbers, input_defaults
-from substructures.quantities.table import (
-    CONDITION,
-    PARTS,
-    POWERS,
-    QUANTITIES,
-    REGRESSOR,
-    Sources,
-    read_quantities,
-    steps,
-)
 from substructures.quantities.warnings import value_warnings
 
 #: the arguments that it takes, beside the quantities
@@ -46,26 +37,23 @@ class OneState:
         MissingValue for a parameter without a default.
         """
         self._names, model = read_quantities(quantities), sources.model
-        wanted = [QUANTITIES[name] for name in self._names]
+        wanted = [TABLE[name] for name in self._names]
         if not model.dof or any(each.pivots or "along" in each.requires for each in wanted):
             raise ValueError("more than kernels is needed")
         self._model, self._judge = model, sources.judge
         self._state = {name: np.zeros(model.dof) for name in STATE[:-1]} | {"t": np.zeros(1)}
         self._needed = {field for each in wanted for field in each.requires} | {"q"}
         self._runs, self._numbers, found = self._bound(sources, kernel)
-        self._results = {name: QUANTITIES[name].of(found[QUANTITIES[name].source]) for name in self._names}
-        columns = sources.columns() if REGRESSOR in found else None
-        others = () if columns is None else columns.parameters
+        self._results = {name: TABLE[name].of(found[TABLE[name].source]) for name in self._names}
+        others = {symbol.name for each in sources.derived(self._names) for symbol in each.program.symbols}
         self._evaluation = partial(
             Evaluation,
             model.coordinates,
             1,
             model.program.digest,
-            frames=model.frames if "kinematics" in self._results else None,
-            columns=None if columns is None else ParameterColumns(columns.names, columns.units),
+            labels=sources.labels(self._names),
             single=True,
             warnings=tuple(value_warnings(sources, {}, (), None, others)),
-            loads=sources.by_load().rows if POWERS in found else None,
         )
 
     def at(self, given: Mapping[str, Any]) -> Evaluation | None:
@@ -98,7 +86,8 @@ class OneState:
                 return False
             if not np.isfinite(array).all():
                 return False
-        return self._judge is None or not self._judge.left(self._model.coordinates, self._state["q"][None], {})
+        names, q, judge = self._model.coordinates, self._state["q"][None], self._judge
+        return judge is None or not (judge.left(names, q, {}) or judge.apart(names, q))
 
     def _bound(
         self, sources: Sources, kernel: Callable[[Program, list[str]], Kernel]
@@ -106,7 +95,7 @@ class OneState:
         """Calls of the kernels, one array for all that they write, and its parts by source and output."""
         values = self._values(sources)
         programs = list(steps(sources, self._names))
-        if any(program is None or source in (CONDITION, PARTS, FD) for source, program, _ in programs):
+        if any(program is None or source in (CONDITION, PARTS, FORWARD, REACTIONS) for source, program, _ in programs):
             raise ValueError("more than kernels is needed")
         kernels = [(source, kernel(program, names), names) for source, program, names in programs if program]
         sizes = [prod(each.shape(name)) for _, each, names in kernels for name in names]

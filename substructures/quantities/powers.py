@@ -8,21 +8,19 @@ loads of the tree by type and name, ``bushing mount``. Closures do no work. The 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.certificate.powers import OUTPUT, power_outputs
-from substructures.errors import TooLarge
 from substructures.expr.graph import Expr
-from substructures.expr.program import Program, array, program
+from substructures.expr.program import Formulas, array
 from substructures.expr.replay import replay
 from substructures.part.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.pairs import wrench_forces
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.of_parts import OfParts, formed
 from substructures.tree.applied_wrenches import part_symbols
-from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.certificate import certify_rows
+from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.loads import loads_apart
@@ -33,38 +31,25 @@ from substructures.tree.mounted_part import PlacedPart
 Row = tuple[str, Mapping[int, Any]]
 
 
-@dataclass(frozen=True)
-class PowerModel:
+class PowerModel(OfParts):
     """Powers of a tree. ``program``: the output ``powers`` (rows,) [W], functions of t, q, q', inputs and parameters;
     ``rows``: what each is of.
     """
 
-    program: Program
-    rows: tuple[str, ...]
-    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    axis = "loads"
 
 
 def powers(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> PowerModel:
-    """The powers of a tree of stored parts (by instance name).
+    """The powers of a tree of stored parts (by instance name). Raises as :func:`.of_parts.formed`."""
+    return PowerModel(*formed("powers", spec, parts, _outputs, power_outputs, max_nodes))
 
-    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
-    VerificationFailed unless every row is what the documents say.
-    """
-    assembly = assemble(spec, parts)
-    rates = rate_symbols(assembly)[0]
-    try:
-        found = list(_rows(assembly, rates))
-    except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
-    graph, rows = assembly.scope.graph, tuple(name for name, _ in found)
+
+def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], list[str]]:
+    graph, rates = assembly.scope.graph, rate_symbols(assembly)[0]
+    found = list(_rows(assembly, rates))
     # P = Q_a q'^a
     watts = [graph.sum(graph.lift(Q) * rates[a] for a, Q in forces.items()) for _, forces in found]
-    result = program(graph, {OUTPUT: array((len(rows),), lambda k: watts[k])}, assembly.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the powers (in operations)", len(result), max_nodes)
-    definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows("powers", spec, definitions, result, rows, power_outputs)
-    return PowerModel(result, rows, assembly.parameters)
+    return {OUTPUT: array((len(found),), lambda k: watts[k])}, [name for name, _ in found]
 
 
 def _rows(assembly: Assembly, rates: Sequence[Expr]) -> Iterator[Row]:

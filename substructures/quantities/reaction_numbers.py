@@ -10,12 +10,12 @@ import numpy as np
 from substructures.array import Array
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
-from substructures.mechanics.closure_rows import RANK
+from substructures.mechanics.closure_rows import ranks
 from substructures.quantities.accelerations import Evaluator, closure_sizes
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS
+from substructures.quantities.quantity import REACTIONS
 from substructures.quantities.reactions import OUTPUTS
 from substructures.quantities.states import require
-from substructures.quantities.table import REACTIONS
 from substructures.tree.model import Model
 
 
@@ -61,8 +61,10 @@ def _multipliers(
 
 def least_norm(G: Array, reach: Array, right: Array) -> Array:
     """lambda (m,) of least norm with G^T lambda = right, the rank judged by the rows of G over their reach."""
+    if not len(G):
+        return np.zeros(0)
     left, sizes, turned = np.linalg.svd(G / reach[:, None])
-    rank = int((sizes > RANK * max(1.0, sizes.max(initial=0.0))).sum())
+    rank = int(ranks(sizes))
     # (G / reach)^T (reach lambda) = right
     found: Array = left[:, :rank] @ ((turned[:rank] @ right) / sizes[:rank]) / reach
     if rank < len(G):

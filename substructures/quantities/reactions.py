@@ -17,22 +17,21 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
-from typing import Any
 
 from substructures.certificate.reactions import reaction_outputs
-from substructures.errors import InvalidArgument, TooLarge, meant
+from substructures.errors import InvalidArgument, meant
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, Program, program
+from substructures.expr.program import Formulas, program
 from substructures.expr.replay import replay
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
 from substructures.mechanics.newton_euler import Wrench, inertial_load
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.of_parts import OfParts, formed
 from substructures.quantities.regressor import DYNAMIC, bare
 from substructures.tree.applied_wrenches import applied_wrenches
-from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.certificate import certify_rows
+from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
@@ -47,8 +46,7 @@ FIELDS = ("force", "moment", "force_world", "moment_world")
 _LEFT_OUT = tuple(name for name in DYNAMIC if name not in ("load.at", "load.vector"))
 
 
-@dataclass(frozen=True)
-class ReactionModel:
+class ReactionModel(OfParts):
     """Reactions of a tree.
 
     ``program``: OUTPUTS, (rows, 3) each, functions of t, q, q', q'', inputs, free parameters, and of the multipliers
@@ -57,9 +55,7 @@ class ReactionModel:
     the third axis is that of the joint, and the moment is about the origin of the body frame (O_k + tau e3).
     """
 
-    program: Program
-    rows: tuple[str, ...]
-    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    axis = "joints"
 
     def of(self, joints: Sequence[str] | None) -> ReactionModel:
         """Of some rows alone. Raises InvalidArgument (``/joints/i``, ``unknown-joint``)."""
@@ -104,23 +100,8 @@ def _chosen(known: _ByDigest, joints: tuple[str, ...]) -> ReactionModel:
 
 
 def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> ReactionModel:
-    """The reactions of a tree of stored parts (by instance name).
-
-    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
-    VerificationFailed unless every element is what the documents say.
-    """
-    assembly = assemble(spec, parts)
-    try:
-        outputs, rows = _outputs(assembly)
-    except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
-    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the reactions (in operations)", len(result), max_nodes)
-    multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
-    definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows("reactions", spec, definitions, result, rows, reaction_outputs, multipliers)
-    return ReactionModel(result, rows, assembly.parameters)
+    """The reactions of a tree of stored parts (by instance name). Raises as :func:`.of_parts.formed`."""
+    return ReactionModel(*formed("reactions", spec, parts, _outputs, reaction_outputs, max_nodes))
 
 
 def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:

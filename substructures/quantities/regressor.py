@@ -22,21 +22,21 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 from substructures.certificate.regressed import regressor_outputs
-from substructures.errors import InvalidArgument, TooLarge
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.composite_form import Inertia, pairing
+from substructures.mechanics.composite_form import Inertia, moments_of_inertia, pairing
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
-from substructures.mechanics.linear3 import Scalar, negate, transpose
+from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.of_parts import formed
 from substructures.quantities.regrouping import named_frames, relations
 from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
 from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
-from substructures.tree.assembly import Assembly, assemble, division_by_zero
-from substructures.tree.certificate import certify_rows
+from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
@@ -59,7 +59,9 @@ class RegressorModel:
     """Y and pi of a tree.
 
     ``program``: outputs ``regressor`` (n, 10 links) [SI units per unit of the parameter], a function of q, q', q'' and
-    the free parameters, and ``inertial_parameters`` (10 links,), pi as a function of the free parameters.
+    the free parameters, ``inertial_parameters`` (10 links,), pi, and ``moments_of_inertia`` (links, 3, 3) [kg m^2],
+    Theta about the origin of the body frame in its axes, with products of inertia -integral x y dm beside the diagonal;
+    both functions of the free parameters.
     ``names`` and ``units``: of the columns, ``instance.body.m`` [kg], ``.sx .sy .sz`` = m times the mass centre [kg m],
     ``.Jxx .Jyy .Jzz .Jxy .Jxz .Jyz`` = integral of x x^T dm [kg m^2] (Theta = tr(J) 1 - J), about the origin of the
     body frame in its axes. A link is a moving body with all that is fixed to it in the same part; ``instance.base``
@@ -78,6 +80,12 @@ class RegressorModel:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     regrouping: Program
     closures: tuple[ClosureRows, ...] = ()
+
+    @property
+    def labels(self) -> Mapping[str, Any]:
+        """Names by axis."""
+        links = tuple(name.removesuffix(".m") for name in self.names[::10])
+        return {"columns": ParameterColumns(self.names, self.units), "links": links}
 
     def evaluate(
         self,
@@ -106,7 +114,7 @@ class RegressorModel:
             self.program.digest,
             {name: x[0] if states.single else x for name, x in results.items()},
             failures_of(results, lambda _name, _state: ("not-finite", "the result is not finite")),
-            columns=ParameterColumns(self.names, self.units),
+            labels=self.labels,
             single=states.single,
         )
 
@@ -128,35 +136,36 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     parts hold, bound to the tree's parameters. Raises InvalidDocument with pointers into the tree document, or TooLarge
     for more than ``max_nodes`` operations.
     """
-    assembly = assemble(spec, parts)
-    n = sum(m.part.dof for m in assembly.mounted)
-    try:
-        links = _links(over_formulas(assembly.scope.graph), assembly)
-        Y: dict[tuple[int, ...], Scalar] = {
-            (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
-        }
-        # pi = (m, s, J) of every link, so that Y pi = g q'' + Gamma q' q' - Q(gravity)
-        pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
-    except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
-    outputs = {"regressor": Formulas((n, len(pi)), Y), "inertial_parameters": array((len(pi),), lambda i: pi[i])}
-    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
-    if len(result) > max_nodes:
-        raise TooLarge("the regressor (in operations)", len(result), max_nodes)
-    named = [pair for link in links for pair in inertia_names(link.name)]
-    definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows("regressor", spec, definitions, result, [name for name, _ in named], regressor_outputs)
-    used = {symbol.name for symbol in result.symbols}
+    result, names, parameters = formed("regressor", spec, parts, _outputs, regressor_outputs, max_nodes)
+    assembly, used = assemble(spec, parts), {symbol.name for symbol in result.symbols}
     return RegressorModel(
         result,
         tuple(f"{i.name}.{c}" for i, m in _pairs(assembly) for c in m.part.coordinates),
         "".join(m.part.joints for m in assembly.mounted),
-        tuple(name for name, _ in named),
-        tuple(unit for _, unit in named),
-        {name: value for name, value in assembly.parameters.items() if name in used},
-        _regrouping(assemble(spec, parts)),
+        names,
+        tuple(unit for name in names[::10] for _, unit in inertia_names(name.removesuffix(".m"))),
+        {name: value for name, value in parameters.items() if name in used},
+        _regrouping(assembly),
         tuple(cut.rows for cut in assembly.cuts),
     )
+
+
+def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], list[str]]:
+    links = _links(over_formulas(assembly.scope.graph), assembly)
+    n = sum(m.part.dof for m in assembly.mounted)
+    Y: dict[tuple[int, ...], Scalar] = {
+        (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
+    }
+    # pi = (m, s, J) of every link, so that Y pi = g q'' + Gamma q' q' - Q(gravity)
+    pi = [x for link in links for x in (link.inertia.m, *link.inertia.s, *link.inertia.J)]
+    # Theta = tr(J) 1 - J
+    theta = [moments_of_inertia(link.inertia.J) for link in links]
+    outputs = {
+        "regressor": Formulas((n, len(pi)), Y),
+        "inertial_parameters": array((len(pi),), lambda i: pi[i]),
+        "moments_of_inertia": array((len(links), 3, 3), lambda k, i, j: theta[k][SYMMETRIC_INDEX[i][j]]),
+    }
+    return outputs, [name for link in links for name, _ in inertia_names(link.name)]
 
 
 def _regrouping(assembly: Assembly) -> Program:

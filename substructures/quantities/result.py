@@ -33,6 +33,13 @@ class ParameterColumns:
     units: tuple[str, ...]
 
 
+def plain_names(names: Any) -> Any:
+    """Names of places along an axis as plain data, with units where they have some."""
+    if isinstance(names, ParameterColumns):
+        return {"names": list(names.names), "units": list(names.units)}
+    return list(names)
+
+
 @dataclass(frozen=True)
 class Evaluation:
     """Numbers of a model for N states, or for one.
@@ -41,9 +48,10 @@ class Evaluation:
     ``result["kinematics"]`` a mapping of arrays: ``position`` (N, frames, 3), ``rotation`` (N, frames, 3, 3), ``U`` and
     ``Omega`` (N, frames, n, 3); ``result["momentum"]`` one of ``linear`` and ``angular`` (N, 3).
 
-    ``coordinates`` name the axes n, ``frames`` those of kinematics, ``columns`` those of the regressor,
-    ``joints`` the rows of reactions, ``loads`` those of powers. ``count`` = N;
-    ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis of states;
+    ``coordinates`` name the axes n, ``labels`` all others by their names in
+    :mod:`substructures.quantities.quantity`: ``frames``, ``columns`` (of the regressor), ``joints``, ``loads``, ...
+    ``count`` = N; ``digest``: of the model's program; ``failures``: where numbers are not finite; ``single``: no axis
+    of states;
     ``warnings`` (pointer, code, message; state and quantity of some): parameters that no body can have, limits that
     states leave, accelerations that are doubtful, and more.
     """
@@ -53,16 +61,33 @@ class Evaluation:
     digest: str
     quantities: Mapping[str, Value] = field(hash=False)
     failures: tuple[Failure, ...] = ()
-    frames: tuple[str, ...] | None = None
-    columns: ParameterColumns | None = None
+    labels: Mapping[str, Any] = field(default_factory=dict, hash=False)
     single: bool = False
     warnings: tuple[Mapping[str, Any], ...] = ()
-    joints: tuple[str, ...] | None = None
-    loads: tuple[str, ...] | None = None
 
     def __getitem__(self, quantity: str) -> Value:
         """The array of a quantity, or a mapping of arrays. Raises KeyError for one that was not asked for."""
         return self.quantities[quantity]
+
+    @property
+    def frames(self) -> tuple[str, ...] | None:
+        """The places of kinematics: bodies and ports."""
+        return self.labels.get("frames")
+
+    @property
+    def columns(self) -> ParameterColumns | None:
+        """The inertial parameters that columns of the regressor belong to."""
+        return self.labels.get("columns")
+
+    @property
+    def joints(self) -> tuple[str, ...] | None:
+        """The rows of reactions."""
+        return self.labels.get("joints")
+
+    @property
+    def loads(self) -> tuple[str, ...] | None:
+        """The rows of powers."""
+        return self.labels.get("loads")
 
     def __repr__(self) -> str:
         shapes = ", ".join(f"{name} {shape}" for name, shape in _shapes(self.quantities))
@@ -78,14 +103,7 @@ class Evaluation:
         """
         about: dict[str, Any] = {"coordinates": list(self.coordinates), "count": self.count}
         about["digest"] = self.digest if digest is None else digest
-        if self.frames is not None:
-            about["frames"] = list(self.frames)
-        if self.columns is not None:
-            about["columns"] = {"names": list(self.columns.names), "units": list(self.columns.units)}
-        if self.joints is not None:
-            about["joints"] = list(self.joints)
-        if self.loads is not None:
-            about["loads"] = list(self.loads)
+        about |= {axis: plain_names(names) for axis, names in self.labels.items()}
         about["warnings"] = [dict(warning) for warning in self.warnings]
         return {**about, **self.quantities, "failures": [asdict(failure) for failure in self.failures]}
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.quantities.table import Sources
+from substructures.quantities.sources import Sources
 
 Notice = Mapping[str, str]
 #: warnings about a tree that its parameters decide, so that those given here are looked at instead
@@ -25,7 +25,7 @@ def value_warnings(
     first: int = 0,
 ) -> list[Notice]:
     """Impossible bodies with these ``parameters``, given in place of defaults; those and ``inputs`` without effect;
-    limits left by ``q`` (N, n), if given; gravity that nobody gave.
+    limits left by ``q`` (N, n), if given, and relations that it does not fit; gravity that nobody gave.
     ``others``: parameters that other formulas than those of the model depend on; ``first``: what states are counted
     from.
 
@@ -46,6 +46,7 @@ def value_warnings(
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None and q is not None:
         notices += judge.left(model.coordinates, q, parameters, first)
+        notices += judge.apart(model.coordinates, q, first)
     return notices
 
 

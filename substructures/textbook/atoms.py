@@ -51,7 +51,9 @@ class Atoms:
     def _rank(self, atom: Expr) -> int:
         if atom.op == "sym":
             return _rank_of(self.symbols[str(atom.value)])
-        ranks = [_rank_of(self.symbols[str(e.value)]) for e in reachable([atom]) if e.op == "sym"]
+        names = [str(e.value) for e in reachable([atom]) if e.op == "sym"]
+        # those of constant angles are none of the program
+        ranks = [_rank_of(self.symbols[name]) for name in names if name in self.symbols]
         if not ranks:
             return NUMBER
         return MOVING if MOVING in ranks else PARAMETER

@@ -17,6 +17,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, Atoms, Monomial, Polynomial, monomial_key, times
 from substructures.textbook.forms import Factor, Sum, Term, leaves, product
+from substructures.textbook.work import Work
 
 #: terms of a polynomial that is factored
 FACTORED = 60
@@ -70,8 +71,8 @@ def divided(polynomial: Polynomial, number: Fraction, common: Monomial) -> dict[
 class Collector:
     """Collects polynomials in the same atoms."""
 
-    def __init__(self, atoms: Atoms) -> None:
-        self.atoms = atoms
+    def __init__(self, atoms: Atoms, work: Work) -> None:
+        self.atoms, self.work = atoms, work
         self._known: dict[frozenset[tuple[Monomial, Fraction]], Sum] = {}
 
     def __call__(self, polynomial: Polynomial) -> Sum:
@@ -85,7 +86,7 @@ class Collector:
         plain = self.plain(polynomial)
         if len(polynomial) < 2:
             return plain
-        number, parts = factored(polynomial, Fraction(1))
+        number, parts = factored(polynomial, Fraction(1), self.work)
         if sum(n for part, n in parts if len(part) > 1) > 1:
             factors: list[tuple[Factor, int]] = [(self(part), n) for part, n in parts]
             return Sum((product(number, self.in_order(factors)),))
@@ -99,7 +100,7 @@ class Collector:
             return
         for one in sorted(polynomial, key=monomial_key):
             rest = {m: c for m, c in polynomial.items() if m != one}
-            number, parts = factored(rest, Fraction(1))
+            number, parts = factored(rest, Fraction(1), self.work)
             if sum(n for part, n in parts if len(part) > 1) > 1:
                 whole = product(number, self.in_order((self(part), n) for part, n in parts))
                 terms = [(min(rest, key=monomial_key), [whole]), *self._terms({one: polynomial[one]})]
@@ -108,7 +109,7 @@ class Collector:
     def factored(self, polynomial: Polynomial) -> Term:
         """One product: common factors, then what is left as sum."""
         number, common = content(polynomial)
-        number, parts = factored(divided(polynomial, number, common), number)
+        number, parts = factored(divided(polynomial, number, common), number, self.work)
         sums: list[tuple[Factor, int]] = [(self(part), n) for part, n in parts]
         return product(number, self.in_order([*self.atoms.factors(common), *sums]))
 
@@ -118,7 +119,7 @@ class Collector:
 
     def written(self, polynomial: Polynomial) -> Sum:
         """Irreducible factors, squares of binomials, or else term by term."""
-        number, parts = factored(polynomial, Fraction(1))
+        number, parts = factored(polynomial, Fraction(1), self.work)
         if sum(n for part, n in parts if len(part) > 1) < 2:
             acting = map(in_order, self._acting(polynomial)) if FEWEST <= len(polynomial) <= MOST else ()
             return min([self.squared(polynomial), *acting], key=length)
@@ -283,7 +284,7 @@ def opened(term: Term) -> list[Term]:
     return [term]
 
 
-def factored(polynomial: Polynomial, number: Fraction) -> tuple[Fraction, list[tuple[Polynomial, int]]]:
+def factored(polynomial: Polynomial, number: Fraction, work: Work) -> tuple[Fraction, list[tuple[Polynomial, int]]]:
     """number * polynomial as a number and irreducible factors with their powers; large ones stay as they are."""
     if not 3 <= len(polynomial) <= FACTORED or any(not is_fraction(c) for c in polynomial.values()):
         return number, [(polynomial, 1)]
@@ -292,7 +293,7 @@ def factored(polynomial: Polynomial, number: Fraction) -> tuple[Fraction, list[t
     exponents = {tuple(dict(m).get(i, 0) for i in used): c for m, c in polynomial.items()}
     if any(n < 0 for k in exponents for n in k):
         return number, [(polynomial, 1)]
-    c, parts = context.from_dict({k: fmpq(x.numerator, x.denominator) for k, x in exponents.items()}).factor()
+    c, parts = work.factor(context.from_dict({k: fmpq(x.numerator, x.denominator) for k, x in exponents.items()}))
     if len(parts) == 1 and parts[0][1] == 1:
         return number, [(polynomial, 1)]
     number *= Fraction(int(c.p), int(c.q))

@@ -13,6 +13,7 @@ from substructures.textbook.exponentials import Complex, harmonics_of, power, sp
 from substructures.textbook.field import to_fmpq
 from substructures.textbook.harmonics import Mode, normal, polynomial_of
 from substructures.textbook.springs import Content
+from substructures.textbook.work import Work
 
 _ZERO = Fraction(0)
 
@@ -20,8 +21,8 @@ _ZERO = Fraction(0)
 class Ring:
     """Polynomials in atoms, which stand at ``places``, and in cosines and sines of angles."""
 
-    def __init__(self, places: Sequence[int], angles: int) -> None:
-        self.places, self.size, self.angles = places, len(places), angles
+    def __init__(self, places: Sequence[int], angles: int, work: Work) -> None:
+        self.places, self.size, self.angles, self.work = places, len(places), angles, work
         self.context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(self.size + 2 * angles)], Ordering.lex)
 
     def fewest(self, content: Content) -> tuple[Any, tuple[int, ...]]:
@@ -42,7 +43,7 @@ class Ring:
             head = [0] * self.size
             for i, n in monomial:
                 head[place[i]] = n
-            for powers, c in polynomial_of(normal(harmonics), sines).items():
+            for powers, c in polynomial_of(normal(harmonics), sines, self.work).items():
                 key = (*head, *(n for both in powers for n in both))
                 found[key] = found.get(key, _ZERO) + c
         return self.context.from_dict({k: to_fmpq(c) for k, c in found.items() if c})
@@ -54,7 +55,7 @@ class Ring:
             exponents = [int(n) for n in raw]
             monomial = self._monomial(exponents[: self.size])
             pairs = [exponents[self.size + 2 * i : self.size + 2 * i + 2] for i in range(self.angles)]
-            spread(result.setdefault(monomial, {}), [power(a, b) for a, b in pairs], fraction(c))
+            spread(result.setdefault(monomial, {}), [power(a, b) for a, b in pairs], fraction(c), self.work)
         return {m: harmonics_of(z) for m, z in result.items()}
 
     def from_tangents(self, poly: Any, halves: Sequence[int]) -> Content:
@@ -63,7 +64,7 @@ class Ring:
         for raw, c in poly.to_dict().items():
             exponents = [int(n) for n in raw]
             waves = [tangent(j, e) for j, e in zip(exponents[self.size :], halves, strict=True)]
-            spread(result.setdefault(self._monomial(exponents[: self.size]), {}), waves, fraction(c))
+            spread(result.setdefault(self._monomial(exponents[: self.size]), {}), waves, fraction(c), self.work)
         found = {m: harmonics_of(z) for m, z in result.items()}
         return {m: h for m, h in found.items() if h}
 

@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from math import comb
+from math import comb, prod
 from typing import NamedTuple
 
 from substructures.textbook.harmonics import Mode
+from substructures.textbook.work import Work
 
 #: real and imaginary part
 Complex = tuple[Fraction, Fraction]
@@ -23,8 +24,9 @@ class Wave(NamedTuple):
     denominator: int
 
 
-def spread(into: dict[Mode, Complex], waves: Sequence[Wave], c: Fraction) -> None:
-    """Add c times a product of Laurent polynomials, one in exp(i q) of every angle."""
+def spread(into: dict[Mode, Complex], waves: Sequence[Wave], c: Fraction, work: Work) -> None:
+    """Add c times a product of Laurent polynomials, one in exp(i q) of every angle. Raises TooLarge."""
+    work.steps(prod(len(wave.coefficients) for wave in waves))
     terms: list[tuple[Mode, int]] = [((), 1)]
     turns = 0
     for wave in waves:

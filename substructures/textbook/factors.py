@@ -8,7 +8,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from fractions import Fraction
-from functools import lru_cache
 from math import isqrt
 from typing import Any
 
@@ -17,6 +16,7 @@ from flint import Ordering, fmpq, fmpq_mpoly_ctx
 from substructures.textbook.collect import is_fraction
 from substructures.textbook.exponentials import Complex, harmonics_of, spread, tangent
 from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest
+from substructures.textbook.work import Work
 
 #: terms and angles of what is factored
 TERMS, ANGLES = 40, 6
@@ -24,20 +24,19 @@ TERMS, ANGLES = 40, 6
 Factors = tuple[Fraction, tuple[tuple[Waves, int], ...]]
 
 
-@lru_cache(maxsize=5000)
-def factors(waves: Waves) -> Factors:
-    """A number and factors with their powers, the polynomial itself where it has no shorter ones."""
+def factors(waves: Waves, work: Work) -> Factors:
+    """A number and factors with their powers, the polynomial itself where it has no shorter ones. Raises TooLarge."""
     whole: Factors = Fraction(1), ((waves, 1),)
     angles = sorted({k for _, some in waves for _, k, _ in some}, key=angle_key)
     if not 3 <= len(waves) <= TERMS or not 1 <= len(angles) <= ANGLES:
         return whole
     degrees = [max(sum(n for _, k, n in some if k == angle) for _, some in waves) for angle in angles]
-    number, parts = _polynomial(waves, angles, degrees).factor()
+    number, parts = work.factor(_polynomial(waves, angles, degrees))
     if sum(int(n) for part, n in parts if not _is_unit(part)) < 2:
         return whole
     value, found = Fraction(int(number.p), int(number.q)), []
     for part, n in parts:
-        form, halves = _read(part, angles)
+        form, halves = _read(part, angles, work)
         if form is None:
             return whole
         degrees = [d - int(n) * h for d, h in zip(degrees, halves, strict=True)]
@@ -85,7 +84,7 @@ def _is_unit(part: Any) -> bool:
     return len(part) < 2 or (list(part.coeffs()) == [1, 1] and sorted(map(int, part.degrees()))[-2:] in ([2], [0, 2]))
 
 
-def _read(part: Any, angles: Sequence[Mode]) -> tuple[Waves | None, list[int]]:
+def _read(part: Any, angles: Sequence[Mode], work: Work) -> tuple[Waves | None, list[int]]:
     """A factor over the power of 1 + t^2 that makes it trigonometric, and that power; None where there is none."""
     degrees = [max(int(n), 0) for n in part.degrees()]
     halves = [n // 2 for n in degrees]
@@ -94,8 +93,8 @@ def _read(part: Any, angles: Sequence[Mode]) -> tuple[Waves | None, list[int]]:
     laurent: dict[Mode, Complex] = {}
     for exponents, c in part.to_dict().items():
         some = [tangent(int(j), e) for j, e in zip(exponents, halves, strict=True)]
-        spread(laurent, some, Fraction(int(c.p), int(c.q)))
-    waves = shortest(normal(harmonics_of(laurent)))
+        spread(laurent, some, Fraction(int(c.p), int(c.q)), work)
+    waves = shortest(normal(harmonics_of(laurent)), work)
     size = len(angles[0])
     return tuple((c, tuple((op, _sum(k, angles, size), n) for op, k, n in some)) for c, some in waves), halves
 

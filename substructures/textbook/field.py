@@ -15,14 +15,14 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from substructures.errors import TooLarge
 from substructures.expr.expand import classified
 from substructures.expr.generators import Angle, Generators, Product, Sum, is_function
 from substructures.expr.graph import Expr
 from substructures.expr.walk import reachable
+from substructures.textbook.work import Work
 
-#: products of terms of one product, and of all products and divisors together
-MOST, WORK = 300_000, 3_000_000
+#: products of terms of all products and divisors together
+WORK = 3_000_000
 
 #: numerator and denominator (fmpq_mpoly) without a common factor
 Ratio = tuple[Any, Any]
@@ -31,12 +31,12 @@ Ratio = tuple[Any, Any]
 class Field:
     """The values of some expressions of one graph. Raises TooLarge (size, limit), ZeroDivisionError."""
 
-    def __init__(self, exprs: Sequence[Expr], limit: int = WORK) -> None:
-        nodes, self.work, self.limit = reachable(exprs, is_function), 0, limit
+    def __init__(self, exprs: Sequence[Expr], work: Work | None = None) -> None:
+        nodes, self.work = reachable(exprs, is_function), Work(WORK) if work is None else work
         self.generators: Generators = classified(exprs)
         forms = {n: self.generators.forms[n] for n in nodes if is_function(n)}
         units = self.generators.units(f for f in forms.values() if isinstance(f, Angle))
-        self.units = {i: common_unit((Fraction(1), unit)) for i, unit in units.items()}
+        self.units = {i: unit_of([unit]) for i, unit in units.items()}
         self.angles = sorted(self.units, key=lambda i: self.generators.order[i])
         self.plain = self._plain(nodes, forms)
         self.context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(len(self.plain) + len(self.angles))], Ordering.lex)
@@ -170,19 +170,12 @@ class Field:
     def _gcd(self, a: Any, b: Any) -> Any:
         if a.is_constant() or b.is_constant():
             return self.one
-        self._spend(10 * min(len(a), len(b)) + len(a) + len(b))
+        self.work.spend(10 * min(len(a), len(b)) + len(a) + len(b))
         return a.gcd(b)
 
     def _times(self, a: Any, b: Any) -> Any:
-        self._spend(len(a) * len(b))
+        self.work.spend(len(a) * len(b))
         return a * b
-
-    def _spend(self, products: int) -> None:
-        self.work += products
-        if products > min(MOST, self.limit):
-            raise TooLarge("a product in the textbook form (products of terms)", products, min(MOST, self.limit))
-        if self.work > self.limit:
-            raise TooLarge("all steps of a textbook form together (products of terms)", self.work, self.limit)
 
     def _reduced(self, poly: Any) -> Any:
         for n, relation in self.relations:
@@ -194,6 +187,12 @@ class Field:
 def to_fmpq(value: Fraction) -> fmpq:
     """A number for FLINT."""
     return fmpq(value.numerator, value.denominator)
+
+
+def unit_of(multiples: Iterable[Fraction]) -> Fraction:
+    """What multiples of an angle are counted in: cos(2*q) is a polynomial in cos(q), and cos(1.8*q) none."""
+    unit = common_unit(multiples)
+    return Fraction(1) if unit.denominator == 1 else unit
 
 
 def common_unit(multiples: Iterable[Fraction]) -> Fraction:

@@ -11,7 +11,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
-from math import comb
+from math import comb, prod
+
+from substructures.textbook.work import Work
 
 #: a harmonic: multiples of the angles, the first of which that is not zero is positive
 Mode = tuple[int, ...]
@@ -25,16 +27,16 @@ Wave = tuple[str, Mode, int]
 Waves = tuple[tuple[Fraction, tuple[Wave, ...]], ...]
 
 
-def shortest(harmonics: Harmonics) -> Waves:
-    """The shortest form of a trigonometric polynomial, terms and factors in their order."""
+def shortest(harmonics: Harmonics, work: Work) -> Waves:
+    """The shortest form of a trigonometric polynomial, terms and factors in their order. Raises TooLarge."""
     plain = _as_they_are(harmonics)
     if len(harmonics) == 1 and all(abs(n) <= 1 for k in harmonics for n in k):
         return plain
-    basis, modes = _reduced(list(harmonics))
+    basis, modes = _reduced(list(harmonics), work)
     polynomial: dict[Powers, Fraction] = {}
     for mode, (a, b) in zip(modes, harmonics.values(), strict=True):
-        _add(polynomial, mode, a, b)
-    written = [_written(form, basis) for form in _eliminated(polynomial)]
+        _add(polynomial, mode, a, b, work)
+    written = [_written(form, basis) for form in _eliminated(polynomial, work)]
     return min([*written, plain], key=lambda form: (cost(form), form is plain))
 
 
@@ -61,7 +63,7 @@ def cost(form: Waves) -> int:
     return cost
 
 
-def _reduced(modes: list[Mode]) -> tuple[list[Mode], list[Mode]]:
+def _reduced(modes: list[Mode], work: Work) -> tuple[list[Mode], list[Mode]]:
     """Angles (multiples of the given ones) in which the harmonics are smallest, and the harmonics in them.
 
     As long as it helps one angle i is replaced by its sum or difference with another one: with phi = q_i + s q_j,
@@ -72,6 +74,7 @@ def _reduced(modes: list[Mode]) -> tuple[list[Mode], list[Mode]]:
     if max((sum(1 for n in k if n) for k in modes), default=0) < 2:
         return basis, modes
     while True:
+        work.steps(2 * size * size * len(modes))
         best, gain = None, (0, 0)
         for i in range(size):
             for j in range(size):
@@ -99,8 +102,9 @@ def _multiple(k: int) -> tuple[tuple[tuple[int, int], int, int], ...]:
     return tuple(((n - m, m), comb(n, m) * sign**m, m) for m in range(n + 1))
 
 
-def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction) -> None:
+def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction, work: Work) -> None:
     """Add a cos(k.q) + b sin(k.q): real and imaginary part of the product of (c_i + i s_i)^k_i."""
+    work.steps(prod(abs(k) + 1 for k in mode))
     terms: list[tuple[Powers, int, int]] = [((), 1, 0)]
     for k in mode:
         terms = [((*powers, p), c * d, (m + n) % 4) for powers, c, m in terms for p, d, n in _multiple(k)]
@@ -110,26 +114,27 @@ def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fractio
             polynomial[powers] = polynomial.get(powers, Fraction(0)) + value
 
 
-def polynomial_of(harmonics: Harmonics, sines: Sequence[int]) -> dict[Powers, Fraction]:
+def polynomial_of(harmonics: Harmonics, sines: Sequence[int], work: Work) -> dict[Powers, Fraction]:
     """The polynomial in cosines and sines without c_i^2 for the angles ``sines``, and without s_i^2 for the others."""
     polynomial: dict[Powers, Fraction] = {}
     for mode, (a, b) in harmonics.items():
-        _add(polynomial, mode, a, b)
+        _add(polynomial, mode, a, b, work)
     for i in range(len(next(iter(harmonics), ()))):
-        polynomial = _without(polynomial, i, 0 if i in sines else 1)
+        polynomial = _without(polynomial, i, 0 if i in sines else 1, work)
     return {powers: c for powers, c in polynomial.items() if c}
 
 
-def _eliminated(polynomial: Mapping[Powers, Fraction]) -> Iterable[dict[Powers, Fraction]]:
+def _eliminated(polynomial: Mapping[Powers, Fraction], work: Work) -> Iterable[dict[Powers, Fraction]]:
     """The forms without s_i^2, or without c_i^2, whichever has fewer terms; first, and last for every angle."""
     size = len(next(iter(polynomial))) if polynomial else 0
     first = dict(polynomial)
     for i in range(size):
-        first = _without(first, i, 1)
+        first = _without(first, i, 1, work)
     for i in range(size):
-        other = _without(first, i, 0)
+        other = _without(first, i, 0, work)
         if len(other) < len(first):
             first = other
+    work.steps(4 * size * len(first))
     yield _merged(first)
 
 
@@ -164,8 +169,9 @@ def _squared(powers: Powers, i: int, which: int) -> Powers:
     return (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
 
 
-def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int) -> dict[Powers, Fraction]:
+def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int, work: Work) -> dict[Powers, Fraction]:
     """The polynomial without squares of c_i (``which`` 0) or s_i (1)."""
+    work.steps(sum(1 + powers[i][which] // 2 for powers in polynomial))
     result: dict[Powers, Fraction] = {}
     for powers, c in polynomial.items():
         both = powers[i]

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from functools import lru_cache
 from typing import Any
 
 from substructures.expr.graph import Expr
@@ -20,6 +19,7 @@ from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, Wave, Waves, angle_key, normal, shortest, wave_key
 from substructures.textbook.springs import Content, Square, completed, squares
+from substructures.textbook.work import Work
 
 #: terms of a sum that may have squares of cosines and sines
 SQUARED = 20
@@ -29,17 +29,12 @@ Motion = tuple[Monomial, tuple[Wave, ...]]
 Functions = dict[Monomial, dict[Motion, Fraction]]
 
 
-@lru_cache(maxsize=20_000)
-def _shortest(items: tuple[tuple[Mode, tuple[Fraction, Fraction]], ...]) -> Waves:
-    return shortest(dict(items))
-
-
 class Layout:
     """Writes formulas in the same atoms and angles; ``units`` are the parts of the angles that harmonics count."""
 
-    def __init__(self, atoms: Atoms, angles: Sequence[Expr], units: Sequence[Fraction]) -> None:
-        self.atoms, self.angles, self.units = atoms, angles, units
-        self.collect = Collector(atoms)
+    def __init__(self, atoms: Atoms, angles: Sequence[Expr], units: Sequence[Fraction], work: Work) -> None:
+        self.atoms, self.angles, self.units, self.work = atoms, angles, units, work
+        self.collect = Collector(atoms, work)
 
     def __call__(self, found: Content) -> Sum:
         """The textbook form of a sum, with squares for what they are if that is shorter: 1/2*k*(q - l)^2."""
@@ -135,9 +130,12 @@ class Layout:
         functions: Functions = {}
         for monomial, harmonics in found.items():
             constant, moving = self.atoms.split(monomial)
-            for c, waves in _shortest(tuple(sorted(normal(harmonics).items()))):
+            for c, waves in self._shortest(tuple(sorted(normal(harmonics).items()))):
                 functions.setdefault(constant, {})[moving, waves] = c
         return self._with_fractions(self._with_squares(functions))
+
+    def _shortest(self, items: tuple[tuple[Mode, tuple[Fraction, Fraction]], ...]) -> Waves:
+        return self.work.once(("shortest", items), lambda: shortest(dict(items), self.work))
 
     def _best(self, functions: Functions) -> Sum:
         """The shortest of gathered by motion, by functions, by cosines and sines, and by rates."""
@@ -263,7 +261,7 @@ class Layout:
         """A number, and factors of a function with their powers: a polynomial in velocities is factored."""
         if not any(moving for moving, _ in function):
             whole = tuple((c, waves) for (_, waves), c in sorted(function.items(), key=lambda i: _motion_key(i[0])))
-            value, found = factors(whole)
+            value, found = self.work.once(("factors", whole), lambda: factors(whole, self.work))
             parts_: list[tuple[Waves, int]] = []
             for part, n in found:
                 c, simple = _simple(part)
@@ -278,7 +276,7 @@ class Layout:
             tuple(sorted((*moving, *((place[op, k], n) for op, k, n in waves)))): c
             for (moving, waves), c in function.items()
         }
-        number, parts = factored(polynomial, Fraction(1))
+        number, parts = factored(polynomial, Fraction(1), self.work)
         return number, [(self._function(dict(self._motions(part, trigs))), n) for part, n in parts]
 
     def _motions(self, part: Polynomial, trigs: Sequence[tuple[str, Mode]]) -> Iterator[tuple[Motion, Fraction]]:

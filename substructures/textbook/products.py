@@ -12,11 +12,15 @@ from typing import Any
 
 from flint import fmpq_mpoly
 
+from substructures.textbook.work import Work
+
 #: terms of a sum, the fewest and the most, and terms that are tried
 FEWEST, MOST, TRIED = 4, 40, 12
 
 
-def but_for_one_term(poly: fmpq_mpoly, square: int, other: int) -> Iterator[tuple[Any, list[tuple[Any, int]], Any]]:
+def but_for_one_term(
+    poly: fmpq_mpoly, square: int, other: int, work: Work
+) -> Iterator[tuple[Any, list[tuple[Any, int]], Any]]:
     """Number, factors and the term besides of all such forms of a polynomial.
 
     ``square`` and ``other`` are the generators sin(q) and cos(q), or cos(q) and sin(q); no square of ``other`` occurs.
@@ -28,6 +32,6 @@ def but_for_one_term(poly: fmpq_mpoly, square: int, other: int) -> Iterator[tupl
     found = sorted((k, c) for k, c in terms if k[square] == 2 and not k[other])
     alone = [context.term(coeff=c, exp_vec=tuple(n if i != square else 0 for i, n in enumerate(k))) for k, c in found]
     for rest in ([sum(alone[1:], alone[0])] if len(alone) > 1 else []) + alone[:TRIED]:
-        number, parts = (poly - rest * context.gen(square) ** 2 + rest).factor()
-        if sum(int(n) for part, n in parts if len(part) > 1) > 1:
-            yield number, [(part, int(n)) for part, n in parts], -rest * context.gen(other) ** 2
+        number, parts = work.factor(poly - rest * context.gen(square) ** 2 + rest)
+        if sum(n for part, n in parts if len(part) > 1) > 1:
+            yield number, parts, -rest * context.gen(other) ** 2

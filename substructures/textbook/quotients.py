@@ -40,8 +40,8 @@ class Quotients:
         self.size = len(self.exprs)
         self.angles = [generators.atoms[i] for i in field.angles]
         self.units = [field.units[i] for i in field.angles]
-        self.layout = Layout(atoms, self.angles, self.units)
-        self.ring = Ring(self.places, len(self.angles))
+        self.layout = Layout(atoms, self.angles, self.units, field.work)
+        self.ring = Ring(self.places, len(self.angles), field.work)
         self._forms: dict[str, Sum] = {}
 
     def __call__(self, expr: Expr) -> Sum:
@@ -130,8 +130,8 @@ class Quotients:
         if len(poly) > FACTORED:
             number = primitive([fraction(c) for c in poly.coeffs()])
             return number, [(poly / to_fmpq(number), 1)]
-        c, parts = poly.factor()
-        return fraction(c), [(part, int(n)) for part, n in parts]
+        c, parts = self.field.work.factor(poly)
+        return fraction(c), parts
 
     def _product(self, number: Fraction, parts: Sequence[tuple[Any, int]]) -> Term:
         """A product of powers of polynomials in its order, those below last."""
@@ -201,7 +201,9 @@ class Quotients:
             others = tuple(n for n in sines if n != i)
             cosine = self.size + 2 * i
             for some, square, other in ((others, cosine, cosine + 1), ((*others, i), cosine + 1, cosine)):
-                for number, parts, rest in but_for_one_term(self.ring.polynomial(content, some), square, other):
+                for number, parts, rest in but_for_one_term(
+                    self.ring.polynomial(content, some), square, other, self.field.work
+                ):
                     factors: list[tuple[Factor, int]] = [(self.layout(self.ring.back(part)), n) for part, n in parts]
                     one = product(fraction(number), sorted(factors, key=self._key))
                     yield Sum((one, *self.layout(self.ring.back(rest)).terms))

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from fractions import Fraction
 from functools import cached_property
 from graphlib import TopologicalSorter
+from itertools import islice
 
 from substructures.errors import TooLarge
 from substructures.expr.expand import Expanded, Expander
@@ -14,14 +15,19 @@ from substructures.expr.generators import natural
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program, Symbol
 from substructures.expr.replay import replay
-from substructures.expr.walk import reachable
+from substructures.expr.walk import reachable, transfer
 from substructures.textbook.atoms import Atoms, Monomial, ordered
-from substructures.textbook.field import WORK, Field, common_unit
+from substructures.textbook.constants import Constant, bindings, named, restored
+from substructures.textbook.field import WORK, Field, unit_of
 from substructures.textbook.forms import Sum, Trig, atoms_of, leaves
 from substructures.textbook.harmonics import Mode
 from substructures.textbook.layout import Layout
 from substructures.textbook.quotients import Quotients
 from substructures.textbook.tidy import Tidy
+from substructures.textbook.work import Work
+
+#: of work for every term before it is collected
+UNITS = 250
 
 
 @dataclass(frozen=True)
@@ -40,11 +46,18 @@ LIMITS, AT_ONCE = Limits(), Limits(4000, 300_000)
 class Reading:
     """The forms of the elements of every output in the order of its index; atoms are nodes of one graph.
 
-    ``functions``: for every atom that is a function of something the forms of its arguments.
+    ``functions``: for every atom that is a function of something the forms of its arguments; ``constants``: what the
+    symbols in atoms are that are none of the program.
     """
 
     outputs: Mapping[str, Sequence[Sum]]
     functions: Mapping[Expr, Sequence[Sum]]
+    constants: Mapping[str, Constant]
+
+    def atoms_in(self, graph: Graph) -> dict[Expr, Expr]:
+        """All atoms in another graph."""
+        atoms = atoms_of(self.forms)
+        return dict(zip(atoms, transfer(atoms, graph, bindings(self.constants, graph)), strict=True))
 
     @cached_property
     def inside_out(self) -> list[Expr]:
@@ -80,14 +93,17 @@ def read(program: Program, limits: Limits = LIMITS) -> Reading:
     outputs = replay(program, graph, {})
     exprs = {n: [graph.lift(f.entries[i]) for i in program.outputs[n].index] for n, f in outputs.items()}
     symbols = {s.name: s for s in program.symbols}
-    forms = _forms([e for some in exprs.values() for e in some], symbols, limits)
+    found, constants = named([e for some in exprs.values() for e in some])
+    forms = _forms(found, symbols, limits)
     functions: dict[Expr, Sequence[Sum]] = {}
     new = _functions(forms.values())
     while new:
         inner = _forms([a for f in new for a in f.args], symbols, limits)
         functions |= {f: [inner[a] for a in f.args] for f in new}
         new = [f for f in _functions(inner.values()) if f not in functions]
-    return Reading({n: [forms[e] for e in some] for n, some in exprs.items()}, functions)
+    functions = {f: [restored(form, constants) for form in some] for f, some in functions.items()}
+    every = iter([restored(forms[e], constants) for e in found])
+    return Reading({n: list(islice(every, len(some))) for n, some in exprs.items()}, functions, constants)
 
 
 def _forms(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: Limits) -> dict[Expr, Sum]:
@@ -124,16 +140,17 @@ def _polynomials(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: L
         raise TooLarge("the textbook form (in terms before they are collected)", size, limits.terms)
     found = {e: expander.expand(e) for e in exprs}
     atoms = ordered((a for f in found.values() for t in f.terms for a, _ in t.powers), symbols)
-    return {e: _laid_out(f, atoms) for e, f in found.items()}
+    work = Work(UNITS * limits.terms)
+    return {e: _laid_out(f, atoms, work) for e, f in found.items()}
 
 
-def _laid_out(found: Expanded, atoms: Atoms) -> Sum:
+def _laid_out(found: Expanded, atoms: Atoms, work: Work) -> Sum:
     multiples: dict[Expr, list[Fraction]] = {}
     for term in found.terms:
         for angle, c in term.angle:
-            multiples.setdefault(angle, [Fraction(1)]).append(c)
+            multiples.setdefault(angle, []).append(c)
     angles = sorted(multiples, key=_angle_key)
-    units = [common_unit(multiples[a]) for a in angles]
+    units = [unit_of(multiples[a]) for a in angles]
     content: dict[Monomial, dict[Mode, tuple[Fraction, Fraction]]] = {}
     for term in found.terms:
         monomial = tuple(sorted((atoms.place[a], n) for a, n in term.powers))
@@ -143,13 +160,13 @@ def _laid_out(found: Expanded, atoms: Atoms) -> Sum:
         a, b = harmonics.get(mode, (Fraction(0), Fraction(0)))
         c = term.coefficient
         harmonics[mode] = (a, b + c) if term.trig == "sin" else (a + c, b)
-    return Tidy(atoms)(Layout(atoms, angles, units)(content))
+    return Tidy(atoms)(Layout(atoms, angles, units, work)(content))
 
 
 def _ratios(exprs: Sequence[Expr], symbols: Mapping[str, Symbol], limits: Limits) -> dict[Expr, Sum]:
     if not exprs:
         return {}
-    field = Field(exprs, limits.work)
+    field = Field(exprs, Work(limits.work))
     atoms = ordered((field.generators.atoms[i] for i in field.plain), symbols)
     quotients, tidy = Quotients(field, atoms), Tidy(atoms)
     return {e: tidy(quotients(e)) for e in exprs}

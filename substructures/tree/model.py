@@ -186,7 +186,7 @@ def couple(
     warnings = [
         *units.warnings,
         *assembly.scope.notices,
-        *tree_warnings(spec, parts, result, bool(names)),
+        *tree_warnings(spec, parts, result, names),
         *plausibility.at_defaults,
     ]
     rows = tuple(cut.rows for cut in assembly.cuts)

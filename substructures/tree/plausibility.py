@@ -27,6 +27,8 @@ from substructures.tree.document import TreeSpec
 
 #: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
 ROUNDING = 1e-9
+#: so much, relative to 1 and its size, a coordinate may be beside the value that a relation gives it
+APART = 1e-6
 Indices = NDArray[np.intp]
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
@@ -155,6 +157,38 @@ class Plausibility:
                 value = f"{q[k, a]:.6g} {unit} in state {first + k}{_more(len(bad))}"
                 message = f"'{name}' is {value}; its joint has limits {range_}"
                 notices.append({"pointer": "/q", "code": "limits-left", "message": message})
+        return notices
+
+    @cached_property
+    def _relations(self) -> list[tuple[str, str, float, float]]:
+        """Coordinate, the one that it follows, multiplier and offset of what definitions leave out."""
+        return [
+            (
+                f"{name}.{r.coordinate}",
+                f"{name}.{r.of}",
+                float(value(in_si(r.multiplier))),
+                float(value(in_si(r.offset))),
+            )
+            for name, definition in self.definitions.items()
+            for r in (each.relation for each in definition.left_out)
+            if r is not None
+        ]
+
+    def apart(self, coordinates: Sequence[str], q: Array, first: int = 0) -> list[Notice]:
+        """Relations q_a = k q_b + c that definitions leave out and states ``q`` (N, n) do not fit."""
+        notices = []
+        for name, of, k, c in self._relations:
+            if not {name, of} <= set(coordinates):
+                continue
+            left, right = q[:, coordinates.index(name)], k * q[:, coordinates.index(of)] + c
+            bad = np.flatnonzero(np.abs(left - right) > APART * (1 + np.abs(left) + np.abs(right)))
+            if len(bad):
+                i = int(bad[0])
+                message = (
+                    f"'{name}' is {left[i]:.6g} in state {first + i}{_more(len(bad))}, and not {k:g}*'{of}' + {c:g} = "
+                    f"{right[i]:.6g}, as the source of its definition says: both coordinates are free here"
+                )
+                notices.append({"pointer": "/q", "code": "relation-left", "message": message})
         return notices
 
     def _ends_at_defaults(self, coordinates: tuple[str, ...]) -> tuple[Array, Array]:

@@ -61,7 +61,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     """
     _require_tree(spec)
     names = part_names(spec, parts, wanted.free, wanted.defaults)
-    document: dict[str, Any] = {**wanted.about, "bodies": [], "loads": []}
+    document: dict[str, Any] = {**wanted.about, "bodies": [], "loads": [], "left_out": []}
     for instance in _hosts_first(spec):
         document["bodies"] += _seat(instance, names)
         own = _plain(parts[instance.name])
@@ -72,6 +72,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
             _moved(names, instance.name, _with_ends(load), f"/instances/{instance.name}/loads/{k}")
             for k, load in enumerate(own.get("loads", ()))
         ]
+        document["left_out"] += [_left_out(names, instance.name, each) for each in own.get("left_out", ())]
     document["ports"] = list(_ports(parts, names, wanted.ports))
     for load in spec.loads:
         document["loads"].append(load_of_part(load, names))
@@ -129,6 +130,16 @@ def _body(names: PartNames, instance: str, body: Mapping[str, Any], k: int) -> d
     if coordinates:
         joint["coordinate"] = coordinates[0] if len(coordinates) == 1 else coordinates
     return moved | {"joint": joint}
+
+
+def _left_out(names: PartNames, instance: str, given: Mapping[str, Any]) -> dict[str, Any]:
+    """What the source of an instance says beside its equations, in the coordinates of the part."""
+    moved = dict(given)
+    if "relation" in given:
+        relation = given["relation"]
+        ends = {end: names.symbol(instance, relation[end]) for end in ("coordinate", "of")}
+        moved["relation"] = {**relation, **ends}
+    return moved
 
 
 def _with_ends(load: Mapping[str, Any]) -> Mapping[str, Any]:

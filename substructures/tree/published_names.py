@@ -16,7 +16,9 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.renaming import Names, names_of, number_text, renamed
 
 #: fields that are no expressions
-TEXTS = frozenset(("name", "type", "unit", "title", "description", "license", "source", "tags", "parent", "body"))
+TEXTS = frozenset(
+    ("name", "type", "unit", "title", "description", "license", "source", "tags", "parent", "body", "message")
+)
 
 
 @dataclass

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
@@ -12,6 +12,7 @@ from substructures.expr.program import Program
 from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
+from substructures.part.left_out import left_out_warnings, weightless_warnings
 from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part
 from substructures.part.topology import topology
@@ -117,10 +118,12 @@ def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[P
             yield f"/instances/{i}/parameters/{name}", value, dimensions.get(f"{instance.name}.{name}")
 
 
-def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, moves: bool) -> list[Notice]:
-    """Gravity that was not given, parameters and bindings without effect, bindings whose unit is only assumed."""
-    notices = []
-    if moves and "gravity" not in spec.model_fields_set:
+def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, names: Sequence[str]) -> list[Notice]:
+    """Gravity that was not given, coordinates (``names``) without mass, what parts leave out, parameters and bindings
+    without effect, bindings whose unit is only assumed.
+    """
+    notices: list[Notice] = []
+    if names and "gravity" not in spec.model_fields_set:
         notices.append(_notice("/gravity", "gravity-not-given", "gravity is not given and is taken as zero"))
     if "friction_load" in program.outputs:
         message = "friction by the load of joints acts in simulations with 'friction': 'loaded' alone"
@@ -135,8 +138,11 @@ def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, m
         for name in spec.inputs
         if name not in used
     ]
+    notices += weightless_warnings(program, names)
     for i, instance in enumerate(spec.instances):
         part = parts[instance.name]
+        told = left_out_warnings(part.definition)
+        notices += [_notice(f"/instances/{i}", x["code"], f"instance '{instance.name}': {x['message']}") for x in told]
         needed = {symbol.name for symbol in part.program.symbols} | names_in_limits(part.definition)
         for name, value in instance.parameters.items():
             pointer, given = f"/instances/{i}/parameters/{name}", part.parameters[name].get("given")

@@ -8,6 +8,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import catalogue_model
+from catalogue_entries import shipped_part
+from in_depth import seeds
 
 from substructures import InvalidArgument, TooLarge, catalogue, couple, derive
 from substructures.abbreviation import abbreviate as module
@@ -19,7 +22,6 @@ from substructures.expr.interpret import interpret
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
-from tests.analysis_models import catalogue_model, seeds
 from tests.random_trees import Kind, model_of, number, random_definition
 
 RANGES = {"velocities": (-2, 3), "accelerations": (-4, 4)}
@@ -165,7 +167,7 @@ def test_bad_requests(changes: dict[str, Any], pointer: str, code: str) -> None:
 
 
 def test_parameters_without_a_value_need_one() -> None:
-    part = derive(Definition.read(catalogue.load("double-pendulum")))
+    part = shipped_part("double-pendulum")
     tree = {
         "name": "t",
         "gravity": [0, 0, "-g"],

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, tree_model
+from in_depth import deep
 from random_trees import Plain
 from scipy.integrate import solve_ivp
 
@@ -110,7 +111,7 @@ def weights(a: float) -> float:
     return float(np.array([0.03, 0.015, 0.6]) @ np.abs(levers(a)))
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["partitioning", *deep("projection")])
 def test_a_slider_crank_breaks_away(method: str) -> None:
     """Under a torque that grows: when it is sum of F_s,i |dq_i/da|, not before, and then as it slips."""
     model, a = slider_crank(LAWS), 0.8
@@ -187,7 +188,7 @@ def blocks(model: Model, span: tuple[float, float], **more: Any) -> Trajectory:
     return simulate(model, [0.0] * n, span, qd=[0.7] * n, count=41, friction="exact", **more)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["projection", *deep("partitioning")])
 def test_blocks_in_line_are_one_block(method: str) -> None:
     """A weld of two blocks, of whose six rows five are redundant, is a block with the sum of masses and frictions:
     stick and slip under a spring and a force that grows.
@@ -237,6 +238,7 @@ def test_a_drive_that_waits() -> None:
     np.testing.assert_allclose(motion.series["friction"][3:], [[-0.02, 0.01, 0.5]] * 2, rtol=1e-9)
 
 
+# takes seconds: the forces of joints that stick are a linear program at every step
 def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
     welds = [{"name": f"w{i}", "type": "weld", "from": f"x.b{i}", "to": f"x.b{i + 1}"} for i in (0, 2)]
@@ -341,3 +343,41 @@ def test_what_closed_motions_refuse() -> None:
     with pytest.raises(InvalidInput) as error:
         simulate(slider_crank({}), at(model, piston=0.18), (0, 1), friction="exact")
     assert [fault.pointer for fault in error.value.faults] == ["/friction"]
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("torque", [0, 1, 4.9, -4.999])
+def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
+    """5 N m hold what is less: no energy is there, and none is the scale of another."""
+    joint = {"type": "revolute", "coordinate": "q1", "friction": {"coulomb": 5, "velocity": 0.001}}
+    bodies = [
+        {"name": "crank", "parent": "base", "joint": joint, "mass": 1, "com": [0.1, 0, 0]},
+        {
+            "name": "coupler",
+            "parent": "crank",
+            "joint": {"type": "revolute", "coordinate": "q2", "d": 0.2},
+            "mass": 1,
+            "com": [0.25, 0, 0],
+        },
+        {
+            "name": "rocker",
+            "parent": "base",
+            "joint": {"type": "revolute", "coordinate": "q3", "placement": {"position": [0.45, 0, 0]}},
+            "mass": 1,
+            "com": [0.2, 0, 0],
+        },
+    ]
+    ports = [
+        {"name": "e", "body": "coupler", "position": [0.5, 0, 0]},
+        {"name": "r", "body": "rocker", "position": [0.4, 0, 0]},
+    ]
+    pin = {"name": "pin", "type": "pin", "from": "f.e", "to": "f.r"}
+    document = {"gravity": [0, 0, 0], "instances": [{"name": "f", "substructure": "bar"}], "closures": [pin]}
+    model = tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
+    inputs = {"tau.f.q1": torque}
+    motion = simulate(model, [0.5, 0.09, 1.2], (0, 0.3), count=4, inputs=inputs, friction="exact", reduction=method)
+    assert motion.is_right, motion.checks
+    np.testing.assert_allclose(motion.q, np.tile(motion.q[0], (4, 1)), atol=1e-14)
+    energy = next(check for check in motion.checks if check.name == "energy")
+    assert energy.relative < 1e-12
+    assert energy.scale > 0.1

@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import seeds, shipped
+from analysis_models import shipped
+from in_depth import seeds
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
 from substructures import InvalidInput, Model, TooLarge

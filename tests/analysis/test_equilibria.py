@@ -6,8 +6,9 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model, random_model, seeds
+from analysis_models import catalogue_model, random_model
 from closed_trees import four_bar, resized
+from in_depth import deep, seeds
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
@@ -158,7 +159,7 @@ def test_shown_in_two_lines() -> None:
     assert repr(locus) == "RootLocus(values=2, branches=2)\nstable, then asymptotically stable"
 
 
-@pytest.mark.parametrize("size", [1e-9, 1e-4, 1e4])
+@pytest.mark.parametrize("size", [1e-9, *deep(1e-4, 1e4)])
 @pytest.mark.parametrize("make", [lambda: catalogue_model("acrobot"), lambda: four_bar((0, -9.81, 0))])
 def test_equilibria_do_not_depend_on_the_unit_of_length(make: Callable[[], Model], size: float) -> None:
     model = make()

@@ -6,7 +6,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import catalogue_model, random_model, seeds, values_at
+from analysis_models import catalogue_model, random_model, values_at
+from in_depth import seeds
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
 from substructures import InvalidArgument, InvalidInput, Model
@@ -88,7 +89,7 @@ def test_every_integral_has_unit_and_reason() -> None:
     assert set(found.program.outputs) == {i.name for i in found.integrals} | {"power"}
 
 
-@pytest.mark.parametrize("number", seeds(4, 8))
+@pytest.mark.parametrize("number", seeds((1, 2, 3), 8))
 def test_derivative_of_the_energy_is_the_power(number: int) -> None:
     """Random trees with springs, dampers and loads; and without loads the energy is constant or falls."""
     model = random_model(number)
@@ -130,7 +131,7 @@ def floating(number: int) -> Model:
     return model_of(definition, (0, 0, 0))
 
 
-@pytest.mark.parametrize("number", seeds(4, 6))
+@pytest.mark.parametrize("number", seeds((1, 2), 6))  # 0 and 3 take five seconds each
 def test_a_random_tree_on_a_free_base(number: int) -> None:
     """Whatever hangs on a free base, all six momenta are constant without gravity and outer loads."""
     model = floating(number)

@@ -9,9 +9,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
+from in_depth import deep, seeds
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
-from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, couple, derive
 from substructures.analysis.equations import dependencies
 from substructures.analysis.identification import base_parameters as base_module
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
@@ -29,7 +31,7 @@ IN_PLANE = (0, "-9.81", 0)
 @cache
 def tree(name: str, gravity: tuple[Any, ...] = UP) -> tuple[TreeSpec, dict[str, Part]]:
     spec = {"name": "t", "gravity": list(gravity), "instances": [{"name": "x", "substructure": name}]}
-    return TreeSpec.read(spec), {"x": derive(Definition.read(catalogue.load(name)))}
+    return TreeSpec.read(spec), {"x": shipped_part(name)}
 
 
 @cache
@@ -53,7 +55,7 @@ def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int
         # 7 N - 4 beta - 2: axis 1 along gravity, beta = 1 link of the first group of parallel axes
         ("puma560", UP, 36),
         ("ur5", UP, 36),
-        ("kuka-iiwa-14", UP, 43),
+        *deep(("kuka-iiwa-14", UP, 43)),
         ("spherical-wrist", UP, 15),
         # 7 N - 4 beta, beta = N = 3: axes across gravity; two less where they are along it
         ("planar-3r", IN_PLANE, 9),
@@ -108,7 +110,7 @@ def general(kinds: str, parents: tuple[int, ...]) -> Plain:
         # 7 N - 4: three of every revolute joint move to the link before; the first link has four
         ("RRR", (-1, 0, 1), 17),
         ("RRRR", (-1, 0, 1, 1), 24),
-        ("RRRRRR", (-1, 0, 1, 2, 3, 4), 38),
+        *deep(("RRRRRR", (-1, 0, 1, 2, 3, 4), 38)),
         # all ten of a free body; of a link beyond a prismatic joint m and s, of a compound joint all but what stays
         ("FPRS", (-1, 0, 1, 0), 10 + 4 + 7 + 9),
         ("FUC", (-1, 0, 1), 10 + 9 + 9),
@@ -128,20 +130,22 @@ def test_general_axes(kinds: str, parents: tuple[int, ...], count: int, monkeypa
     assert base.count == numeric_rank(Y)
 
 
-def test_what_is_fixed_to_an_interface_counts_with_its_host() -> None:
+@pytest.mark.parametrize("joints", [2, *deep(3)])
+def test_what_is_fixed_to_an_interface_counts_with_its_host(joints: int) -> None:
     """All ten of it, also over several instances without joints of their own."""
     plate: Plain = {"name": "plate", "bodies": [{"name": "p", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     plate["ports"] = [{"name": "top", "body": "p", "position": ["0.1", "0.2", "0.3"], "rotation": {"rpy": [1, 2, 3]}}]
-    arm = general("RRR", (-1, 0, 1))
-    arm["ports"] = [{"name": "tip", "body": "b2", "position": ["0.4", "x2", 0], "rotation": {"rpy": ["0.3", "a1", 0]}}]
+    arm, last = general("R" * joints, tuple(range(-1, joints - 1))), joints - 1
+    tip: Plain = {"name": "tip", "body": f"b{last}", "rotation": {"rpy": ["0.3", "a1", 0]}}
+    arm["ports"] = [tip | {"position": ["0.4", f"x{last}", 0]}]
     chain = [("x", "arm", None), ("y", "plate", "x.tip"), ("z", "plate", "y.top"), ("w", "arm", "z.top")]
     instances = [{"name": n, "substructure": s} | ({"at": at} if at else {}) for n, s, at in chain]
     spec = TreeSpec.read({"name": "t", "gravity": list(OBLIQUE), "instances": instances})
     parts = {name: derive(Definition.read(arm if s == "arm" else plate)) for name, s, _ in chain}
     Y = regressor(spec, parts)
-    assert [name for name in Y.names if name.endswith(".m")][3:5] == ["y.base.m", "z.base.m"]
+    assert [name for name in Y.names if name.endswith(".m")][joints : joints + 2] == ["y.base.m", "z.base.m"]
     base = base_parameters(Y)
-    assert base.count == 7 * 6 - 4
+    assert base.count == 7 * 2 * joints - 4
     assert base.count == numeric_rank(Y)
 
 
@@ -172,7 +176,7 @@ def test_combinations_of_the_puma() -> None:
     assert base_of("puma560", UP, ("armature",)).count == 40
 
 
-@pytest.mark.parametrize("seed", [*range(5), *(pytest.param(k, marks=pytest.mark.deep) for k in range(5, 30))])
+@pytest.mark.parametrize("seed", seeds(5, 30))
 def test_random_trees(seed: int) -> None:
     """Y_B beta = Y pi, and as many as the singular values say; parameters free or bound, any joints."""
     rng = np.random.default_rng(8200 + seed)

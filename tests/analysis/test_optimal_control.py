@@ -82,6 +82,7 @@ def swing_up(intervals: int = 40) -> Optimum:
     return optimal_control(shipped("cart-pendulum"), **SWING_UP | {"intervals": intervals})
 
 
+# takes seconds: a whole optimisation, of which each step is a motion and its adjoint
 def test_swing_up() -> None:
     """A pendulum on a cart from hanging to standing: an independent integration of the controls found arrives there."""
     found = swing_up()

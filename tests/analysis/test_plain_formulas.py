@@ -10,8 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import seeds
 from compared import HINGES, Case, close, constrained, jacobian, random_case, residuals
+from in_depth import seeds
 from independent import value as read
 from jets import gradient, space, values
 from plain_constraints import constraint_rows, random_closures, random_constraints, random_velocities
@@ -36,7 +36,7 @@ def same(found: Any, expected: Any, tolerance: float = 1e-9) -> None:
     np.testing.assert_allclose(found, expected, rtol=0, atol=tolerance * size)
 
 
-@pytest.mark.parametrize("seed", seeds(3, 16))
+@pytest.mark.parametrize("seed", seeds(2, 16))
 def test_curvature_of_larger_trees(seed: int) -> None:
     """R_abcd from R^a_bcd = d_c Gamma^a_bd - ..., up to seven coordinates, with chains of massless bodies."""
     case = random_case(seed, Kind(6, massive=True, depth=7, chain=seed % 2 == 0, loads=0, springs=0))
@@ -65,7 +65,7 @@ def on_a_turntable(slides: bool) -> Any:
     return change
 
 
-@pytest.mark.parametrize("seed", seeds(4, 30))
+@pytest.mark.parametrize("seed", seeds((0, 3), 30))
 def test_routh(seed: int) -> None:
     """h, its Christoffel symbols, B as the curl of p_c g_cc^-1 g_cr, V_p, R, and the accelerations of the whole."""
     slides = bool(seed % 2)
@@ -99,7 +99,7 @@ def test_routh(seed: int) -> None:
     same(out["gyroscopic"], slope - slope.T)
 
 
-@pytest.mark.parametrize("seed", seeds(4, 30))
+@pytest.mark.parametrize("seed", seeds(2, 30))
 def test_adjoint_formulas(seed: int) -> None:
     """dH/d(q, q', u, p) of H = l + lambda_q q' + lambda_qd q'' with q'' from the equations of motion; the ends."""
     rng = np.random.default_rng(seed)
@@ -166,7 +166,7 @@ def well_determined(rng: Any, seed: int) -> tuple[Case, list[Any], dict[str, str
     raise AssertionError("no constraints were independent")
 
 
-@pytest.mark.parametrize("seed", seeds(8, 60))
+@pytest.mark.parametrize("seed", seeds(5, 60))
 def test_velocity_equations(seed: int) -> None:
     """Linear, knife-edge and rolling constraints in quasi-velocities of all kinds: T, g*, forces, both biases by the
     accelerations with multipliers, forces of constraint, structure coefficients, energies, power, gap.
@@ -215,7 +215,7 @@ def closed_case(seed: int, **more: Any) -> Case:
     raise AssertionError("no loop could be closed")
 
 
-@pytest.mark.parametrize("seed", seeds(4, 40))
+@pytest.mark.parametrize("seed", seeds(2, 40))
 def test_closures_at_a_state_and_as_velocity_constraints(seed: int) -> None:
     """q'' and multipliers of the equations with G^T lambda; the closure as a constraint on the velocities has both."""
     case = closed_case(seed)

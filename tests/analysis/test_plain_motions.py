@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import seeds
 from closed_motions import METHODS
 from compared import HINGES, Case, close, constrained, integrated, random_case
+from in_depth import seeds
 from independent import value as read
 from plain_constraints import constraint_rows, random_closures, random_constraints
 from random_trees import Kind, Plain

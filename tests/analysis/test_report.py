@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_parts
+from in_depth import deep
 
 from substructures import Model, TreeSpec, catalogue, couple, evaluate
 from substructures.analysis.report.latex import latex_report, words
@@ -199,7 +200,7 @@ def test_the_page_is_xhtml_that_loads_nothing() -> None:
     assert "".join(root.itertext()).count("<script>alert(1)</script>") == 2
 
 
-@pytest.mark.parametrize("name", ["puma560", "kuka-iiwa-14"])
+@pytest.mark.parametrize("name", ["puma560", *deep("kuka-iiwa-14")])
 def test_no_equation_of_a_report_is_false(name: str) -> None:
     """The mass that joint 6 carries is not written as that of link 6: m_{6} = m_{6} + m_{7}."""
     spec, parts, model = subject(name)

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
+from scipy.integrate import solve_ivp
 
 from substructures import InvalidArgument, InvalidInput
 from substructures.analysis.motion.rolling import FORMS
@@ -187,3 +188,55 @@ def test_reactions_are_not_known() -> None:
     transmitted: Any = object()
     with pytest.raises(InvalidArgument, match="does not say where on which body"):
         simulate(sleigh(), [0, 0, 0], (0, 1), constraints=[BLADE], reactions=transmitted)
+
+
+TORQUE = 1.0
+
+
+def turning_sleigh(**request: Any) -> Any:
+    """A sleigh of 2 kg, 0.4 m from its blade to the mass centre, turned by 1 N m for 30 s from 1 m/s on."""
+    inertia = {"xx": 0.1, "yy": 0.3, "zz": 0.3}
+    joint = {"type": "planar", "coordinate": ["x", "y", "h"]}
+    body = {"name": "b", "parent": "base", "joint": joint, "mass": 2, "com": [0.4, 0, 0], "inertia": inertia}
+    model = single({"name": "sleigh", "bodies": [body]}, [0, 0, -9.81])
+    common: Plain = {"constraints": [KnifeEdge("k", "s.b")], "inputs": {"tau.s.h": TORQUE}, "count": 7}
+    return simulate(model, [0, 0, 0], (0, 30), **common, **request)
+
+
+@pytest.mark.parametrize("method", ["DOP853", "Radau", "LSODA"])
+def test_velocities_that_were_chosen_are_changed_on_the_way(method: str) -> None:
+    """v' = a w^2, (J + m a^2) w' = tau - m a v w: no velocities of coordinates describe more than a half turn."""
+
+    def rates(_: float, y: np.ndarray) -> list[float]:
+        v, w = y[:2]
+        return [0.4 * w**2, (TORQUE - 2 * 0.4 * v * w) / (0.3 + 2 * 0.16), w]
+
+    own = solve_ivp(rates, (0, 30), [1, 0, 0], method="DOP853", rtol=1e-12, atol=1e-13).y[:, -1]
+    np.testing.assert_allclose(own[2], 13.87525280966, atol=1e-9)
+    loose = {} if method == "DOP853" else {"relative_tolerance": 1e-8, "absolute_tolerance": 1e-10}
+    motion = turning_sleigh(qd=[1, 0, 0], method=method, drift_limit=1e-7 if method == "DOP853" else 1e-3, **loose)
+    assert motion.is_right, motion.checks
+    assert motion.message == ""
+    np.testing.assert_allclose(motion.q[-1, 2], own[2], atol=1e-8 if method == "DOP853" else 1e-3)
+    # the series v is of the velocities of the start all along, here x' and h'
+    np.testing.assert_allclose(motion.series["v"], motion.qd[:, [0, 2]], atol=1e-12)
+    if method == "DOP853":
+        given = turning_sleigh(v={"v": 1, "w": 0}, velocities={"v": "s.x'*cos(s.h)+s.y'*sin(s.h)", "w": "s.h'"})
+        np.testing.assert_allclose(motion.q, given.q, atol=1e-8)
+        np.testing.assert_allclose(motion.series["multipliers"], given.series["multipliers"], atol=1e-7)
+        np.testing.assert_allclose(motion.series["kinetic_energy"], given.series["kinetic_energy"], rtol=1e-8)
+        assert given.message == ""
+
+
+def test_events_are_found_in_changed_velocities() -> None:
+    """The heading passes 5 rad beyond the first change."""
+    events = [Event("there", "s.h", 5, action="record"), Event("stop", "s.h", 9)]
+    motion = turning_sleigh(qd=[1, 0, 0], events=events)
+    assert motion.status == "stopped"
+    assert [(each.name, round(float(each.q[2]), 9)) for each in motion.events] == [("there", 5), ("stop", 9)]
+
+
+def test_velocities_that_were_given_and_fail_on_the_way_are_named() -> None:
+    motion = turning_sleigh(qd=[1, 0, 0], independent=["s.x", "s.h"])
+    assert motion.is_right is False
+    assert motion.message.startswith("the velocities s.x', s.h' describe the motion badly where -cos(h) is near zero")

@@ -116,7 +116,7 @@ def test_faults_have_pointers(changes: Plain, pointer: str, code: str) -> None:
         (lambda: Table([0, 1, 2], [0, 1]), "/values", "wrong-length"),
         (lambda: Table([0, 0], [0, 1]), "/times", "not-increasing"),
         (lambda: Table([0, "x"], [0, 1]), "/times/1", "number-expected"),
-        (lambda: Table([0, 1], [0, 1], "quintic"), "/interpolation", "literal-error"),
+        (lambda: Table([0, 1], [0, 1], "septic"), "/interpolation", "literal-error"),
         (lambda: Event("e", "x.q1", level=np.inf), "/level", "number-not-finite"),
         (lambda: Event("e", "x.q1", level=True), "/level", "number-expected"),
         (lambda: Event("e", "x.q1", direction="up"), "/direction", "literal-error"),

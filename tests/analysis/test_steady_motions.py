@@ -10,12 +10,16 @@ import numpy as np
 import pytest
 from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
-from closed_trees import governor, governor_accelerations, lift, resized
+from closed_trees import governor, governor_accelerations, lift, resized, tree_model
+from in_depth import deep
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.stability.closed_search import is_met
+from substructures.analysis.stability.found_places import still
 from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.operating_point import is_small
 from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
 from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
@@ -290,6 +294,11 @@ def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch)
         assert all(check.worst < 1e-6 for check in found.checks)
     monkeypatch.setattr(SteadySearch, "solve", lambda _, start, moving: start[moving])
     wrong = steady_motions(conical(), rates={"x.turn": 6.0}, count=3)
+    assert "3 places were left out where accelerations up to" in wrong.message
+    assert all(check.holds for check in wrong.checks)
+    monkeypatch.setattr("substructures.analysis.stability.steady_motions.confirmed", lambda some: (tuple(some), ""))
+    wrong = steady_motions(conical(), rates={"x.turn": 6.0}, count=3)
+    assert len(wrong.found) == 4
     assert wrong.is_right is False
     # w = p / g_ss: m (-g l sin a + w^2 l^2 sin a cos a) = m l^2 a''
     for motion in wrong.found:
@@ -298,7 +307,7 @@ def test_what_is_not_steady_is_not_called_right(monkeypatch: pytest.MonkeyPatch)
         np.testing.assert_allclose(motion.qdd, [expected], rtol=1e-9, atol=1e-12)
 
 
-@pytest.mark.parametrize("size", [1e-4, 1e3])
+@pytest.mark.parametrize("size", [1e-4, *deep(1e3)])
 def test_steady_motions_do_not_depend_on_the_unit_of_length(size: float) -> None:
     """A governor with w^2 l / g and k l / (m g) as before stands at the same angles, at 1/10 mm too."""
     model, places = governor(), []
@@ -318,3 +327,41 @@ def test_shown_in_two_lines() -> None:
     found = steady_motions(conical(), rates={"x.turn": 6.0})
     assert repr(found) == "SteadyMotions(found=4, moving=['x.turn'])\n2 stable, 2 unstable"
     assert all(repr(each).count("\n") == 1 for each in found.found)
+
+
+@pytest.mark.parametrize("held", ["momenta", "rates"])
+def test_a_place_beside_a_lost_rank_does_not_spoil_the_others(held: Any) -> None:
+    """Porter's governor with rods: w^2 = (m + M) g / (m l cos a); upright the closures lose rank."""
+    joint: Plain = {"type": "revolute", "coordinate": "turn"}
+    inertia = {"xx": 0.005, "yy": 0.005, "zz": 0.01}
+    bodies: list[Plain] = [{"name": "spindle", "parent": "base", "joint": joint, "inertia": inertia}]
+    for side, y in (("right", -1), ("left", 1)):
+        joint = {"type": "revolute", "coordinate": side, "placement": {"position": [0, 0, 0]}, "axis": [0, y, 0]}
+        bodies.append({"name": side, "parent": "spindle", "joint": joint, "mass": 1, "com": [0, 0, -0.3]})
+    lift = {"type": "prismatic", "coordinate": "lift", "placement": {"position": [0, 0, -0.6]}, "axis": [0, 0, 1]}
+    bodies.append({"name": "sleeve", "parent": "spindle", "joint": lift, "mass": 0.8})
+    ports = [{"name": f"{side}_pin", "body": side, "position": [0, 0, -0.3]} for side in ("right", "left")]
+    rods = [
+        {"name": side, "type": "rod", "from": f"g.{side}_pin", "to": "g.sleeve", "length": 0.3}
+        for side in ("right", "left")
+    ]
+    document = {"gravity": [0, 0, -9.81], "instances": [{"name": "g", "substructure": "p"}], "closures": rods}
+    model = tree_model(document, {"p": {"name": "p", "bodies": bodies, "ports": ports}})
+    rate = float(np.sqrt(1.8 * 9.81 / (0.3 * np.cos(np.pi / 4))))
+    found = steady_motions(model, rates={"g.turn": rate}, starts=[[0, 0.7, 0.7, 0.2]], held=held)
+    assert found.is_right is True
+    assert all(check.worst < 1e-9 for check in found.checks)
+    both = next(one for one in found.found if np.allclose(one.q[1:3], np.pi / 4, atol=1e-9))
+    assert both.stability is not None
+    assert both.stability.verdict == "stable"
+    frequency = {"momenta": 10.313244010789258, "rates": 4.808574814308301}[held]
+    assert [mode.frequency for mode in both.modes] == [pytest.approx(frequency, rel=1e-9)]
+
+
+def test_what_is_stiff_elsewhere_excuses_no_acceleration() -> None:
+    """A slide that falls freely beside a spring of 1e12 N/m is not at rest."""
+    K, M, falling = np.diag([1e12, 0.0]), np.eye(2), np.array([1.0, 9.5])
+    assert not is_small(falling, K, M)
+    assert still("rest", "", falling, M, K).holds is False
+    assert is_small(np.array([1.0, 0.0]), K, M)
+    assert not is_met(np.array([0.0, 1.0]), K)

@@ -71,6 +71,7 @@ def test_what_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
         simulate(model, **request)
 
 
+# takes seconds: a new process imports the whole service
 def test_it_is_loaded_by_the_first_motion_that_needs_it() -> None:
     """Loading it takes 86 MB and a quarter of the start of a server; integrators of SciPy take a tenth."""
     program = "import sys, service.app; raise SystemExit(bool({'heyoka', 'scipy.integrate'} & set(sys.modules)))"

@@ -8,10 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import oscillator, shipped
+from catalogue_entries import shipped_part
 from closed_trees import four_bar
 from random_trees import Plain, model_of
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed import loops
 from substructures.analysis.closed.loops import least_multipliers, loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
@@ -249,7 +250,7 @@ def test_optimal_controls_are_judged_along_accurate_motions() -> None:
     problem: Plain = {"controls": ["tau.x.q1"], "cost": Cost("tau.x.q1^2"), "horizon": 2, "intervals": 4, "q": [0]}
     problem |= {"end": End([0.5], [0])}
     coarse, fine = optimal_control(model, **problem), optimal_control(model, **problem, steps=8)
-    assert (coarse.status, coarse.is_right) == ("optimal", False)
+    assert (coarse.status, coarse.is_right) == ("failed", False)
     assert "'steps'" in coarse.message
     assert (fine.status, fine.is_right) == ("optimal", True), fine.checks
     assert {check.name for check in fine.checks} == {"end", "stationarity", "cost", "q", "qd"}
@@ -268,7 +269,7 @@ def held(found: Any) -> Any:
 def measured(noise: float = 0.0, friction: float = 0.0, moving: float = 1.0) -> tuple[Any, Plain]:
     """Base parameters of a planar arm, and a motion of it with its forces."""
     name, rng = "planar-2r", np.random.default_rng(11)
-    part = derive(Definition.read(catalogue.load(name)))
+    part = shipped_part(name)
     spec = TreeSpec.read({"name": "t", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": name}]})
     model, base = couple(spec, {"x": part}), base_parameters(regressor(spec, {"x": part}))
     data = {key: rng.uniform(-1, 1, (60, 2)) * moving for key in ("q", "qd", "qdd")}

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures import TreeSpec, couple
 from substructures.expr.interpret import constant, interpret
 from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.quantities.states import default_number
@@ -80,8 +82,9 @@ def deviation() -> Callable[..., float]:
     return _deviation
 
 
+@cache
 def _tree(*instances: tuple[str, str, str]) -> Model:
-    parts = {i: derive(Definition.read(catalogue.load(entry))) for i, entry, _ in instances}
+    parts = {i: shipped_part(entry) for i, entry, _ in instances}
     document = {
         "name": "tree",
         "gravity": [0, 0, "-g"],

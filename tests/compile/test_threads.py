@@ -8,8 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, catalogue, derive
 from substructures.compile import compile_program, layout
 from substructures.compile.kernel import KernelCall
 from substructures.compile.machine import MachineKernel
@@ -19,7 +19,7 @@ THREADS = 8
 
 def test_tables_in_use_are_never_freed(monkeypatch: pytest.MonkeyPatch) -> None:
     """All threads make the tables of an output; those that are kept are the ones that all go on with."""
-    program = derive(Definition.read(catalogue.load("simple-pendulum"))).program
+    program = shipped_part("simple-pendulum").program
     kernel = compile_program(program, list(program.outputs)[:1])
     if not isinstance(kernel, MachineKernel):
         pytest.skip("llvmlite has no wheel here: there are no tables")

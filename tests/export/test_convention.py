@@ -9,10 +9,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from exported_models import LIMIT, exported_of, tree_of, write
+from catalogue_entries import all_entries, shipped_part
+from exported_models import LIMIT, derived_anew, exported_of, tree_of, write
 from run_code import STRICT, agree, by_output, call_c, load_python, octave, octave_call, shared, state, tool
 
-from substructures import Definition, Model, catalogue, derive, evaluate
+from substructures import Model, evaluate
 from substructures.errors import InvalidArgument
 from substructures.export import TARGETS, exported_model, files, interface_of_model, interface_of_part, render
 from substructures.expr.bind import bind
@@ -52,7 +53,7 @@ def test_signatures_are_those_of_the_contract(acrobot: Model) -> None:
         assert f"model_{f.quantity}({', '.join(f.arguments)})" in text
 
 
-@pytest.mark.parametrize("name", catalogue.names())
+@pytest.mark.parametrize("name", all_entries())
 def test_signatures_cover_every_shipped_part(name: str) -> None:
     model = tree_of(name)
     if model.dof:
@@ -197,7 +198,7 @@ def test_octave_reads_the_interface(acrobot: Model, tmp_path: Path) -> None:
 
 
 def test_functions_of_parts(tmp_path: Path) -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     interface = interface_of_part(part)
     program = with_own_inertia(part, part.program.select(["metric"]))
     text = render(program, "python", name="arm", interface=interface, quantity="metric")
@@ -212,7 +213,7 @@ def test_functions_of_parts(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("target", sorted(TARGETS))
 def test_the_same_bytes_for_the_same_request(target: str) -> None:
-    first, second = (files(exported_of(tree_of("acrobot")), target, LIMIT) for _ in range(2))
+    first, second = (files(exported_of(make("acrobot")), target, LIMIT) for make in (tree_of, derived_anew))
     assert first == second
     about = [data for name, data in first.items() if not name.endswith((".c", ".wasm", ".mts"))]
     assert any(b"sha256:1" in data for data in about or first.values())  # a single C file says it itself

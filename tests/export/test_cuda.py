@@ -8,11 +8,12 @@ from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
+from catalogue_entries import shipped_part
 from cuda_on_cpu import LIMIT, call, library
 from mixed_program import POINT, mixed_program
 from run_code import agree, alone, state
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.languages import cuda
 from substructures.quantities.evaluation import Sources
@@ -28,7 +29,7 @@ def model() -> Model:
     ]
     parts = {"a": "ur5", "b": "spherical-wrist"}
     spec = TreeSpec.read({"name": "t", "gravity": [0, 0, "-9.81"], "instances": instances})
-    return couple(spec, {k: derive(Definition.read(catalogue.load(v))) for k, v in parts.items()})
+    return couple(spec, {k: shipped_part(v) for k, v in parts.items()})
 
 
 @pytest.fixture(scope="module")

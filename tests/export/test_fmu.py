@@ -10,11 +10,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from closed_trees import four_bar
 from exported_models import tree_of
 from run_code import STRICT, tool
 
-from substructures import Definition, Model, catalogue, derive
+from substructures import Model
 from substructures.analysis.simulate import FixedStep, simulate
 from substructures.errors import InvalidArgument, InvalidDocument, MissingValue
 from substructures.export import Exported, exported_model, exported_part, files, interface_of_model, interface_of_part
@@ -249,7 +250,7 @@ def test_a_parameter_without_value_is_named() -> None:
 
 
 def _part(name: str) -> Any:
-    part = derive(Definition.read(catalogue.load(name)))
+    part = shipped_part(name)
     return part, interface_of_part(part)
 
 

@@ -9,10 +9,11 @@ from pathlib import Path
 from typing import Any
 
 import pytest
+from catalogue_entries import shipped_part
 from mixed_program import POINT, mixed_program
 from run_code import agree, alone, arguments, state, tool
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, Function, Interface, exported_model, files, interface_of_model
 from substructures.expr.program import Program, Symbol
 from substructures.quantities.evaluation import Sources
@@ -64,7 +65,7 @@ def acrobot() -> Model:
     spec = TreeSpec.read(
         {"name": "demo", "gravity": [0, 0, "-9.81"], "instances": [{"name": "i0", "substructure": "acrobot"}]}
     )
-    return couple(spec, {"i0": derive(Definition.read(catalogue.load("acrobot")))})
+    return couple(spec, {"i0": shipped_part("acrobot")})
 
 
 def exported_of(model: Model) -> Exported:

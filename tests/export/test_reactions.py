@@ -7,10 +7,11 @@ import sys
 from pathlib import Path
 
 import pytest
+from catalogue_entries import shipped_part
 from exported_models import LIMIT
 from run_code import STRICT, tool
 
-from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures import TreeSpec, couple
 from substructures.export import exported_model, files, interface_of_model
 from substructures.quantities.evaluation import Sources
 from substructures.quantities.reactions import reactions
@@ -26,10 +27,10 @@ def test_functions_pass_their_self_tests(target: str, tmp_path: Path) -> None:
     wrist = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     one = {"name": "x", "substructure": "slider-crank"}
     spec = TreeSpec.read({"name": "loop", "gravity": [0, 0, "-9.81"], "instances": [one], "closures": [wrist]})
-    parts = {"x": derive(Definition.read(catalogue.load("slider-crank")))}
+    parts = {"x": shipped_part("slider-crank")}
     model = couple(spec, parts)
     transmitted = reactions(spec, parts)
-    sources = Sources(model, reactions=lambda: transmitted)
+    sources = Sources(model, of_parts=lambda _: transmitted)
     exported = exported_model(sources, interface_of_model(model, "loop@1", "sha256:1"), ["reactions"], "crank")
     (function,) = exported.functions
     assert function.arguments == ("t", "q", "qd", "qdd", "u", "x", "p")

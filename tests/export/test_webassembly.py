@@ -12,9 +12,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from flint import arb, ctx
 
-from substructures import Definition, catalogue, derive
 from substructures.array import Array
 from substructures.errors import TooLarge
 from substructures.export.webassembly import module as modules
@@ -138,7 +138,7 @@ def test_sines_near_their_zeros_and_where_the_host_answers(tmp_path: Path) -> No
 @pytest.mark.parametrize("name", ["puma560", "scara", "gimbal-gyroscope"])
 @pytest.mark.parametrize("part", [50, 1000])
 def test_parts_of_the_catalogue(name: str, part: int, tmp_path: Path) -> None:
-    program = derive(Definition.read(catalogue.load(name))).program
+    program = shipped_part(name).program
     rng = np.random.default_rng(2)
     states = [{s.name: float(x) for s, x in zip(program.symbols, rng.normal(size=99999), strict=False)}] * 2
     functions = [by_kind("first", program, ("metric", "christoffel")), by_kind("all", program, tuple(program.outputs))]
@@ -152,7 +152,7 @@ def test_parts_of_the_catalogue(name: str, part: int, tmp_path: Path) -> None:
 
 def test_a_module_that_is_too_large_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
 
-    program = derive(Definition.read(catalogue.load("simple-pendulum"))).program
+    program = shipped_part("simple-pendulum").program
     monkeypatch.setattr(modules, "LIMIT", 500)
     with pytest.raises(TooLarge, match="WebAssembly"):
         module([by_kind("f", program, tuple(program.outputs))])

@@ -9,9 +9,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
 import substructures
-from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures import TreeSpec, couple
 from substructures.expr.exact import MAX_BITS, MAX_EXPONENT
 from substructures.expr.interpret import interpret
 from substructures.expr.operations import ARITY, KINDS, MAX_ELEMENTS, SYMMETRIES, VERSION
@@ -58,7 +59,7 @@ def test_operations_kinds_and_symmetries() -> None:
 @pytest.mark.parametrize("name", ["puma560", "quadrotor", "trolley-crane"])
 def test_outputs_of_parts(name: str) -> None:
     """All are listed, and their shapes."""
-    part = derive(Definition.read(catalogue.load(name)))
+    part = shipped_part(name)
     loads = sum(load.type in ("force", "torque") for load in part.definition.loads)
     sizes = {"n": part.dof, "frames": len(part.frames), "ports": len(part.ports), "loads": loads}
     table = section_rows("Formulas of a stored")
@@ -71,7 +72,7 @@ def test_outputs_of_parts(name: str) -> None:
 def test_outputs_of_trees(closed: bool) -> None:
     closure = {"name": "rod", "type": "rod", "from": "x.tip", "length": 1}
     data = {"name": "t", "instances": [{"name": "x", "substructure": "acrobot"}], "closures": [closure] * closed}
-    model = couple(TreeSpec.read(data), {"x": derive(Definition.read(catalogue.load("acrobot")))})
+    model = couple(TreeSpec.read(data), {"x": shipped_part("acrobot")})
     sizes = {"n": model.dof, "frames": len(model.frames), "rows": 1}
     table = {n: shape for n, shape in section_rows("Formulas of a **tree**").items() if closed or n[:8] != "closure."}
     assert {n: output.shape for n, output in model.program.outputs.items()} == {

@@ -112,11 +112,12 @@ def test_mujoco_holds_its_joint_where_the_binding_says() -> None:
     ("text", "said"),
     [
         (URDF.replace('mimic joint="left"', 'mimic joint="right"'), "not two joints of one coordinate"),
-        (URDF.replace('mimic joint="left"', 'mimic joint="nobody"'), "not two joints of one coordinate"),
+        (URDF.replace('mimic joint="left"', 'mimic joint="nobody"'), "there is no joint 'nobody'"),
+        (URDF.replace('mimic joint="left"', 'mimic joint="letf"'), "no joint 'letf'; did you mean 'left'?"),
         (MJCF.replace("-2 0 0 0", "-2 1 0 0"), "by a polynomial"),
         (MJCF.replace('joint2="j"', ""), "held at a number"),
-        (MJCF.replace('joint2="j"', 'joint2="z"'), "not two joints of one coordinate"),
-        (SDF.replace('mimic joint="j"', 'mimic joint="z"'), "not two joints of one coordinate"),
+        (MJCF.replace('joint2="j"', 'joint2="z"'), "there is no joint 'z'"),
+        (SDF.replace('mimic joint="j"', 'mimic joint="z"'), "there is no joint 'z'"),
     ],
 )
 def test_what_cannot_be_bound_is_told(text: str, said: str) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.interchange.difference.difference import Difference, of_parts, of_trees
@@ -136,7 +137,7 @@ def test_parts_of_different_size_are_compared_in_what_both_have() -> None:
     first, *_, last = difference(document).words
     assert first == "coordinates 6 -> 7 (q7 new), compared in q1, q2, q3, q4, q5, q6"
     assert last.startswith("together: changes entries of M, ")
-    alone = derive(Definition.read(catalogue.load("compound-pendulum")))
+    alone = shipped_part("compound-pendulum")
     apart = of_parts(ARM, alone).words
     assert apart[0].startswith("coordinates 6 -> 1 (")
     assert apart[0].endswith("), with none in common to compare in")
@@ -190,7 +191,7 @@ def tree(**parameters: Any) -> tuple[TreeSpec, Model]:
     return spec, couple(spec, PARTS)
 
 
-PARTS = {"arm": ARM, "hand": derive(Definition.read(catalogue.load("parallel-gripper")))}
+PARTS = {"arm": ARM, "hand": shipped_part("parallel-gripper")}
 
 
 def test_trees() -> None:

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 from typing import Any
 
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, TreeSpec, catalogue, derive
+from substructures import Definition, TreeSpec, derive
+from substructures.documents import read_json, write_json
 from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import Equivalence, equivalence
@@ -100,6 +103,20 @@ def test_the_culprit_is_named(pattern: str, new: str, body: str, parameters: set
     assert {c.parameter for c in found.culprits} & parameters
 
 
+def swinging(mass: float) -> Side:
+    joint = {"type": "revolute", "coordinate": "q", "theta": "pi/2"}
+    body = {"name": "b", "parent": "base", "mass": mass, "com": [0.3, 0, 0], "joint": joint}
+    body["inertia"] = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
+    return Side.of_part(derive(Definition.read({"name": "a", "bodies": [body]})))
+
+
+@pytest.mark.parametrize("mass", [2, 1.000001])
+def test_what_differs_is_told_as_json(mass: float) -> None:
+    told = read_json(write_json(equivalence(swinging(1), swinging(mass)).plain()))
+    assert told["equal"] is False
+    assert told["culprits"] == [{"body": "b", "parameter": "mass", "a": 1, "b": pytest.approx(Decimal(str(mass)))}]
+
+
 def test_armature_is_named() -> None:
     armed = changed('axis="1 0 0"', 'axis="1 0 0" armature="0.2"', TWIN)
     assert {(c.body, c.parameter) for c in compared(TWIN, armed).culprits} == {("elbow", "armature")}
@@ -160,7 +177,7 @@ ROD = {"name": "rod", "type": "rod", "from": "x.tip", "to": "world", "length": 0
     ],
 )
 def test_closures_are_compared(closures: list[dict[str, Any]], quantity: str | None) -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     plain = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "acrobot"}]}
     a, b = (Side.of_tree(TreeSpec.read({**plain, "closures": c}), {"x": part}) for c in ([ROD], closures))
     found = equivalence(a, b)
@@ -169,7 +186,7 @@ def test_closures_are_compared(closures: list[dict[str, Any]], quantity: str | N
 
 
 def test_last_names_are_taken_only_where_they_are_clear() -> None:
-    part = derive(Definition.read(catalogue.load("acrobot")))
+    part = shipped_part("acrobot")
     plain: dict[str, Any] = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": []}
     plain["instances"] = [{"name": name, "substructure": "acrobot"} for name in ("one", "two")]
     two = Side.of_tree(TreeSpec.read(plain), {"one": part, "two": part})

@@ -99,8 +99,8 @@ def one(inside: str, head: str = "") -> bytes:
 
 
 BAD = {
-    "mesh": (one('<geom name="g" type="mesh" mesh="m"/>'), 'line 4: <geom name="g">: the mass of a mesh needs'),
-    "path": (one('<geom type="mesh" mesh="../../etc/passwd"/>'), "the mass of a mesh needs its file"),
+    "mesh": (one('<joint/><geom name="g" type="mesh" mesh="m"/>'), 'line 4: <geom name="g">: the mass of a mesh needs'),
+    "path": (one('<joint/><geom type="mesh" mesh="../../etc/passwd"/>'), "the mass of a mesh needs its file"),
     "include": (b'<mujoco>\n<include file="/etc/passwd"/></mujoco>', "line 2: <include>: the file '/etc/passwd'"),
     "include in a body": (one('<include file="x.xml"/>'), "line 4: <include>: the file 'x.xml' is not followed"),
     "global": (one("<geom size='1'/>", '<compiler coordinate="global"/>'), "no longer in MJCF"),

@@ -7,15 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sp
+from catalogue_entries import shipped_part
 
-from substructures import Definition, InvalidArgument, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidArgument, Model, TreeSpec, couple, derive
 from substructures.certificate.served import SERVED
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.quantities import canonical
 from substructures.quantities.evaluation import check, evaluate
 from substructures.quantities.formulas import derived
-from substructures.quantities.table import Sources
+from substructures.quantities.sources import Sources
 
 NAMES = ["acrobot", "cart-pendulum", "scara", "ur5", "quarter-car"]
 ALL = ["inverse_metric", "christoffel_second_kind", "hamiltonian", "canonical_equations", "power"]
@@ -24,7 +25,7 @@ ALL = ["inverse_metric", "christoffel_second_kind", "hamiltonian", "canonical_eq
 def model(name: str, *more: dict[str, Any]) -> Model:
     """One part in gravity."""
     spec = {"name": "own", "gravity": ["0.3", 0, "-9.81"], "instances": [{"name": "a", "substructure": name}]}
-    part = derive(Definition.read(catalogue.load(name)))
+    part = shipped_part(name)
     return couple(TreeSpec.read({**spec, "loads": list(more)} if more else spec), {"a": part})
 
 

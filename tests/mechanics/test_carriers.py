@@ -9,8 +9,9 @@ from functools import cache
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, Part, TreeSpec, catalogue, derive
+from substructures import Part, TreeSpec, catalogue
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Link,
@@ -97,7 +98,7 @@ def test_placements_are_seen_from_the_body_frame_or_from_the_joint(carrier: int)
 def humanoid() -> tuple[TreeSpec, dict[str, Part]]:
     """The shipped tree of seven parts."""
     spec = TreeSpec.read(catalogue.load_tree("humanoid"))
-    return spec, {i.name: derive(Definition.read(catalogue.load(str(i.substructure)))) for i in spec.instances}
+    return spec, {i.name: shipped_part(str(i.substructure)) for i in spec.instances}
 
 
 def coupled() -> Coupled:

@@ -153,6 +153,7 @@ def test_damage_of_any_output_of_a_tree_is_found() -> None:
         assert place.partition("[")[0] in found, (kind, place, found)
 
 
+# takes seconds: each damage is certified anew
 def test_a_wrong_part_makes_no_wrong_model() -> None:
     """The tree is compared with the definitions of its parts: whatever coupling takes from a wrong part is found."""
     part = derive(Definition.read(EVERYTHING))

@@ -3,17 +3,21 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from itertools import islice
 from typing import Any
 
 import numpy as np
 import pytest
-from damaged import as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from damaged import KINDS, as_json, damages, errors_of, found_in_part, found_in_tree, has_effect, nudged_numbers
+from in_depth import deep, seeds
 from random_trees import Plain
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from substructures import Definition, Model, Part, Program, TreeSpec, couple, derive
 from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
+from substructures.expr.interpret import interpret
 from substructures.tree.certificate import certify_tree
 
 #: what they change
@@ -100,9 +104,10 @@ def two_of(part: Part) -> tuple[TreeSpec, dict[str, Part], Model]:
     return spec, parts, couple(spec, parts)
 
 
+@pytest.mark.parametrize(("elements", "kinds", "every"), [(1, 3, 3), *deep((2, len(KINDS), 1))])
 @pytest.mark.parametrize("law", LAWS)
-def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
-    """In all ways, in the part and in a tree; and every number of the program of the part."""
+def test_damage_of_forces_and_potentials_is_found(law: str, elements: int, kinds: int, every: int) -> None:
+    """In some or all ways, in the part and in a tree; and every third number, or all, of the program of the part."""
     part = part_with(LAWS[law])
     spec, parts, model = two_of(part)
     for certificate, program in ((part.certificate, part.program), (model.certificate, model.program)):
@@ -110,15 +115,15 @@ def test_damage_of_forces_and_potentials_is_found(law: str) -> None:
         assert errors.keys() == program.outputs.keys()
         assert all(error is not None and error <= TOLERANCE for error in errors.values())
     rng = np.random.default_rng(5)
-    for kind, place, wrong in damages(part.program, rng, elements=2):
+    for kind, place, wrong in damages(part.program, rng, elements, kinds):
         name = place.partition("[")[0]
         if name in FORCES:
             assert found_in_part(part, wrong) is not None, (kind, place)
-    for kind, place, wrong in damages(model.program, rng, elements=2):
+    for kind, place, wrong in damages(model.program, rng, elements, kinds):
         if place.partition("[")[0] in FORCES:
             assert found_in_tree(spec, parts, model, wrong) is not None, (kind, place)
     used = set(part.program.reachable(["applied", "potential"]))
-    for kind, place, wrong in nudged_numbers(part.program):
+    for kind, place, wrong in islice(nudged_numbers(part.program), 0, None, every):
         if int(place.removeprefix("operation ")) in used and has_effect(part.program, wrong):
             assert found_in_part(part, wrong) is not None, (kind, place)
 
@@ -221,7 +226,7 @@ def random_law(rng: np.random.Generator) -> str:
     return text.strip()
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.deep) for s in range(10, 400))])
+@pytest.mark.parametrize("seed", seeds(10, 400))
 def test_no_random_law_is_refused(seed: int) -> None:
     rng = np.random.default_rng(seed)
     loads: list[Plain] = [{"type": "joint", "coordinate": c, "force": random_law(rng)} for c in "xyx"]
@@ -253,7 +258,7 @@ def exact_forces(rng: np.random.Generator) -> dict[str, str]:
     return forces
 
 
-@pytest.mark.parametrize("seed", [*range(10), *(pytest.param(s, marks=pytest.mark.deep) for s in range(10, 400))])
+@pytest.mark.parametrize("seed", seeds(10, 400))
 def test_potentials_of_trigonometric_polynomials_are_decided(seed: int) -> None:
     """Right ones are certified, whatever is a gradient of them; one that is zero or off by a constant is not."""
     rng = np.random.default_rng(seed)
@@ -295,3 +300,45 @@ def test_what_is_left_out_is_told(loads: list[Plain]) -> None:
     assert "potential_left_out" not in springs.certificate["direct_form"]
     *_, model = two_of(part)
     assert model.certificate["direct_form"]["potential_left_out"] == ["x.x", "y.x"]
+
+
+def tabulated(points: int, kind: str, number: int) -> tuple[list[float], list[float], str]:
+    """Random places and values in decimals, and their table."""
+    rng = np.random.default_rng([points, number])
+    x = np.round(np.cumsum(rng.uniform(0.05, 2, points)) - points / 2, 3)
+    y = np.round(rng.uniform(-5, 5, points), 2)
+    points_ = ", ".join(f"{a}: {b}" for a, b in zip(x, y, strict=True))
+    return x.tolist(), y.tolist(), f"table(x; {points_}{'' if kind == 'linear' else f'; {kind}'})"
+
+
+@pytest.mark.parametrize("kind", ["linear", "monotone", "smooth"])
+@pytest.mark.parametrize("points", [2, 3, 4, 5, 9, 30])
+def test_tables_are_certified_and_are_those_of_scipy(points: int, kind: str) -> None:
+    x, y, text = tabulated(points, kind, 0)
+    expected = {
+        "linear": lambda at: np.interp(at, x, y),
+        "monotone": lambda at: PchipInterpolator(x, y)(at),
+        "smooth": lambda at: CubicSpline(x, y, bc_type="clamped")(at),
+    }
+    joint = {"type": "prismatic", "coordinate": "x"}
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": joint}
+    load = {"type": "joint", "coordinate": "x", "force": text}
+    part = derive(Definition.read({"name": "p", "bodies": [body], "loads": [load]}))
+    at = np.linspace(x[0] - 1, x[-1] + 1, 57)
+    symbols = {symbol.name: at if symbol.name == "x" else 0.0 for symbol in part.program.symbols}
+    found = interpret(part.program, symbols, ["applied"])["applied"][..., 0]
+    assert np.allclose(found, expected[kind](np.clip(at, x[0], x[-1])), rtol=0, atol=1e-11)
+
+
+@pytest.mark.parametrize("number", range(4))
+def test_smooth_tables_are_certified_in_trees(number: int) -> None:
+    """The points of public reports, and others, as laws of parts and between parts."""
+    tables = [tabulated(4 + number, "smooth", number)[2], "table(x; -1: 0, 1: 1, 2: 4, 5: 2; smooth)"]
+    tables.append("table(x; 0: 0, 1: 1, 2: 4, 3: 9, 4: 16; smooth)")
+    load = {"type": "joint", "coordinate": "x", "force": f"{tables[0]} - {tables[1]}*x'"}
+    body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "x"}}
+    part = derive(Definition.read({"name": "p", "bodies": [body], "loads": [load]}))
+    instances = [{"name": name, "substructure": "p"} for name in ("one", "two")]
+    law = {"type": "potential", "name": "between", "potential": tables[2].replace("(x;", "(one.x - two.x;")}
+    tree = TreeSpec.read({"name": "t", "instances": instances, "loads": [law]})
+    assert couple(tree, {"one": part, "two": part}).dof == 2

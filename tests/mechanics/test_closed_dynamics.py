@@ -7,10 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart, tree_model
 from random_trees import Plain
 
-from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue, derive
+from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
@@ -20,7 +21,6 @@ from substructures.analysis.equations.quasi_velocities import quasi_velocity_equ
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, variational
-from substructures.part.definition import Definition
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.formulas import derived, kept
 from substructures.quantities.regressor import regressor
@@ -126,7 +126,7 @@ def test_base_parameters_of_a_closed_tree_are_refused() -> None:
     """The reactions of its closures are not known."""
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
     document = {"name": "t", "instances": [{"name": "x", "substructure": "four-bar"}], "closures": [pin]}
-    parts = {"x": derive(Definition.read(catalogue.load("four-bar")))}
+    parts = {"x": shipped_part("four-bar")}
     with pytest.raises(InvalidDocument, match=r"'pin'.*regressor"):
         base_parameters(regressor(TreeSpec.read(document), parts))
 

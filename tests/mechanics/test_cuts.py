@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_depth import deep
 from random_cuts import all_cuts, coupled, cut_tree
 from random_trees import (
     Kind,
@@ -107,7 +108,7 @@ def check(number: int, chosen: list[int]) -> float:
     return worst
 
 
-@pytest.mark.parametrize("number", range(len(MECHANISMS)))
+@pytest.mark.parametrize("number", [1, 3, 5, 7, 9, 10, *deep(0, 2, 4, 6, 8, 11)])
 def test_some_cuts(number: int) -> None:
     """Each joint alone is not enough: two drawn, and the one into single bodies."""
     size = 2 ** MECHANISMS[number].bodies

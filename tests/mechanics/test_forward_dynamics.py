@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_depth import seeds
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import InvalidDocument, Model, TooLarge, catalogue
@@ -33,7 +34,7 @@ def random_model(number: int) -> Model:
             return model_of(definition)
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", seeds(4, 12))
 def test_inverse_of_inverse_dynamics(number: int) -> None:
     """ID(q, q', FD) = 0, and FD of tau = ID(q'') with Q without tau is q''."""
     model = random_model(number)

@@ -8,8 +8,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
+from in_depth import deep
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive, evaluate
+from substructures import Model, TreeSpec, couple, evaluate
 from substructures.expr.hoist import hoisted
 from substructures.expr.interpret import interpret
 from substructures.part.part import Part
@@ -53,7 +55,7 @@ def derivation(spec: TreeSpec, parts: dict[str, Part], model: Model) -> str:
 
 def single(name: str) -> tuple[TreeSpec, dict[str, Part]]:
     tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": name}]}
-    return TreeSpec.read(tree), {"arm": derive(Definition.read(catalogue.load(name)))}
+    return TreeSpec.read(tree), {"arm": shipped_part(name)}
 
 
 def values_of(model: Model, q: np.ndarray[Any, Any]) -> Numbers:
@@ -94,7 +96,7 @@ def unnamed(found: Numbers) -> int:
     ("quantity", "most"),
     [("inverse_dynamics", 0.15), ("bias", 0.2), ("forward_dynamics", 0.2), ("christoffel", 0.4), ("coriolis", 0.4)],
 )
-@pytest.mark.parametrize("name", ["puma560", "scara", "kuka-iiwa-14"])
+@pytest.mark.parametrize("name", ["puma560", "scara", *deep("kuka-iiwa-14")])
 def test_steps_have_names_and_every_named_step_is_that_quantity(name: str, quantity: str, most: float) -> None:
     spec, parts = single(name)
     model = couple(spec, parts)

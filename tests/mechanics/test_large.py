@@ -73,6 +73,7 @@ def states(n: int) -> tuple[Any, Any, Any]:
     return q, qd, qdd
 
 
+# takes seconds: a part of 80 degrees of freedom is derived and certified, once for all tests of this file
 def test_all_but_the_christoffel_symbols_is_stored(part: Part, model: Model) -> None:
     assert not set(LARGE) & part.program.outputs.keys()
     assert not part.has_christoffel

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from analysis_models import seeds
+from in_depth import seeds
 from random_trees import Kind, Plain, number, random_definition
 
 from substructures import Definition, Model, TreeSpec, couple, derive

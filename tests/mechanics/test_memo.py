@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from analysis_models import catalogue_model
+from exported_models import derived_anew
 
 from substructures import Model
 from substructures.expr.program import Program
@@ -11,7 +12,7 @@ from substructures.quantities.memo import ProgramCache
 
 
 def test_equal_models_share_what_follows_from_them() -> None:
-    first, second = catalogue_model("double-pendulum"), catalogue_model("double-pendulum")
+    first, second = derived_anew("double-pendulum"), derived_anew("double-pendulum")
     assert first is not second
     assert kept(first, "coriolis") is kept(second, "coriolis")
     assert kept(first, "coriolis") == derived(first, "coriolis")

@@ -7,8 +7,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, MissingValue, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures import MissingValue, Model, Part, TreeSpec, catalogue, couple
 from substructures.compile import compile_program
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
@@ -16,9 +17,7 @@ from substructures.quantities.from_parts import EQUATIONS, CompiledParts, Numeri
 
 
 def parts_of(spec: TreeSpec) -> dict[str, Part]:
-    library = {
-        str(i.substructure): derive(Definition.read(catalogue.load(str(i.substructure)))) for i in spec.instances
-    }
+    library = {str(i.substructure): shipped_part(str(i.substructure)) for i in spec.instances}
     return {i.name: library[str(i.substructure)] for i in spec.instances}
 
 

@@ -12,11 +12,10 @@ from random_trees import Kind, model_of, random_definition, random_states, tree_
 
 from substructures import Definition, Model, couple, derive
 from substructures.array import Array
-from substructures.compile import compile_program
+from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import (
     QUANTITIES,
-    REGRESSOR,
     Direction,
     Evaluation,
     Evaluator,
@@ -26,25 +25,29 @@ from substructures.quantities.evaluation import (
     interpreted,
     numbers_per_state,
 )
-from substructures.quantities.powers import powers
-from substructures.quantities.reactions import reactions
-from substructures.quantities.regressor import regressor
+from substructures.quantities.quantity import REGRESSOR
+from substructures.quantities.sources import of_parts
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]
 
 
+_kernels: dict[tuple[str, ...], Kernel] = {}
+
+
 def compiled(program: Program, values: Mapping[str, Any], names: list[str], _states: int) -> dict[str, Array]:
-    """The engine that compiles what it is asked for."""
-    return compile_program(program, names).evaluate(values)
+    """The engine that compiles what it is asked for, once."""
+    key = program.digest, *names
+    if key not in _kernels:
+        _kernels[key] = compile_program(program, names)
+    return _kernels[key].evaluate(values)
 
 
+@cache
 def random_sources(seed: int = 77) -> Sources:
     definition = random_definition(np.random.default_rng(seed), Kind(3, joints=("revolute", "prismatic"), massive=True))
     spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
-    model, transmitted = couple(spec, parts), cache(lambda: reactions(spec, parts))
-    by_load = cache(lambda: powers(spec, parts))
-    return Sources(model, regressor=lambda: regressor(spec, parts), reactions=transmitted, powers=by_load)
+    return Sources(couple(spec, parts), of_parts=of_parts(spec, parts))
 
 
 def random_model() -> Model:

@@ -6,12 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures import TreeSpec, couple
 from substructures.compile import compile_program
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.one_state import OneState, prepared
-from substructures.quantities.table import QUANTITIES, Sources
+from substructures.quantities.quantity import QUANTITIES
+from substructures.quantities.sources import Sources
 from substructures.tree.model import Model
 
 PLAIN = ["metric", "christoffel", "forces", "bias", "kinematics", "inverse_dynamics", "kinetic_energy", "momentum"]
@@ -22,7 +24,7 @@ def tree(name: str) -> Model:
     spec = TreeSpec.read(
         {"name": "own", "gravity": [0, 0, "-9.81"], "instances": [{"name": "a", "substructure": name}]}
     )
-    return couple(spec, {"a": derive(Definition.read(catalogue.load(name)))})
+    return couple(spec, {"a": shipped_part(name)})
 
 
 def ready(model: Model, names: list[str] = PLAIN) -> OneState:

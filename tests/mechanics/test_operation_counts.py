@@ -62,6 +62,7 @@ def part(definition: Plain) -> Part:
     return stored(json.dumps(definition))
 
 
+@cache
 def entry(name: str) -> Part:
     return derive(Definition.read(catalogue.load(name)))
 

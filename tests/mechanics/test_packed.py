@@ -6,8 +6,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
-from substructures import Definition, TreeSpec, catalogue, couple, derive
+from substructures import TreeSpec, couple
 from substructures.client import unpack
 from substructures.compile import compile_program
 from substructures.quantities.evaluation import Sources, evaluate, evaluate_in_parts, interpreted
@@ -20,7 +21,7 @@ NAMES = ["metric", "christoffel", "forces", "kinematics"]
 def tree_of(*parts: tuple[str, str, str]) -> tuple[TreeSpec, dict[str, Any]]:
     instances = [{"name": name, "substructure": part, "at": at} for name, part, at in parts]
     spec = TreeSpec.read({"name": "t", "gravity": [0, 0, "-9.81"], "instances": instances})
-    return spec, {name: derive(Definition.read(catalogue.load(part))) for name, part, _ in parts}
+    return spec, {name: shipped_part(part) for name, part, _ in parts}
 
 
 #: a chain, and branches, between which nothing is coupled

@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from in_depth import seeds
 from independent import by_coordinate
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, with_parameters
 
@@ -61,7 +62,7 @@ def compare_tree(seed: int) -> float:
     return worst
 
 
-@pytest.mark.parametrize("block", range(6))
+@pytest.mark.parametrize("block", seeds(2, 6))
 def test_sixty_random_trees(block: int) -> None:
     for seed in range(10 * block, 10 * block + 10):
         assert compare_tree(seed) < TOLERANCE, f"seed {seed}"

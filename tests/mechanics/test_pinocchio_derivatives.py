@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_depth import seeds
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
@@ -36,7 +37,7 @@ def jacobian(model: Model, quantity: str, state: Plain, along: Plain, inputs: Pl
     return evaluate(model, **(request | {"quantities": [quantity]}))[quantity].T
 
 
-@pytest.mark.parametrize("number", range(10))
+@pytest.mark.parametrize("number", seeds(4, 10))
 def test_derivatives(number: int) -> None:
     definition, model = pairs(number)
     engine = engine_of(definition, GRAVITY)

@@ -6,10 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from closed_trees import slider_crank
 from random_trees import Kind, random_definition, tree_of
 
-from substructures import Definition, InvalidArgument, Model, Part, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidArgument, Model, Part, TreeSpec, couple, derive
 from substructures.analysis.motion import load_powers
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
@@ -54,7 +55,7 @@ def slide(**more: Any) -> tuple[Model, PowerModel]:
 
 
 def answered(model: Model, by: PowerModel, *others: str, **state: Any) -> Evaluation:
-    return evaluate(model, ["powers", *others], sources=Sources(model, powers=lambda: by), **state)
+    return evaluate(model, ["powers", *others], sources=Sources(model, of_parts=lambda _: by), **state)
 
 
 def rows_of(found: Evaluation) -> dict[str, float]:
@@ -160,7 +161,7 @@ def driven_crank(**given: Any) -> tuple[PowerModel, Trajectory]:
     closure = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     one = {"name": "x", "substructure": "slider-crank"}
     spec = TreeSpec.read({"name": "l", "gravity": [0, -9.81, 0], "instances": [one], "closures": [closure]})
-    by = powers(spec, {"x": derive(Definition.read(catalogue.load("slider-crank")))})
+    by = powers(spec, {"x": shipped_part("slider-crank")})
     model = slider_crank((0, -9.81, 0))
     return by, simulate(model, [0.3, -0.1, 0.17], (0, 0.1), count=11, powers=by, **given)
 
@@ -209,7 +210,7 @@ def test_a_power_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
 
 def test_where_they_mean_nothing() -> None:
     model, by = slide()
-    with pytest.raises(InvalidArgument, match="powers need the parts"):
+    with pytest.raises(InvalidArgument, match="'powers' needs the parts"):
         evaluate(model, "powers", [0])
     with pytest.raises(InvalidArgument, match="'powers' means nothing"):
         simulate(model, [0], (0, 1), geodesic=True, powers=by)

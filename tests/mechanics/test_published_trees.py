@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.errors import VerificationFailed
@@ -138,7 +139,7 @@ def test_a_module_does_what_the_tree_does() -> None:
 
 
 def test_modules_of_modules() -> None:
-    arm = derive(Definition.read(catalogue.load("acrobot")))
+    arm = shipped_part("acrobot")
     parts = {"one": arm, "two": rod()}
     spec = spec_of(
         [{"name": "one", "substructure": "acrobot"}, {"name": "two", "substructure": "rod", "at": "one.tip"}]
@@ -164,7 +165,7 @@ def test_modules_of_modules() -> None:
 )
 def test_a_module_takes_no_more_operations(first: str, second: str) -> None:
     """For each state than the tree that it was; what depends on parameters alone is done once."""
-    parts = {name: derive(Definition.read(catalogue.load(part))) for name, part in (("a", first), ("b", second))}
+    parts = {name: shipped_part(part) for name, part in (("a", first), ("b", second))}
     spec = spec_of([{"name": "a", "substructure": first}, {"name": "b", "substructure": second, "at": "a.flange"}])
     part, _ = module_of(spec, parts)
     tree, module = couple(spec, parts), mounted(part)
@@ -176,7 +177,7 @@ def test_a_module_takes_no_more_operations(first: str, second: str) -> None:
 @pytest.mark.parametrize("rpy", [[0, "pi/2", 0], ["pi/2", 0, "pi/2"], [0, "-pi/2", "pi"]], ids=str)
 def test_seats_that_change_places_of_axes(rpy: list[Any]) -> None:
     """What such a seat makes of a joint has one matrix, whatever factors it has been formed by."""
-    pendulum = derive(Definition.read(catalogue.load("simple-pendulum")))
+    pendulum = shipped_part("simple-pendulum")
     port = pendulum.frames[-1]
     spec = spec_of(
         [
@@ -190,7 +191,7 @@ def test_seats_that_change_places_of_axes(rpy: list[Any]) -> None:
 
 def test_the_humanoid_becomes_a_part() -> None:
     spec = TreeSpec.read(catalogue.load_tree("humanoid"))
-    known = {str(i.substructure): derive(Definition.read(catalogue.load(str(i.substructure)))) for i in spec.instances}
+    known = {str(i.substructure): shipped_part(str(i.substructure)) for i in spec.instances}
     parts = {i.name: known[str(i.substructure)] for i in spec.instances}
     found = published(spec, parts, Publication({"name": "module"}))
     assert len(published_part(found, parts).coordinates) == 34

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from closed_trees import slider_crank
 from random_trees import Kind, random_definition, random_states, tree_of
 
@@ -29,7 +30,7 @@ def made(tree: Plain) -> tuple[Model, ReactionModel]:
 
 def answered(tree: Plain, joints: tuple[str, ...] | None = None, **given: Any) -> Evaluation:
     model, transmitted = made(tree)
-    return evaluate(model, "reactions", sources=Sources(model, reactions=lambda: transmitted, joints=joints), **given)
+    return evaluate(model, "reactions", sources=Sources(model, of_parts=lambda _: transmitted, joints=joints), **given)
 
 
 def rod(mass: float, length: float, joint: Plain | None = None, **more: Any) -> Plain:
@@ -78,7 +79,7 @@ def test_the_third_component_is_what_acts_in_the_joint() -> None:
             "gravity": [1, 2, 3], "instances": [{"name": "p", "definition": rod(1.5, 0.8, {"type": kind} | law)}],
         }  # fmt: skip
         model, transmitted = made(tree)
-        sources = Sources(model, reactions=lambda given=transmitted: given)
+        sources = Sources(model, of_parts=lambda _, given=transmitted: given)
         state = {"q": [0.5], "qd": [1.3], "inputs": {"tau.p.q": 0.9}}
         found = evaluate(model, ["reactions", "forward_dynamics"], sources=sources, **state)
         law_of_joint = 0.9 - 3 * (0.5 - 0.2) - 0.4 * 1.3
@@ -121,7 +122,7 @@ def test_a_joint_cut_as_a_closure_has_the_same_reactions() -> None:
     model, transmitted = made(two_links(True))
     c, s = 0.5 * np.cos(q1), 0.5 * np.sin(q1)
     q, qd = [q1, c, s, 0, q1 + q2, 0, 0], [w1, -s * w1, c * w1, 0, w1 + w2, 0, 0]
-    found = evaluate(model, "reactions", q, qd, sources=Sources(model, reactions=lambda: transmitted))
+    found = evaluate(model, "reactions", q, qd, sources=Sources(model, of_parts=lambda _: transmitted))
     row = {name: k for k, name in enumerate(found.joints)}
     for field in ("force", "moment", "force_world", "moment_world"):
         # the hinge of the first link, which carries both
@@ -169,7 +170,7 @@ def test_a_motion_that_does_not_begin_has_none() -> None:
     closure = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     one = {"name": "x", "substructure": "slider-crank"}
     spec = TreeSpec.read({"name": "l", "gravity": DOWN, "instances": [one], "closures": [closure]})
-    transmitted = reactions(spec, {"x": derive(Definition.read(catalogue.load("slider-crank")))})
+    transmitted = reactions(spec, {"x": shipped_part("slider-crank")})
     far = {"x.crank": "0.3", "x.piston": "9"}
     motion = simulate(slider_crank((0, -9.81, 0)), [0, 0, 0], (0, 1), prescribed=far, reactions=transmitted)
     assert motion.status == "failed"
@@ -187,7 +188,7 @@ def test_chosen_joints_alone() -> None:
     assert len(transmitted.of(["a2.q"]).program) < 0.7 * len(transmitted.program)
     with pytest.raises(InvalidArgument, match=r"there is no joint 'a2.p'.*a2.q"):
         transmitted.of(["a0.q", "a2.p"])
-    with pytest.raises(InvalidArgument, match="reactions need the parts"):
+    with pytest.raises(InvalidArgument, match="'reactions' needs the parts"):
         evaluate(model, "reactions", [0, 0, 0])
 
 

@@ -4,17 +4,18 @@
 
 from __future__ import annotations
 
-from functools import cache
 from itertools import product
 from typing import Any
 
 import independent
 import numpy as np
 import pytest
+from catalogue_entries import all_entries, shipped_part
+from in_depth import seeds
 from random_cuts import all_cuts, cut_tree
 from random_trees import GRAVITY, Kind, Plain, random_definition, random_states, tree_of, with_parameters
 
-from substructures import Definition, MissingValue, Part, TooLarge, TreeSpec, catalogue, couple, derive
+from substructures import MissingValue, Part, TooLarge, TreeSpec, couple, derive
 from substructures.errors import InvalidArgument
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
@@ -29,15 +30,10 @@ N = 3
 TEN = ("m", "sx", "sy", "sz", "Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz")
 
 
-@cache
-def shipped(name: str) -> Part:
-    return derive(Definition.read(catalogue.load(name)))
-
-
 def of(tree: Plain) -> tuple[TreeSpec, dict[str, Part]]:
     """A tree document with its parts."""
     spec = TreeSpec.read(tree)
-    parts = {i.name: shipped(i.substructure) if i.substructure else derive(i.definition) for i in spec.instances}
+    parts = {i.name: shipped_part(i.substructure) if i.substructure else derive(i.definition) for i in spec.instances}
     return spec, parts
 
 
@@ -70,7 +66,7 @@ def rotors(part: Part) -> Any:
     return interpret(part.program, values, ["armature"])["armature"]
 
 
-@pytest.mark.parametrize("name", catalogue.names())
+@pytest.mark.parametrize("name", all_entries())
 def test_catalogue(name: str) -> None:
     spec, parts = of(
         {"name": "t", "gravity": [0.3, -1, -9.81], "instances": [{"name": "x", "substructure": name}]},
@@ -81,7 +77,7 @@ def test_catalogue(name: str) -> None:
     assert Y.parameters.keys() == {s.name for s in Y.program.symbols if s.kind == "parameter"}
 
 
-@pytest.mark.parametrize("number", range(8))
+@pytest.mark.parametrize("number", seeds(4, 8))
 def test_random_trees_in_pieces(number: int) -> None:
     """One part, and the same mechanism cut somewhere; every other one with parameters."""
     rng = np.random.default_rng(4200 + number)
@@ -191,7 +187,7 @@ def test_compound_joints_and_fixed_bodies() -> None:
 
 
 def test_what_is_fixed_to_a_mounted_interface_is_a_link() -> None:
-    port = shipped("ur5").ports[0]
+    port = shipped_part("ur5").ports[0]
     tree = [
         {"name": "arm", "substructure": "ur5"},
         {"name": "tool", "substructure": "flange-tool", "at": f"arm.{port}"},
@@ -212,7 +208,7 @@ def test_parameters_that_the_motion_does_not_feel() -> None:
     }
     spec, parts = of({"name": "t", "instances": [{"name": "x", "definition": definition}]})
     model = couple(spec, parts)
-    sources = Sources(model, regressor=lambda: regressor(spec, parts))
+    sources = Sources(model, of_parts=lambda _: regressor(spec, parts))
     assert "x.a" not in model.effective
     request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
     found = evaluate(model, **request, sources=sources)

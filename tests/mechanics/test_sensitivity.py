@@ -6,9 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from random_trees import Kind, Plain, model_of, random_definition, random_states, with_parameters
 
-from substructures import Definition, MissingValue, Model, Program, TreeSpec, catalogue, couple, derive
+from substructures import Definition, MissingValue, Model, Program, TreeSpec, couple, derive
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
@@ -27,7 +28,7 @@ KINDS = [Kind(3, massive=True), Kind(5, massive=True, joints=("revolute", "prism
 
 
 def catalogue_model(name: str) -> Model:
-    part = derive(Definition.read(catalogue.load(name)))
+    part = shipped_part(name)
     document = {"name": "t", "gravity": [0.2, -1, -9.81], "instances": [{"name": "x", "substructure": name}]}
     return couple(TreeSpec.read(document), {"x": part})
 

@@ -10,6 +10,7 @@ from typing import Any
 import independent
 import numpy as np
 import pytest
+from in_depth import seeds
 from independent import Moving
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, with_parameters
 
@@ -70,7 +71,7 @@ KINDS = [
 ]
 
 
-@pytest.fixture(scope="module", params=range(2 * len(KINDS)), ids=lambda i: f"tree{i}")
+@pytest.fixture(scope="module", params=seeds(len(KINDS), 2 * len(KINDS)), ids=lambda i: f"tree{i}")
 def case(request: pytest.FixtureRequest) -> Case:
     rng = np.random.default_rng(500 + request.param)
     kind = KINDS[request.param % len(KINDS)]

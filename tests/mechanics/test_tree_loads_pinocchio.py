@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from in_depth import seeds
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from random_trees import Plain, random_states  # noqa: E402 -- the engine is optional
@@ -52,9 +53,9 @@ def compare_tree(seed: int) -> float:
     return worst
 
 
-@pytest.mark.parametrize("block", range(5))
+@pytest.mark.parametrize("block", seeds(1, 10))
 def test_hundred_random_trees(block: int) -> None:
-    for seed in range(20 * block, 20 * block + 20):
+    for seed in range(10 * block, 10 * block + 10):
         assert compare_tree(seed) < TOLERANCE, f"seed {seed}"
 
 
@@ -71,7 +72,7 @@ def own_definition(tree: Plain) -> Plain:
     return {**one_definition(tree), **symbols, "loads": loads}
 
 
-@pytest.mark.parametrize("seed", range(30))
+@pytest.mark.parametrize("seed", seeds(8, 30))
 def test_loads_within_a_part(seed: int) -> None:
     """The same loads between bodies of one definition; a spring there has no ports."""
     rng = np.random.default_rng(seed)

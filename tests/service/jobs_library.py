@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
+from service.derivation import software
 from service.jobs.engine import AttemptReport, Budget, Engine, Work
 from service.jobs.kinds import expand, resolve
 from service.jobs.kinds.library import StoredTree, StoredVersion
@@ -50,7 +51,9 @@ class MemoryLibrary:
 
     def version(self, reference: str) -> StoredVersion | None:
         part = self.parts.get(reference.partition("@")[0])
-        return None if part is None else StoredVersion(part.name, part.definition.digest, part.program.digest)
+        return (
+            None if part is None else StoredVersion(part.name, part.definition.digest, part.program.digest, software())
+        )
 
     def tree(self, reference: str) -> StoredTree | None:
         return self._trees.get(reference.partition("@")[0])

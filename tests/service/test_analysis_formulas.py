@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -161,6 +162,16 @@ def test_base_parameters_can_be_read(double: TestClient) -> None:
         assert r"\mathit{base}" not in page
         assert "stands for arm.rod.Jxx + arm.rod.Jyy" in page
     assert r"J_{\mathrm{arm},xx,\mathrm{rod}} &= " in double.get("/v1/trees/cell/base_parameters?format=latex").text
+
+
+def test_units_of_base_parameters_are_those_of_their_names(client: TestClient) -> None:
+    """First moments in kg m, moments of inertia in kg m^2: also of links with symbolic lengths."""
+    file = Path(__file__).parent.parent / "interchange" / "cases" / "30-two-link-symbolic-lengths.json"
+    client.post("/v1/trees", content=file.read_bytes(), headers={"Content-Type": "application/json"})
+    text = client.get("/v1/trees/two-symbolic/base_parameters?format=text").text
+    units = dict(re.findall(r"# (\w+) is base parameter \[(.*)\]", text))
+    moments = {f"{name}_b{k}": unit for k in "12" for name, unit in (("sx", "kg m"), ("sy", "kg m"), ("Jxx", "kg m^2"))}
+    assert units == moments
 
 
 def test_formulas_in_grouped_symbols(double: TestClient) -> None:

@@ -14,18 +14,14 @@ from fastapi.testclient import TestClient
 
 from substructures.formats import arrow
 
-from .conftest import HAND
+from .one_store import double
+
+__all__ = ["double"]  # a fixture
 
 ARROW, NPZ, JSON = arrow.MEDIA_TYPE, "application/x-npz", "application/json"
 URL = "/v1/trees/cell/evaluations"
 Q = np.linspace(-1, 1, 20).reshape(10, 2)
 TAU = np.arange(10.0)
-
-
-@pytest.fixture
-def double(filled: TestClient) -> TestClient:
-    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
-    return filled
 
 
 def lists(values: np.ndarray[Any, Any]) -> pa.Array:

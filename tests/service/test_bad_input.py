@@ -10,6 +10,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from .conftest import PENDULUM, SLIDER
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 JSON = {"Content-Type": "application/json"}
 
@@ -92,10 +95,10 @@ WRONG: dict[str, tuple[Any, str, str]] = {
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_wrong_definitions(client: TestClient, rows: Any, what: str) -> None:
+def test_wrong_definitions(filled: TestClient, rows: Any, what: str) -> None:
     definition, pointer, culprit = WRONG[what]
     before = rows()
-    answer = client.post("/v1/substructures", json=definition)
+    answer = filled.post("/v1/substructures", json=definition)
     assert answer.status_code == 422, answer.text
     assert answer.headers["content-type"] == "application/problem+json"
     errors = answer.json()["errors"]
@@ -104,11 +107,11 @@ def test_wrong_definitions(client: TestClient, rows: Any, what: str) -> None:
 
 
 @pytest.mark.parametrize("what", WRONG)
-def test_wrong_inline_definitions(client: TestClient, rows: Any, what: str) -> None:
+def test_wrong_inline_definitions(filled: TestClient, rows: Any, what: str) -> None:
     definition, pointer, _ = WRONG[what]
     before = rows()
     tree = {"name": "t", "instances": [{"name": "a", "definition": definition}]}
-    answer = client.post("/v1/trees", json=tree)
+    answer = filled.post("/v1/trees", json=tree)
     assert answer.status_code == 422, answer.text
     errors = answer.json()["errors"]
     assert any(e["pointer"] == f"/instances/0/definition{pointer}" for e in errors), errors
@@ -142,9 +145,9 @@ def test_wrong_texts(filled: TestClient, rows: Any, what: str, path: str) -> Non
     assert rows() == before
 
 
-def test_warnings_for_what_depends_on_parameters(client: TestClient) -> None:
+def test_warnings_for_what_depends_on_parameters(filled: TestClient) -> None:
     definition = edited("/bodies/0/inertia", {"xx": "m*l^2", "yy": "m*l^2", "zz": "9*m*l^2"})
-    answer = client.post("/v1/substructures", content=json.dumps(definition), headers=JSON)
+    answer = filled.post("/v1/substructures", content=json.dumps(definition), headers=JSON)
     assert answer.status_code == 201, answer.text
     assert "rod" in json.dumps(answer.json()["certificate"]["warnings"])
 

@@ -29,7 +29,7 @@ from substructures.documents import write_json
 from substructures.part.certificate import plain
 from substructures.part.definition import Definition
 
-from .conftest import PENDULUM, SLIDER, make_client
+from .conftest import PENDULUM, SLIDER, copied, make_client
 
 ZIP = {"Content-Type": "application/zip"}
 BUNDLES = "/v1/bundles"
@@ -50,7 +50,7 @@ def opened(folder: Path, **settings: Any) -> Iterator[TestClient]:
 def source(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server that knows pendulum and slider."""
     path = tmp_path_factory.mktemp("source") / "store.db"
-    path.write_bytes(template.read_bytes())
+    copied(template, path)
     with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store, make_client(store) as client:
         yield client
 
@@ -322,8 +322,8 @@ def added_to_metric(program: Any, *operations: list[Any]) -> None:
 
 def bump(program: Any) -> None:
     """metric + 1000 exp(-1e8 (q - 1/2)^2): nothing but near to q = 1/2."""
-    program["symbols"].append({"name": "q", "kind": "coordinate", "unit": ""})
-    n, q = len(program["operations"]), len(program["symbols"]) - 1
+    q = next(k for k, symbol in enumerate(program["symbols"]) if symbol["kind"] == "coordinate")
+    n = len(program["operations"])
     exponent = [["sym", q], ["rat", "1", "2"], ["sub", n, n + 1], ["powi", n + 2, 2], ["int", "-100000000"]]
     more = [["mul", n + 3, n + 4], ["exp", n + 5], ["int", "1000"], ["mul", n + 6, n + 7]]
     added_to_metric(program, *exponent, *more)

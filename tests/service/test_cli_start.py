@@ -52,10 +52,24 @@ def test_unknown_command_is_named(capsys: pytest.CaptureFixture[str]) -> None:
         ("substructures derive x.yaml --fo", "--format"),
     ],
 )
-def test_completion(line: str, expected: str) -> None:
+def test_completion(
+    line: str, expected: str, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Words, actions and options, as the shell asks for them."""
-    words = line.split()
-    asked = {"_SUBSTRUCTURES_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": str(len(words) - 1)}
+    for name, value in asked(line).items():
+        monkeypatch.setenv(name, value)
+    main([])
+    assert expected in capsys.readouterr().out.split()
+
+
+def test_completion_in_a_process_of_its_own() -> None:
     command = [sys.executable, "-m", "service.cli.main"]
-    done = subprocess.run(command, env={**os.environ, **asked}, capture_output=True, text=True, check=False)
-    assert expected in done.stdout.split()
+    environment = {**os.environ, **asked("substructures jo")}
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert "jobs" in done.stdout.split()
+
+
+def asked(line: str) -> dict[str, str]:
+    """The variables that the shell sets."""
+    last = str(len(line.split()) - 1)
+    return {"_SUBSTRUCTURES_COMPLETE": "complete_bash", "COMP_WORDS": line, "COMP_CWORD": last}

@@ -343,7 +343,7 @@ def test_robot_files(client: Client, tmp_path: Path) -> None:
 
 def test_what_became_a_job_is_waited_for(tmp_path: Path) -> None:
     """Everything that the service can defer is deferred."""
-    settings = Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False)
+    settings = Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False, workers=1)
     with background(settings) as address, Client(address) as client:
         client._http.headers["Prefer"] = "respond-async"
         version, _ = client.submit(PENDULUM)

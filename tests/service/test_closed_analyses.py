@@ -12,9 +12,14 @@ from fastapi.testclient import TestClient
 
 from service.cli.main import main
 from service.jobs.kinds import run
+from substructures.client.numbers import Evaluation
 from substructures.documents import read_json, write_json
+from substructures.formats.arrays import as_answer, view_npz
 
 from .jobs_library import MemoryLibrary
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 G = 9.81
 DOWN = np.pi / 2
@@ -44,11 +49,11 @@ TREE: dict[str, Any] = {
 HANGING = [-DOWN, -DOWN, DOWN]
 
 
-@pytest.fixture
-def swing(client: TestClient) -> TestClient:
-    made = client.post("/v1/trees", json=TREE)
+@pytest.fixture(scope="module")
+def swing(filled: TestClient) -> TestClient:
+    made = filled.post("/v1/trees", json=TREE)
     assert made.status_code == 201, made.text
-    return client
+    return filled
 
 
 def ask(client: TestClient, what: str, **request: Any) -> Any:
@@ -91,6 +96,34 @@ def test_accelerations_of_a_closed_tree(swing: TestClient) -> None:
     assert "closure.jacobian" in made.json()["kernels"][0]["outputs"]
     again = ask(swing, "evaluations", quantities=["forward_dynamics"], q=turned)
     np.testing.assert_allclose(again["forward_dynamics"], answer["forward_dynamics"][0], rtol=1e-12)
+
+
+def test_rows_of_closures_in_numbers(swing: TestClient) -> None:
+    """The Jacobian is the derivative of the residual; the same as npz, whose names are nested at dots."""
+    a, b, c = -1.2, -1.1, 1.3
+    quantities = ["closure.jacobian", "closure.residual"]
+    told = ask(swing, "evaluations", quantities=quantities, q=[[a, b, c]])
+    assert told["rows"] == [f"pin.{row}" for row in ("x", "y", "z", "rx", "ry")]
+    moved = np.array(ask(swing, "evaluations", quantities=quantities, q=[[a, b + 1e-7, c]])["closure.residual"])
+    slope = (moved - np.array(told["closure.residual"]))[0] / 1e-7
+    np.testing.assert_allclose(np.array(told["closure.jacobian"])[0, :, 1], slope, atol=1e-6)
+    content = swing.post(
+        "/v1/trees/swing/evaluations",
+        json={"quantities": quantities, "q": [[a, b, c]]},
+        headers={"Accept": "application/x-npz"},
+    ).content
+    found = Evaluation(as_answer(view_npz(np.frombuffer(content, np.uint8))), {"q": [[a, b, c]]})
+    np.testing.assert_allclose(found["closure.jacobian"], told["closure.jacobian"], rtol=1e-13, atol=1e-15)
+    column = found.columns()["closure.jacobian.pin.x.s.right"]
+    np.testing.assert_allclose(column, [told["closure.jacobian"][0][0][1]], rtol=1e-13)
+
+
+def test_an_open_tree_has_no_rows_of_closures(swing: TestClient) -> None:
+    made = swing.post("/v1/trees", json={**TREE, "name": "open", "closures": []})
+    assert made.status_code == 201, made.text
+    answer = swing.post("/v1/trees/open/evaluations", json={"quantities": ["closure.jacobian"], "q": HANGING})
+    assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "not-of-tree")
+    assert answer.json()["errors"][0]["pointer"] == "/quantities/0"
 
 
 def test_formulas_of_a_closed_tree(swing: TestClient) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,6 +11,9 @@ from fastapi.testclient import TestClient
 
 from service.negotiation import MEDIA_TYPES
 from substructures.expr.program import Program
+
+from .conftest import make_client
+from .one_store import copied
 
 PART: dict[str, Any] = {
     "name": "bar",
@@ -38,10 +43,17 @@ def test_a_tree_with_closures_is_stored_and_shown(client: TestClient) -> None:
     assert "closures" not in open_tree.json()
 
 
+@pytest.fixture(scope="module")
+def ring(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server that knows the tree."""
+    with copied(template, tmp_path_factory.mktemp("ring")) as store, make_client(store) as client:
+        assert client.post("/v1/trees", json=TREE).status_code == 201
+        yield client
+
+
 @pytest.mark.parametrize("name", MEDIA_TYPES)
-def test_closures_in_every_format(client: TestClient, name: str) -> None:
-    client.post("/v1/trees", json=TREE)
-    answer = client.get("/v1/trees/ring/closures", params={"format": name})
+def test_closures_in_every_format(ring: TestClient, name: str) -> None:
+    answer = ring.get("/v1/trees/ring/closures", params={"format": name})
     assert answer.status_code == 200, answer.text
     if name == "json":
         outputs = Program.from_bytes(answer.content).outputs

@@ -7,6 +7,7 @@ import json
 import re
 from collections.abc import Iterator
 from dataclasses import dataclass
+from itertools import groupby
 from pathlib import Path
 
 import pytest
@@ -18,10 +19,7 @@ from service.analyses.numbers import ANALYSES
 from service.jobs.kinds import KINDS
 from service.negotiation import FORMS, MEDIA_TYPES
 from service.settings import Limits
-from substructures.quantities.evaluation import QUANTITIES as EVALUATED
-from substructures.quantities.formulas import DERIVED
-from substructures.quantities.regressor import OUTPUTS
-from substructures.tree.model_outputs import KINEMATICS, MOMENTUM
+from substructures.quantities.quantity import ANALYSIS, PART, TABLE, Quantity
 
 FOLDER = Path(service.__file__).parent
 PAGE = (FOLDER / "contract.md").read_text()
@@ -105,8 +103,25 @@ def test_tables_name_what_there_is() -> None:
     assert sorted(first_column(numbers, "name")) == sorted(ANALYSES)
     assert sorted(first_column(kinds, "kind")) == sorted(KINDS)
     assert sorted(first_column(numbers, "quantity")) == sorted(QUANTITIES)
-    named = spans(numbers)
-    assert {*OPTIONS, *DERIVED, *OUTPUTS, *EVALUATED, *KINEMATICS, *MOMENTUM, *MEDIA_TYPES, *FORMS} <= named
+    assert {*OPTIONS, *MEDIA_TYPES, *FORMS} <= spans(numbers)
+
+
+def axes_of(quantity: Quantity) -> Iterator[str]:
+    """As the page writes them: fields with equal axes together."""
+    for axes, some in groupby(quantity.arrays, lambda array: array.axes):
+        fields = ", ".join(array.field for array in some)
+        short = ({"coordinates": "n", "axes": "3"}.get(axis, axis) for axis in axes)
+        yield " ".join([*([f"`{fields}`"] if fields else []), *short])
+
+
+def test_quantities_have_the_axes_and_arguments_of_the_table() -> None:
+    rows = section(4).split("| of a tree |", 1)[1].split("\n\n", 1)[0].splitlines()[2:]
+    told = [[cell.strip() for cell in row.strip("|").split("|")] for row in rows]
+    there = [row for row in TABLE.values() if row.source not in (ANALYSIS, PART)]
+    assert [row[0] for row in told] == [f"`{quantity.name}`" for quantity in there]
+    for (_, _, axes, arguments), quantity in zip(told, there, strict=True):
+        assert axes == "; ".join(axes_of(quantity))
+        assert arguments == " ".join(quantity.arguments)
 
 
 @pytest.mark.parametrize("name", ANALYSES)

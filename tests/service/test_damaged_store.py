@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import sqlite3
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -17,24 +16,28 @@ from service.app import open_store
 from service.cli.main import main
 from service.database.packed import pack, unpack
 from service.integrity import digest_of
+from service.operations.verification import verify_all
 from service.settings import Settings
 from substructures.expr.program import Program
 
-from .conftest import HAND, PENDULUM, make_client
+from .conftest import HAND, PENDULUM, copied, make_client
 from .fake_engine import FakeEngine, finished, running, submitted
+from .seals import seal_again
 
 Damage = Callable[[sqlite3.Connection], None]
 
 
 @contextmanager
-def opened(template: Path, folder: Path, damage: Damage) -> Iterator[TestClient]:
-    """A server on a copy of a store that was damaged before anybody asked it."""
-    shutil.copy(template, folder / "store.db")
+def opened(template: Path, folder: Path, damage: Damage, is_sealed: bool = False) -> Iterator[TestClient]:
+    """A server on a copy of a store that was damaged before anybody asked it; ``is_sealed``: by who has its key."""
+    copied(template, folder / "store.db")
     settings = Settings(database=f"sqlite:///{folder / 'store.db'}", catalogue=False)
     with open_store(settings) as store, running(store, FakeEngine()):
         with closing(sqlite3.connect(folder / "store.db")) as connection:
             damage(connection)
             connection.commit()
+        if is_sealed:
+            seal_again(folder / "store.db")
         yield make_client(store)
 
 
@@ -206,8 +209,8 @@ def other_columns(connection: sqlite3.Connection) -> None:
 
 
 def test_a_wrong_part_is_named_when_it_is_coupled(template: Path, tmp_path: Path) -> None:
-    """Its digest is right, so that the certificate of the tree has to find it."""
-    with opened(template, tmp_path, lambda c: wrong_formula(c, "parts")) as client:
+    """Digest and seal are right, so that the certificate of the tree has to find it."""
+    with opened(template, tmp_path, lambda c: wrong_formula(c, "parts"), is_sealed=True) as client:
         for name in ("pendulum", "slider"):
             answer = client.post("/v1/trees", json={"name": "t", "instances": [{"name": "x", "substructure": name}]})
             if answer.status_code != 201:
@@ -217,6 +220,56 @@ def test_a_wrong_part_is_named_when_it_is_coupled(template: Path, tmp_path: Path
         assert f"'{name}'" in problem["detail"]
         assert "sha256:" in problem["detail"]
         assert client.get("/v1/trees/t").status_code == (404 if name == "pendulum" else 200)
+
+
+def other_certificate(connection: sqlite3.Connection) -> None:
+    """One digit."""
+    connection.execute("""UPDATE parts SET certificate = replace(certificate, '"states":1', '"states":2')""")
+
+
+def other_seconds(connection: sqlite3.Connection) -> None:
+    connection.execute("""UPDATE parts SET certificate = replace(certificate, '"derive":0.', '"derive":7.')""")
+
+
+def other_counts(connection: sqlite3.Connection) -> None:
+    connection.execute("""UPDATE parts SET operations = replace(operations, '"total":', '"total":1')""")
+
+
+def heavier(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE parts SET mass = mass + 1")
+
+
+def heavier_tree(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE trees SET mass = mass + 1")
+
+
+def found_as_heavier(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE substructures SET mass = mass + 1, dof = dof + 1")
+
+
+def tree_found_as_heavier(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE tree_names SET mass = mass + 1")
+
+
+def found_by_other_words(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE search_terms SET term = 'spatial' WHERE term = 'planar'")
+
+
+def found_by_other_parts(connection: sqlite3.Connection) -> None:
+    other = "SELECT digest FROM parts WHERE digest NOT IN (SELECT part FROM tree_parts)"
+    connection.execute(f"UPDATE tree_parts SET part = ({other})")  # noqa: S608
+
+
+def program_of_another(connection: sqlite3.Connection) -> None:
+    """The row of a part points to the program of another one."""
+    digest, _ = pendulum(connection)
+    other = "SELECT program FROM parts WHERE digest != ?"
+    connection.execute(f"UPDATE parts SET program = ({other}) WHERE digest = ?", (digest, digest))  # noqa: S608
+
+
+def program_of_no_tree(connection: sqlite3.Connection) -> None:
+    """The row of a tree points to the program of a part, which has the same symbols."""
+    connection.execute("UPDATE trees SET program = ?", (pendulum(connection)[1],))
 
 
 WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
@@ -232,6 +285,17 @@ WRONG: list[tuple[Damage, tuple[str, ...], bool]] = [
     (other_defaults, ("tree cell@1", "parameters"), True),
     (other_index, ("substructure", "index"), True),
     (other_columns, ("substructure pendulum@1", "coordinates"), True),
+    (other_certificate, ("substructure pendulum@1", "certificate"), True),
+    (other_seconds, ("substructure pendulum@1", "changed in the store"), True),
+    (other_counts, ("substructure pendulum@1", "operations"), True),
+    (heavier, ("substructure pendulum@1", "mass"), True),
+    (heavier_tree, ("tree cell@1", "mass"), True),
+    (found_as_heavier, ("substructure pendulum@1", "dof, mass"), True),
+    (tree_found_as_heavier, ("tree cell@1", "mass"), True),
+    (found_by_other_words, ("substructure pendulum@1", "words"), True),
+    (found_by_other_parts, ("tree cell@1", "parts"), True),
+    (program_of_another, ("substructure pendulum@1", "program"), True),
+    (program_of_no_tree, ("tree cell@1", "program"), True),
     (other_definition, ("substructure pendulum@1",), False),
     (broken_definition, ("substructure pendulum@1", "tree cell@1"), False),
     (gone_part, ("substructure pendulum@1", "submit it again"), False),
@@ -265,6 +329,60 @@ def test_verify_finds_and_mends(
             assert client.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
 
 
+HEALS = (
+    other_certificate,
+    other_counts,
+    heavier,
+    program_of_another,
+    other_columns,
+    lambda c: wrong_formula(c, "parts"),
+)
+HEALS_TREE = (heavier_tree, program_of_no_tree, lambda c: wrong_formula(c, "trees"))
+REQUESTS = ("/v1/substructures/pendulum", "/v1/substructures/pendulum/formulas", "/v1/trees/cell")
+
+
+@pytest.mark.parametrize("damage", [*HEALS, *HEALS_TREE])
+def test_what_is_served_is_derived_anew(template: Path, tmp_path: Path, damage: Damage) -> None:
+    """A change that leaves each digest right breaks the seal: no wrong digit is served, nor a wrong number computed."""
+    with opened(template, tmp_path, lambda _: None) as client:
+        right = [client.get(path).json() for path in REQUESTS]
+        numbers = client.post("/v1/trees/cell/evaluations", json=EVALUATION).json()
+    with opened(template, tmp_path, damage) as client:
+        listed = [each["derived_here"] for kind in ("substructures", "trees") for each in _items(client, kind)]
+        assert listed.count(False) >= 1
+        assert client.post("/v1/trees/cell/evaluations", json=EVALUATION).json() == numbers
+        for path, was in zip(REQUESTS, right, strict=True):
+            found = client.get(path).json()
+            told = [{name: x for name, x in each.items() if name != "certificate"} for each in (found, was)]
+            assert told[0] == told[1], path
+        assert client.get("/v1/substructures/slider").status_code == 200
+        assert all(each["derived_here"] for kind in ("substructures", "trees") for each in _items(client, kind))
+        assert main(["verify", "--database", f"sqlite:///{tmp_path / 'store.db'}"]) == 0
+
+
+@pytest.mark.parametrize("is_asked", [True, False])
+def test_a_tree_whose_row_points_to_the_program_of_another(filled: TestClient, is_asked: bool) -> None:
+    """Both programs are valid, of trees of like structure: the numbers are those of the tree, and verify names it."""
+    store = filled.app.state.store  # type: ignore[attr-defined]
+    for name, mass in (("dmg14", 3), ("dmg15", 4)):
+        arm = {"name": "arm", "substructure": "pendulum", "parameters": {"m": mass}}
+        assert filled.post("/v1/trees", json={"name": name, "instances": [arm]}).status_code == 201
+    with store.database.write() as connection:
+        connection.exec_driver_sql(
+            "UPDATE trees SET program = (SELECT program FROM trees WHERE name = 'dmg15') WHERE name = 'dmg14'"
+        )
+    if is_asked:
+        answer = filled.post("/v1/trees/dmg14/evaluations", json=EVALUATION)
+        assert (answer.status_code, answer.json()["metric"]) == (200, [[pytest.approx(3.3, rel=1e-15)]])
+    faults = {finding.what: finding.fault for finding in verify_all(store.database) if finding.fault}
+    assert list(faults) == ([] if is_asked else ["tree dmg14@1"])
+
+
+def _items(client: TestClient, kind: str) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = client.get(f"/v1/{kind}").json()["items"]
+    return found
+
+
 @pytest.mark.parametrize(
     ("damage", "item", "code"),
     [
@@ -276,7 +394,7 @@ def test_verify_finds_and_mends(
     ],
 )
 def test_the_verify_job_finds(template: Path, tmp_path: Path, damage: Damage, item: dict[str, str], code: str) -> None:
-    with opened(template, tmp_path, damage) as client:
+    with opened(template, tmp_path, damage, is_sealed=True) as client:
         job = submitted(client, {"kind": "verify", "items": [item]})
         finished(client, job)
         items = client.get(f"/v1/jobs/{job}/items").json()["items"]

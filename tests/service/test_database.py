@@ -1,4 +1,4 @@
-"""Migrations, the lock on an SQLite file, transactions, and what survives a killed server."""
+"""Migrations, the lock on an SQLite file, and transactions."""
 
 from __future__ import annotations
 
@@ -16,10 +16,6 @@ from service.database.connections import Database, DatabaseError
 from service.database.migrate import upgrade
 from service.database.schema import NEWEST, MigrationError, is_newest
 from service.database.tables import metadata, parts
-from substructures.client import Client
-
-from .conftest import HAND, PENDULUM, TREE
-from .farm import Server, running
 
 
 @pytest.fixture
@@ -160,21 +156,3 @@ def test_wrong_addresses(address: str, message: str) -> None:
     for exclusive in (True, False):
         with pytest.raises(DatabaseError, match=message):
             Database(address, exclusive=exclusive)
-
-
-def test_acknowledged_writes_survive_a_kill(tmp_path: Path) -> None:
-    server = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log")
-    with running([server]):
-        with Client(server.address) as client:
-            version, is_new = client.submit(PENDULUM)
-            client.create_tree(TREE)
-            tree = client.couple("cell", HAND)
-        server.kill()
-        server.start()
-        assert is_new
-        with Client(server.address) as client:
-            assert client.substructure("pendulum@1") == version
-            assert client.request("GET", "/v1/trees/cell").json() == tree
-            assert client.evaluate("cell", quantities=["metric"], q=[0, 0])["count"] == 1
-            assert client.submit(PENDULUM) == (version, False)
-        assert server.stop() == 0

@@ -7,6 +7,7 @@ import io
 import json
 import subprocess
 import zipfile
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +24,7 @@ from service.store import Store
 
 from .conftest import PENDULUM, make_client
 from .fake_engine import FakeEngine, finished, running
+from .one_store import copied
 
 TREE = {
     "name": "to-go",
@@ -32,9 +34,20 @@ TREE = {
 }
 
 
+@pytest.fixture(scope="module")
+def made(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server that knows the tree, for tests that leave each other alone."""
+    with copied(template, tmp_path_factory.mktemp("made")) as store, make_client(store) as client:
+        assert client.post("/v1/trees", json=TREE).status_code == 201
+        yield client
+
+
 @pytest.fixture
-def made(filled: TestClient) -> TestClient:
-    assert filled.post("/v1/trees", json=TREE).status_code in (200, 201)
+def hurried(filled: TestClient, store: Store) -> TestClient:
+    """Another one, on which nothing but what is known may take any time."""
+    assert filled.post("/v1/trees", json=TREE).status_code == 201
+    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
+    store.settings = store.settings.model_copy(update={"limits": limits})
     return filled
 
 
@@ -248,32 +261,28 @@ def test_a_part_is_no_fmu(made: TestClient) -> None:
 
 
 @pytest.mark.parametrize("path", ["trees/to-go@1", "substructures/pendulum@1"])
-def test_a_long_export_becomes_one_job(made: TestClient, store: Store, path: str) -> None:
+def test_a_long_export_becomes_one_job(made: TestClient, hurried: TestClient, store: Store, path: str) -> None:
     """Whoever asks again gets the same job, and its file is what the request gives, but for the reference."""
     query = {"target": "c", "quantities": "metric", "name": "arm"}
-    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
     at_once = exported(made, path, **query)
-    store.settings = store.settings.model_copy(update={"limits": limits})
     with running(store, FakeEngine()):
-        first, second = (exported(made, path, 202, **query, stages="true") for _ in range(2))
+        first, second = (exported(hurried, path, 202, **query, stages="true") for _ in range(2))
         assert first.json()["id"] == second.json()["id"]
-        asked = made.get(f"/v1/{path}/export", params=query, headers={"Prefer": "respond-async"})
+        asked = hurried.get(f"/v1/{path}/export", params=query, headers={"Prefer": "respond-async"})
         assert (asked.status_code, asked.headers["preference-applied"]) == (202, "respond-async")
         assert asked.json()["id"] != first.json()["id"]
-        job = finished(made, asked.json()["id"])
-    item = made.get(job["result"]).json()["items"][0]
+        job = finished(hurried, asked.json()["id"])
+    item = hurried.get(job["result"]).json()["items"][0]
     assert item["state"] == "succeeded"
-    ours, theirs = members(at_once.content), members(made.get(item["files"][0]["href"]).content)
+    ours, theirs = members(at_once.content), members(hurried.get(item["files"][0]["href"]).content)
     assert set(ours) == set(theirs)
     assert ours["arm_selftest.c"] == theirs["arm_selftest.c"]
 
 
-def test_a_long_export_of_a_reader_is_refused(made: TestClient, store: Store) -> None:
-    limits = store.settings.limits.model_copy(update={"sync_seconds": 1e-6})
-    store.settings = store.settings.model_copy(update={"limits": limits})
+def test_a_long_export_of_a_reader_is_refused(hurried: TestClient, store: Store) -> None:
     with store.database.write() as connection:
         key = create(connection, "reader", ["read"])
-    answer = made.get("/v1/trees/to-go@1/export", params={"target": "c"}, headers={"Authorization": f"Bearer {key}"})
+    answer = hurried.get("/v1/trees/to-go@1/export", params={"target": "c"}, headers={"Authorization": f"Bearer {key}"})
     assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
     assert "key that may submit jobs" in answer.json()["detail"]
 

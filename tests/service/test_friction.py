@@ -7,6 +7,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
+
 URL = "/v1/trees/incline/simulations"
 START = {"q": [0], "qd": [1], "span": [0, 1], "count": 3}
 FRICTION = {"coulomb": "F", "static": 3, "velocity": {"value": 1, "unit": "mm/s"}}
@@ -17,13 +21,13 @@ BLOCK = {
 }  # fmt: skip
 
 
-@pytest.fixture
-def incline(client: TestClient) -> TestClient:
+@pytest.fixture(scope="module")
+def incline(filled: TestClient) -> TestClient:
     """A block that gravity pulls back along a slide with 2 N, and friction holds with up to 3 N."""
     tree = {"name": "incline", "gravity": [0, 0, -2], "instances": [{"name": "a", "definition": BLOCK}]}
-    answer = client.post("/v1/trees", json=tree)
+    answer = filled.post("/v1/trees", json=tree)
     assert answer.status_code == 201, answer.text
-    return client
+    return filled
 
 
 def test_a_simulation_that_sticks(incline: TestClient) -> None:
@@ -63,8 +67,8 @@ def test_a_closed_simulation_that_sticks(incline: TestClient) -> None:
     assert driven["series"]["actuation"][-1] == pytest.approx([4.5], abs=1e-12)
 
 
-@pytest.fixture
-def loaded(client: TestClient) -> TestClient:
+@pytest.fixture(scope="module")
+def loaded(filled: TestClient) -> TestClient:
     """A block on an incline with mu = 0.25, and a second one published from a tree of it."""
     friction = {"coulomb": 0, "velocity": 0.001, "load": {"coefficient": "mu"}}
     joint = {"type": "prismatic", "coordinate": "x", "friction": friction}
@@ -73,9 +77,9 @@ def loaded(client: TestClient) -> TestClient:
         "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": joint}],
     }  # fmt: skip
     tree = {"name": "slope", "gravity": [0, -8, 6], "instances": [{"name": "a", "definition": definition}]}
-    answer = client.post("/v1/trees", json=tree)
+    answer = filled.post("/v1/trees", json=tree)
     assert answer.status_code == 201, answer.text
-    return client
+    return filled
 
 
 def test_friction_by_the_load_of_joints(loaded: TestClient) -> None:

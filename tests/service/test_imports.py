@@ -97,6 +97,32 @@ def test_bad_files_are_refused_with_line_and_element(
     assert client.get("/v1/substructures").json()["items"] == client.get("/v1/trees").json()["items"] == []
 
 
+MIMIC = Path(__file__).parent.parent / "interchange" / "cases" / "11-mimic-offset-chain.urdf"
+
+
+def test_what_a_file_says_beside_the_equations_is_told_of_what_is_stored(client: TestClient) -> None:
+    """A mimic joint: by the version, by trees, and by a simulation whose start violates it by 0.3 rad."""
+    answer = client.post("/v1/imports?store=true&name=arm", content=MIMIC.read_bytes(), headers=XML).json()
+    version = client.get("/v1/substructures/arm").json()
+    assert [w["code"] for w in version["warnings"]] == ["left-out", "left-out"]
+    assert "'b_joint' = -1.5 * 'a_joint' + 0.2" in version["warnings"][1]["message"]
+    tree = {"name": "cell", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "arm"}]}
+    made = client.post("/v1/trees", json=tree).json()
+    assert [w["pointer"] for w in made["warnings"]] == ["/instances/0", "/instances/0"]
+    constraints = [
+        {"type": "linear", "name": "b_joint", "expression": "x.b_joint' + 1.5*x.a_joint'"},
+        {"type": "linear", "name": "c_joint", "expression": "x.c_joint' - 0.5*x.b_joint'"},
+    ]
+    assert [b["constraint"]["name"] for b in answer["bindings"]] == ["c_joint", "b_joint"]
+    for b, codes in ((-0.25, []), (0.05, ["relation-left"])):
+        q = {"x.a_joint": 0.3, "x.b_joint": b, "x.c_joint": 0.5 * b + 0.05}
+        body = {"q": q, "span": [0, 1], "constraints": constraints}
+        motion = client.post("/v1/trees/cell/simulations", json=body).json()
+        assert [w["code"] for w in motion["warnings"]] == codes
+        state = client.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": q}).json()
+        assert [w["code"] for w in state["warnings"]] == codes
+
+
 def test_a_file_is_cut_into_parts_of_a_tree(client: TestClient) -> None:
     client.post("/v1/imports?store=true&name=arm", content=LONG, headers=XML)
     made = client.post("/v1/imports?store=true&name=two&cut=forearm,%20hand&parameters=none", content=LONG, headers=XML)

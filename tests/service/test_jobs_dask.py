@@ -111,10 +111,8 @@ def check(works: list[Work], reports: dict[str, AttemptReport]) -> None:
         assert outcome.files["program"] == expected.files["program"]
 
 
-@pytest.mark.skipif(sys.platform != "linux", reason="/proc is that of Linux")
-def test_cluster_computes_within_limits_until_stopped(
-    cluster: Cluster, engine: DaskEngine, library: MemoryLibrary
-) -> None:
+def check_limits(worker: subprocess.Popen[bytes], engine: DaskEngine, library: MemoryLibrary) -> None:
+    """The only worker of an engine computes within limits until it is stopped; one runner more is killed."""
     works = cells(library, 5)
     check(works, compute(engine, works))
     (long,) = library.works("derive", {"items": [chain(60)]}, Budget(0.2, 2**31))
@@ -122,7 +120,6 @@ def test_cluster_computes_within_limits_until_stopped(
     assert outcome is not None
     assert outcome.problem is not None
     assert outcome.problem["code"] == "cpu-limit"
-    (worker,) = cluster.workers
     free = engine.free
     (endless,) = library.works("derive", {"items": [chain(60)]}, BUDGET)
     check(works, compute(engine, works))  # from here on the runner is warm

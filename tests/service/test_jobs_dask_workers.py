@@ -19,7 +19,7 @@ from service.jobs.dask import DaskEngine
 
 from .conftest import PENDULUM, SLIDER, TREE
 from .jobs_library import BUDGET, MemoryLibrary, chain, compute
-from .test_jobs_dask import Cluster, cells, check, connected, runners
+from .test_jobs_dask import Cluster, cells, check, check_limits, connected, runners
 
 OTHER = "import service.jobs.wire\nservice.jobs.wire.PROTOCOL += 1\n"
 WITHOUT = "import sys\nsys.modules['service'] = None\n"
@@ -45,9 +45,11 @@ def said(caplog: pytest.LogCaptureFixture, *words: str) -> list[str]:
     return [line for line in lines if all(word in line for word in words)]
 
 
-def test_workers_of_other_versions_get_no_works(
+@linux
+def test_workers_of_other_versions_get_no_works_and_others_compute_within_limits(
     library: MemoryLibrary, tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
+    """On one cluster: a scheduler, three workers and the runners, each with its imports, take 10 s of CPU."""
     for name, code in (("other", OTHER), ("without", WITHOUT)):
         (tmp_path / f"{name}.py").write_text(code)
     with closing(Cluster(0)) as cluster, closing(DaskEngine(cluster.address)) as engine:
@@ -59,6 +61,7 @@ def test_workers_of_other_versions_get_no_works(
         connected(engine)
         works = cells(library, 12)
         check(works, compute(engine, works))
+        check_limits(cluster.workers[-1], engine, library)
     assert len(said(caplog, "gets no works: it speaks protocol")) == 1
     assert len(said(caplog, "gets no works: it has no package of this version")) == 1
     assert all("tcp://127.0.0.1:" in line for line in said(caplog, "gets no works"))

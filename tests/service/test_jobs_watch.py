@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import io
-import os
-import signal
 import threading
 import time
 from collections.abc import Iterator
@@ -16,25 +14,27 @@ import pytest
 from service.cli import progress
 from service.cli.main import main
 from service.cli.progress import Bar
+from service.settings import Settings
 from substructures.client import Client
 
 from .conftest import PENDULUM, TREE
-from .farm import Server, free_port
+from .door import Door
+from .farm import free_port
 from .test_jobs_cli import Terminal
 
 SAMPLE = {"tree": "cell", "request": {"quantities": ["metric"]}, "sample": {"count": 5}}
 
 
 @pytest.fixture
-def server(tmp_path: Path) -> Iterator[Server]:
+def server(tmp_path: Path) -> Iterator[Door]:
     """A server on which no job ends: nothing computes."""
-    server = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log", ["--engine", "none"])
+    server = Door(Settings(database=f"sqlite:///{tmp_path / 'x.db'}", catalogue=False, engine="none"))
     server.start()
     yield server
-    server.stop()
+    server.kill()
 
 
-def queued(server: Server) -> str:
+def queued(server: Door) -> str:
     with Client(server.address) as client:
         client.submit(PENDULUM)
         client.create_tree(TREE)
@@ -53,7 +53,7 @@ def test_a_server_that_is_gone_is_told_of_and_given_up(capsys: pytest.CaptureFix
 
 
 def test_watching_goes_on_when_the_server_returns(
-    server: Server, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    server: Door, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(progress, "LINES", 0.0)
     job, shown = queued(server), ""
@@ -77,10 +77,9 @@ def test_watching_goes_on_when_the_server_returns(
     until("the server answers again after")
     shown = ""
     until("queued  0 of 1")
-    [serving] = server.serving()
-    os.kill(serving, signal.SIGSTOP)  # it is there, and silent
+    server.hang()  # it is there, and silent
     until("cannot be reached")
-    os.kill(serving, signal.SIGCONT)
+    server.go_on()
     until("the server answers again after")
     with Client(server.address) as client:
         assert client.cancel_job(job)["state"] == "cancelled"

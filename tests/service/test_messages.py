@@ -17,6 +17,9 @@ from substructures.documents import write_yaml
 from substructures.errors import meant
 
 from .conftest import HAND, PENDULUM, TREE
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 JOINT = {"type": "revolute", "coordinate": "q"}
 #: needs no server
@@ -47,7 +50,7 @@ def said(answer: Any) -> str:
         ({"joint": {**JOINT, "stifness": 1}}, ("did you mean 'stiffness'?",)),
     ],
 )
-def test_definitions(client: TestClient, change: dict[str, Any], words: tuple[str, ...]) -> None:
+def test_definitions(filled: TestClient, change: dict[str, Any], words: tuple[str, ...]) -> None:
     part = copy.deepcopy(PENDULUM)
     for name, value in change.items():
         if name == "body":
@@ -56,7 +59,7 @@ def test_definitions(client: TestClient, change: dict[str, Any], words: tuple[st
             part["bodies"][0][name] = value
         else:
             part[name] = value
-    told = said(client.post("/v1/substructures", json=part))
+    told = said(filled.post("/v1/substructures", json=part))
     for word in words:
         assert word in told, told
     assert "match pattern" not in told

@@ -12,19 +12,15 @@ from service.negotiation import MEDIA_TYPES
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 
-from .conftest import HAND, SLIDER
+from .conftest import SLIDER
+from .one_store import double, filled, store
+
+__all__ = ["double", "filled", "store"]  # fixtures
 
 QUANTITIES = (
     "metric", "christoffel", "forces", "gravity", "coriolis", "bias", "inverse_dynamics", "kinetic_energy",
     "potential_energy", "kinematics", "momentum",
 )  # fmt: skip
-
-
-@pytest.fixture
-def double(filled: TestClient) -> TestClient:
-    """The tree cell@2: two pendulums, the second with a quarter of the mass."""
-    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
-    return filled
 
 
 @pytest.mark.parametrize("quantity", QUANTITIES)

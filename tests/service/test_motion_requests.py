@@ -31,6 +31,7 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import Event, FixedStep, KnifeEdge, Table, simulate
+from substructures.quantities.sources import Sources
 
 CRANK, SLEIGH = slider_crank(), sleigh()
 BLADE = {"name": "blade", "type": "knife_edge", "frame": "s.b"}
@@ -41,7 +42,7 @@ TREE: Plain = {"q": [0, 0, 0], "span": [0, 1]}
 
 def faults(model: Model, name: str, body: Any) -> list[tuple[str, str]]:
     with pytest.raises(InvalidInput) as caught:
-        ANALYSES[name].compute(Source(model, "", lambda: pytest.fail("not needed"), Limits()), body, lambda _: None)
+        ANALYSES[name].compute(Source(Sources(model), "", Limits()), body, lambda _: None)
     return [(f.pointer, f.code) for f in caught.value.faults]
 
 
@@ -116,7 +117,7 @@ def test_a_body_is_an_object() -> None:
     for name in ANALYSES:
         assert faults(SLEIGH, name, []) == [("", "object-expected")]
     with pytest.raises(InvalidInput):
-        velocity_equations_of(Source(SLEIGH, "", lambda: pytest.fail("not needed"), Limits()), "rolling")
+        velocity_equations_of(Source(Sources(SLEIGH), "", Limits()), "rolling")
 
 
 def test_parts_become_values_of_the_science() -> None:

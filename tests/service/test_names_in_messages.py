@@ -12,6 +12,9 @@ from fastapi.testclient import TestClient
 from service.cli.main import main
 
 from .conftest import HAND, PENDULUM, TREE
+from .one_store import filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 ROD = PENDULUM["bodies"][0]
 TARGET = {"tree": "cell", "target": "cassadi"}
@@ -68,8 +71,8 @@ def test_in_queries(filled: TestClient, path: str, words: str) -> None:
         ),
     ],
 )
-def test_in_definitions(client: TestClient, change: dict[str, Any], words: str) -> None:
-    assert words in said(client.post("/v1/substructures", json={**copy.deepcopy(PENDULUM), **change}))
+def test_in_definitions(filled: TestClient, change: dict[str, Any], words: str) -> None:
+    assert words in said(filled.post("/v1/substructures", json={**copy.deepcopy(PENDULUM), **change}))
 
 
 @pytest.mark.parametrize(

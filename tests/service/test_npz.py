@@ -15,16 +15,12 @@ from fastapi.testclient import TestClient
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.formats.arrays import read_npz, view_npz, write_npz
 
-from .conftest import HAND
+from .one_store import double, filled, store
+
+__all__ = ["double", "filled", "store"]  # fixtures
 
 NPZ = {"Content-Type": "application/x-npz"}
 URL = "/v1/trees/cell/evaluations"
-
-
-@pytest.fixture
-def double(filled: TestClient) -> TestClient:
-    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
-    return filled
 
 
 def packed(**arrays: Any) -> bytes:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import base64
 import json
-import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +23,7 @@ from service.settings import Settings
 from service.store import Store
 from service.viewer import Viewer
 
-from .conftest import PENDULUM, make_client
+from .conftest import PENDULUM, copied, make_client
 from .fake_engine import FakeEngine, export, finished, running
 
 Headers = dict[str, str]
@@ -205,7 +204,7 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> World:
 
 @pytest.fixture
 def served(world: World, tmp_path: Path) -> Iterator[TestClient]:
-    shutil.copy(world.path, tmp_path / "store.db")
+    copied(world.path, tmp_path / "store.db")
     url = f"sqlite:///{tmp_path / 'store.db'}"
     with open_store(Settings(database=url, catalogue=False, key_seconds=0)) as store, make_client(store) as client:
         yield client

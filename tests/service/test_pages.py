@@ -207,6 +207,7 @@ def shipped(tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
 
 
 def test_the_whole_catalogue_can_be_seen(shipped: TestClient) -> None:
+    """Every entry is derived, drawn and shown: 2 s and more."""
     items: list[dict[str, Any]] = shipped.get("/v1/substructures?page_size=1000").json()["items"]
     assert len(items) > 40
     assert len(shipped.get("/").content) < 200_000

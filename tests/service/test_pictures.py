@@ -8,8 +8,11 @@ import pytest
 from fastapi.testclient import TestClient
 
 from .conftest import PENDULUM
+from .one_store import filled, store
 from .reading import draw, read
 from .test_conventions import problem
+
+__all__ = ["filled", "store"]  # fixtures
 
 PICTURES = ("/v1/substructures/pendulum@1/picture", "/v1/trees/cell@1/picture")
 

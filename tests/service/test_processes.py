@@ -160,18 +160,39 @@ def test_no_second_server(tmp_path: Path) -> None:
     Database(address).close()
 
 
-@pytest.mark.parametrize(("how", "status"), [(signal.SIGTERM, 0), (signal.SIGINT, 130)])
-def test_all_end_together(tmp_path: Path, how: signal.Signals, status: int) -> None:
-    with serving(f"sqlite:///{tmp_path}/store.db", tmp_path) as server:
-        processes = server.serving()
-        assert server.process is not None
-        server.process.send_signal(how)
-        assert server.process.wait(30) == status
-        assert not any(Path(f"/proc/{each}").exists() for each in processes)
-        with pytest.raises(ConnectionRefusedError):
-            socket.create_connection(("127.0.0.1", server.port), 5)
+def check_all_end_together(server: Server, how: signal.Signals, status: int) -> None:
+    processes = server.serving()
+    assert len(processes) == COUNT
+    assert server.process is not None
+    server.process.send_signal(how)
+    assert server.process.wait(30) == status
+    assert not any(Path(f"/proc/{each}").exists() for each in processes)
+    with pytest.raises(ConnectionRefusedError):
+        socket.create_connection(("127.0.0.1", server.port), 5)
     assert "started again" not in server.log.read_text()
-    assert not (tmp_path / "store.db-wal").exists()  # the last one has put the log away
+    assert not server.log.with_name("store.db-wal").exists()  # the last one has put the log away
+
+
+def test_a_job_that_another_process_has_accepted(tmp_path: Path) -> None:
+    """Every process submits jobs and shows them; one of them computes; all end together. A start takes 5 s of CPU."""
+    with serving(f"sqlite:///{tmp_path}/store.db", tmp_path) as server:
+        with contextlib.ExitStack() as opened:
+            clients = [opened.enter_context(Client(server.address, timeout=60)) for _ in range(8)]
+            clients[0].submit(PENDULUM)
+            items = [[{**TREE, "name": f"t{k}"}] for k in range(len(clients))]
+            jobs = [
+                submit_over(client, {"kind": "assemble", "items": each})
+                for client, each in zip(clients, items, strict=True)
+            ]
+            for client, job in zip(reversed(clients), jobs, strict=True):
+                assert finished(client, job, 60)["state"] == "succeeded"
+        check_all_end_together(server, signal.SIGTERM, 0)
+
+
+@pytest.mark.deep  # another start for another signal
+def test_all_end_together_when_interrupted(tmp_path: Path) -> None:
+    with serving(f"sqlite:///{tmp_path}/store.db", tmp_path) as server:
+        check_all_end_together(server, signal.SIGINT, 130)
 
 
 @pytest.mark.deep
@@ -208,17 +229,6 @@ def test_claims_of_others_stay(tmp_path: Path) -> None:
         with database.read() as connection:
             assert connection.exec_driver_sql("SELECT count(*) FROM idempotency").scalar() == 0
         database.close()
-
-
-def test_a_job_that_another_process_has_accepted(tmp_path: Path) -> None:
-    """Every process submits jobs and shows them; one of them computes."""
-    with serving(f"sqlite:///{tmp_path}/store.db", tmp_path) as server, contextlib.ExitStack() as opened:
-        clients = [opened.enter_context(Client(server.address, timeout=60)) for _ in range(8)]
-        clients[0].submit(PENDULUM)
-        body = {"kind": "assemble", "items": [TREE]}
-        jobs = [submit_over(client, {**body, "items": [{**TREE, "name": f"t{k}"}]}) for k, client in enumerate(clients)]
-        for client, job in zip(reversed(clients), jobs, strict=True):
-            assert finished(client, job, 60)["state"] == "succeeded"
 
 
 def submit_over(client: Client, body: dict[str, Any]) -> str:

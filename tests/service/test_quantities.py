@@ -20,7 +20,9 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import QUANTITIES
 
-from .conftest import HAND
+from .one_store import double
+
+__all__ = ["double"]  # a fixture
 
 URL = "/v1/trees/cell/evaluations"
 RNG = np.random.default_rng(3)
@@ -28,12 +30,6 @@ Q, QD, QDD, DQ, DQD, DQDD = (RNG.uniform(-1, 1, (4, 2)).round(3).tolist() for _ 
 TAU = [0.1, 0.2, -0.3, 0.4]
 STATES: dict[str, Any] = {"q": Q, "qd": QD, "qdd": QDD, "inputs": {"tau.arm.q": TAU}}
 ALONG: dict[str, Any] = {"q": DQ, "qd": DQD, "qdd": DQDD, "inputs": {"tau.hand.q": 2}}
-
-
-@pytest.fixture
-def double(filled: TestClient) -> TestClient:
-    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
-    return filled
 
 
 def ask(client: TestClient, quantities: list[str], **request: Any) -> dict[str, Any]:

@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import xml.etree.ElementTree as ElementTree
+from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 
 from service.operations.reports import FORMATS
 from service.schemas.reports import ReportView
+
+from .conftest import make_client
+from .one_store import copied, filled, store
+
+__all__ = ["filled", "store"]  # fixtures
 
 
 @pytest.mark.parametrize("path", ["substructures/pendulum", "substructures/slider", "trees/cell"])
@@ -70,16 +76,12 @@ def test_what_is_refused(filled: TestClient, path: str, status: int) -> None:
     assert filled.get("/v1/trees/cell/report", headers={"Accept": "image/png"}).status_code == 406
 
 
-def test_too_much_is_refused_with_its_size(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
-    limits = filled.app.state.store.settings.limits  # type: ignore[attr-defined]
-    monkeypatch.setattr(
-        filled.app.state.store,
-        "settings",
-        filled.app.state.store.settings.model_copy(  # type: ignore[attr-defined]
-            update={"limits": limits.model_copy(update={"program_nodes": 2})}
-        ),
-    )
-    answer = filled.get("/v1/trees/cell/report?format=latex")
+def test_too_much_is_refused_with_its_size(template: Path, tmp_path: Path) -> None:
+    """Of a store that has made no report yet."""
+    with copied(template, tmp_path) as store, make_client(store) as client:
+        limits = store.settings.limits.model_copy(update={"program_nodes": 2})
+        store.settings = store.settings.model_copy(update={"limits": limits})
+        answer = client.get("/v1/trees/cell/report?format=latex")
     assert (answer.status_code, answer.json()["code"]) == (422, "too-large")
     assert "limit is 2" in answer.json()["detail"]
 

@@ -322,7 +322,7 @@ def test_only_what_is_seen_is_found(store: Store, client: TestClient) -> None:
 @pytest.mark.parametrize("kind", KINDS)
 def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -> None:
     with (
-        fresh(kind, tmp_path) as address,
+        fresh(kind, tmp_path, is_migrated=False) as address,
         open_store(Settings(database=f"sqlite:///{tmp_path / 'new.db'}", catalogue=False)) as new,
     ):
         fill(make_client(new))

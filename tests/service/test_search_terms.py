@@ -84,7 +84,7 @@ def test_the_version_after_a_damaged_one(kind: str, tmp_path: Path) -> None:
 @BOTH
 def test_names_of_older_stores_are_numbered_by_age(kind: str, tmp_path: Path) -> None:
     """Not by where the database happens to keep them, which a change of the first name moves."""
-    with fresh(kind, tmp_path) as address:
+    with fresh(kind, tmp_path, is_migrated=False) as address:
         engine = sa.create_engine(address.replace("postgresql://", "postgresql+psycopg://"))
         upgrade(engine, "0012")
         with engine.begin() as connection:

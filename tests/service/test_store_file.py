@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import os
-import shutil
 import sqlite3
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from contextlib import closing, suppress
 from pathlib import Path
 from time import sleep
@@ -23,7 +22,7 @@ from service.database.connections import Database, DatabaseError
 from service.settings import Settings
 from service.store import Store
 
-from .conftest import PENDULUM, SLIDER, make_client
+from .conftest import PENDULUM, SLIDER, copied, make_client
 from .farm import Server, running
 
 
@@ -98,7 +97,7 @@ Damage = Callable[[bytes], bytes]
 
 def damaged(template: Path, tmp_path: Path, damage: Damage = random_bytes) -> tuple[Path, bytes]:
     path = tmp_path / "store.db"
-    shutil.copy(template, path)
+    copied(template, path)
     with closing(sqlite3.connect(path)) as connection:
         size = connection.execute("PRAGMA page_size").fetchone()[0]
         connection.execute("PRAGMA wal_checkpoint(TRUNCATE)")
@@ -137,7 +136,7 @@ def test_damage_of_a_large_store_is_found_while_it_answers(
 
 
 def test_a_sound_large_store_is_closed_at_once(template: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    shutil.copy(template, tmp_path / "store.db")
+    copied(template, tmp_path / "store.db")
     monkeypatch.setattr("service.database.file.LARGE", 0)
     for _ in range(5):
         with closing(Database(f"sqlite:///{tmp_path / 'store.db'}")) as database, database.write() as connection:
@@ -166,20 +165,28 @@ def test_files_are_private(tmp_path: Path) -> None:
     assert set(files.values()) == {0o600}
 
 
+@pytest.fixture(scope="module")
+def held(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
+    """A store that a server in a process of its own holds."""
+    folder = tmp_path_factory.mktemp("held")
+    with running([Server(f"sqlite:///{folder}/x.db", folder / "log")]):
+        yield folder / "x.db"
+
+
 @pytest.mark.parametrize("link", ["symbolic", "hard", "symbolic folder"])
-def test_a_link_is_the_same_store(tmp_path: Path, link: str) -> None:
-    """A server in a process of its own holds the store; whoever calls it by another name is refused."""
-    store = tmp_path / "a" / "x.db"
-    store.parent.mkdir()
+def test_a_link_is_the_same_store(held: Path, tmp_path: Path, link: str) -> None:
+    """Whoever calls it by another name is refused."""
     other = tmp_path / "b" / "x.db"
-    with running([Server(f"sqlite:///{store}", tmp_path / "log")]) as _:
-        if link == "symbolic folder":
-            other.parent.symlink_to(store.parent)
-        else:
-            other.parent.mkdir()
-            (other.symlink_to if link == "symbolic" else other.hardlink_to)(store)
+    if link == "symbolic folder":
+        other.parent.symlink_to(held.parent)
+    else:
+        other.parent.mkdir()
+        (other.symlink_to if link == "symbolic" else other.hardlink_to)(held)
+    try:
         with pytest.raises(DatabaseError, match="another server uses"):
             Database(f"sqlite:///{other}")
+    finally:
+        (other.parent if link == "symbolic folder" else other).unlink()
 
 
 def test_a_claim_ends_with_its_database(tmp_path: Path) -> None:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -9,6 +11,9 @@ from fastapi.testclient import TestClient
 
 from service.negotiation import MEDIA_TYPES
 from service.schemas.resources import TreeView
+
+from .conftest import make_client
+from .one_store import copied
 
 PART: dict[str, Any] = {
     "name": "bar",
@@ -150,12 +155,19 @@ def test_faults_have_pointers(client: TestClient) -> None:
     assert {e["code"] for e in used.json()["errors"]} >= {"unknown-instance"}
 
 
+@pytest.fixture(scope="module")
+def pair(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """A server that knows the tree, with a load in an angle more."""
+    angle = {"name": "j", "type": "joint", "coordinate": "a.q", "force": "-2*angle(a.bar, b.bar)"}
+    with copied(template, tmp_path_factory.mktemp("pair")) as store, make_client(store) as client:
+        assert client.post("/v1/trees", json={**TREE, "loads": [SPRING, TORQUE, angle]}).status_code == 201
+        yield client
+
+
 @pytest.mark.parametrize("name", MEDIA_TYPES)
 @pytest.mark.parametrize("quantity", ["forces", "forward_dynamics"])
-def test_loads_in_every_format(client: TestClient, name: str, quantity: str) -> None:
-    angle = {"name": "j", "type": "joint", "coordinate": "a.q", "force": "-2*angle(a.bar, b.bar)"}
-    client.post("/v1/trees", json={**TREE, "loads": [SPRING, TORQUE, angle]})
-    answer = client.get(f"/v1/trees/pair/{quantity}", params={"format": name})
+def test_loads_in_every_format(pair: TestClient, name: str, quantity: str) -> None:
+    answer = pair.get(f"/v1/trees/pair/{quantity}", params={"format": name})
     assert answer.status_code == 200, answer.text
 
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import shutil
 import sqlite3
 from collections.abc import Iterator
 from contextlib import closing
@@ -18,7 +17,7 @@ from service.app import open_store
 from service.database.packed import pack, unpack
 from service.improvement import AS_IT_WAS, MORE, SHORTER
 from service.integrity import digest_of
-from service.operations import upgrade as operations
+from service.operations import renewal
 from service.operations.upgrade import Upgraded, upgrade
 from service.operations.verification import verify_all
 from service.settings import Settings
@@ -26,8 +25,9 @@ from service.store import Store
 from service.viewer import Viewer
 from substructures.expr.program import Program
 
-from .conftest import HAND, PENDULUM, make_client
+from .conftest import HAND, SLIDER, copied, make_client
 from .fake_engine import FakeEngine, finished, items, running, submitted
+from .seals import seal_again
 
 
 def longer(content: bytes) -> Program:
@@ -62,12 +62,13 @@ def age(path: Path, *tables: str) -> None:
                 (content,) = connection.execute("SELECT content FROM programs WHERE digest = ?", (old,)).fetchone()
                 put(connection, table, old, longer(content))
         connection.commit()
+    seal_again(path, "older")
 
 
 @pytest.fixture
 def path(template: Path, tmp_path: Path) -> Path:
     """A store of an older software, to be opened."""
-    shutil.copy(template, tmp_path / "store.db")
+    copied(template, tmp_path / "store.db")
     age(tmp_path / "store.db", "parts", "trees")
     return tmp_path / "store.db"
 
@@ -131,25 +132,25 @@ def test_each_is_a_transaction_of_its_own(old: Store) -> None:
 
 
 def test_what_fails_is_told_and_left(old: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = operations.derive
+    right = renewal.derived_part
 
-    def derive(definition: Any, *given: Any) -> Any:
+    def derived(definition: bytes, *given: Any) -> Any:
         """Fails for one of them."""
-        if definition.name == "pendulum":
+        if b'"name":"pendulum"' in definition:
             raise ValueError("no")
         return right(definition, *given)
 
-    monkeypatch.setattr(operations, "derive", derive)
+    monkeypatch.setattr(renewal, "derived_part", derived)
     found = by_name(upgrade(old.database))
     assert (found["substructure pendulum@1"].fault, found["substructure pendulum@1"].outcome) == ("no", AS_IT_WAS)
     assert found["substructure slider@1"].outcome == SHORTER
-    assert found["tree cell@1"].outcome == SHORTER, "from the stored part"
+    assert found["tree cell@1"].fault == "no", "its part is derived anew first"
 
 
 @pytest.fixture
 def poor(template: Path, tmp_path: Path) -> Path:
     """A database with a tree that has no output nonlinear_effects."""
-    shutil.copy(template, tmp_path / "store.db")
+    copied(template, tmp_path / "store.db")
     with closing(sqlite3.connect(tmp_path / "store.db")) as connection:
         program, summary = connection.execute("SELECT program, summary FROM trees").fetchone()
         (content,) = connection.execute("SELECT content FROM programs WHERE digest = ?", (program,)).fetchone()
@@ -159,6 +160,7 @@ def poor(template: Path, tmp_path: Path) -> Path:
         text = json.dumps(told)
         connection.execute("UPDATE trees SET summary = ?, summary_digest = ?", (text, digest_of(text.encode())))
         connection.commit()
+    seal_again(tmp_path / "store.db")
     return tmp_path / "store.db"
 
 
@@ -179,12 +181,12 @@ def test_what_older_software_stored_is_grouped_before_it_is_upgraded(poor: Path)
 
 def test_older_versions_on_request(old: Store) -> None:
     client = make_client(old)
-    assert client.post("/v1/substructures", json={**PENDULUM, "title": "another"}).status_code == 201
+    assert client.post("/v1/substructures", json={**SLIDER, "title": "another"}).status_code == 201
     found = by_name(upgrade(old.database))
-    assert found["substructure pendulum@2"].outcome == AS_IT_WAS
-    assert "substructure pendulum@1" not in found
+    assert found["substructure slider@2"].outcome == AS_IT_WAS
+    assert "substructure slider@1" not in found
     every = by_name(upgrade(old.database, every=True))
-    assert every["substructure pendulum@1"].outcome == SHORTER
+    assert every["substructure slider@1"].outcome == SHORTER
 
 
 def test_others_names_are_left_alone(old: Store) -> None:

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import re
+from functools import cache
+from typing import Any
 
 import pytest
 from closed_trees import tree_parts
+from in_depth import deep
 
 from substructures import Program, catalogue, couple
 from substructures.expr.graph import Graph
@@ -48,16 +51,22 @@ def double_names(text: str, program: Program, format_: str) -> set[str]:
     return {left for left in found if found.count(left) > 1 or left in {plain(name) for name in short}}
 
 
-@pytest.mark.parametrize("name", ["puma560", "kuka-iiwa-14", "scara"])
+@cache
+def formula_and_glossary(name: str, quantity: str) -> tuple[Program, Any]:
+    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "arm", "substructure": name}]}
+    spec, parts = tree_parts(tree, {name: catalogue.load(name)})
+    model = couple(spec, parts)
+    program = (derived(model, quantity) if quantity in DERIVED else model.program).select([quantity])
+    return program, glossary(spec, parts, model=model.program)
+
+
+@pytest.mark.parametrize("name", ["puma560", "scara", *deep("kuka-iiwa-14")])
 @pytest.mark.parametrize("format_", FORMATS)
 @pytest.mark.parametrize("quantity", ["metric", "inverse_dynamics", "forward_dynamics"])
 def test_no_step_looks_like_a_symbol(name: str, format_: str, quantity: str) -> None:
     """Puma has a mass m6, written m_{6}, as the mass of what joint 6 carries would be."""
-    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "arm", "substructure": name}]}
-    spec, parts = tree_parts(tree, {name: catalogue.load(name)})
-    model = couple(spec, parts)
-    program = derived(model, quantity).select([quantity]) if quantity in DERIVED else model.program.select([quantity])
-    text = render(hoisted(program), format_, "compact", glossary=glossary(spec, parts, model=model.program))
+    program, words = formula_and_glossary(name, quantity)
+    text = render(hoisted(program), format_, "compact", glossary=words)
     assert not double_names(text, program, format_)
     if quantity == "metric" and name == "puma560" and format_ != "text":
         written = "<mover><mi>m</mi><mo>&#xAF;</mo></mover>" if format_ == "mathml" else r"\bar{m}_{5} &= "

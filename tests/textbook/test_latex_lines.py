@@ -53,14 +53,14 @@ LINES = {
     ],
     ("cart-pendulum", "forward_dynamics"): [
         r"\ddot{q}_{1} &= \frac{l_{0} \tau_{0} + \tau_{1} \cos q_{1} + m_{1} g l_{0} \sin q_{1} \cos q_{1}"
-        r" - m_{1} l_{0}^{2} \sin q_{1} \dot{q}_{1}^{2}}{l_{0} (m_{0} + m_{1} \sin^{2} q_{1})}",
-        r"\ddot{q}_{2} &= \frac{(m_{0} + m_{1}) (\tau_{1} + m_{1} g l_{0} \sin q_{1})"
-        r" + m_{1} l_{0} \cos q_{1} (\tau_{0} - m_{1} l_{0} \sin q_{1} \dot{q}_{1}^{2})}"
-        r"{m_{1} l_{0}^{2} (m_{0} + m_{1} \sin^{2} q_{1})}",
+        r" - m_{1} l_{0}^{2} \sin(q_{1}) \dot{q}_{1}^{2}}{l_{0} (m_{0} + m_{1} \sin^{2} q_{1})}",
+        r"\ddot{q}_{2} &= \frac{1}{m_{1} l_{0}^{2} (m_{0} + m_{1} \sin^{2} q_{1})} \bigl((m_{0} + m_{1})"
+        r" (\tau_{1} + m_{1} g l_{0} \sin q_{1}) \\ &\quad + m_{1} l_{0} \cos(q_{1}) \bigl(\tau_{0} - m_{1}"
+        r" l_{0} \sin(q_{1}) \dot{q}_{1}^{2}\bigr)\bigr)",
     ],
     ("cart-pendulum", "energy"): [
-        r"E &= m_{1} g l_{0} \cos q_{1} + \frac{1}{2} (m_{0} + m_{1}) \dot{q}_{0}^{2}"
-        r" - m_{1} l_{0} \cos q_{1} \dot{q}_{0} \dot{q}_{1} + \frac{1}{2} m_{1} l_{0}^{2} \dot{q}_{1}^{2}"
+        r"E &= m_{1} g l_{0} \cos q_{1} + \frac{1}{2} (m_{0} + m_{1}) \dot{q}_{0}^{2} - m_{1} l_{0}"
+        r" \cos(q_{1}) \dot{q}_{0} \dot{q}_{1} + \frac{1}{2} m_{1} l_{0}^{2} \dot{q}_{1}^{2}",
     ],
     ("furuta-pendulum", "metric"): [
         r"g_{11} &= J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} + m_{2} l_{2}^{2}) \sin^{2} q_{2}",
@@ -74,21 +74,19 @@ LINES = {
         r"\Gamma_{abc} &= \Gamma_{acb}, \quad \Gamma_{cba} = -\Gamma_{abc} \quad (b \le a)",
     ],
     ("furuta-pendulum", "forward_dynamics"): [
-        r"t_{1} &= (J_{2} + m_{2} l_{2}^{2})"
-        r" \bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} + m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr) \\ &\quad"
-        r" - m_{2}^{2} L_{1}^{2} l_{2}^{2} \cos^{2} q_{2}",
-        r"\ddot{q}_{1} &= \frac{1}{t_{1}} \bigl((J_{2} + m_{2} l_{2}^{2}) \bigl(\tau_{1} - b_{1} \dot{q}_{1}"
-        r" - m_{2} L_{1} l_{2} \sin q_{2} (\cos^{2} q_{2} \dot{q}_{1}^{2} - \dot{q}_{2}^{2}) \\ &\quad"
-        r" - 2 (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1} \dot{q}_{2}\bigr) \\ &\quad"
-        r" - m_{2} L_{1} l_{2} \cos q_{2} (\tau_{2} - m_{2} g l_{2} \sin q_{2} - b_{2} \dot{q}_{2})\bigr)",
-        r"\ddot{q}_{2} &= \frac{1}{t_{1}}"
-        r" \bigl(\bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} + m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr)"
-        r" \bigl(\tau_{2} - m_{2} g l_{2} \sin q_{2} - b_{2} \dot{q}_{2} \\ &\quad"
-        r" + (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1}^{2}\bigr) \\ &\quad"
-        r" - m_{2} L_{1} l_{2} \cos q_{2}"
-        r" \bigl(\tau_{1} - b_{1} \dot{q}_{1}"
-        r" - 2 (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos q_{2} \dot{q}_{1} \dot{q}_{2} \\ &\quad"
-        r" + m_{2} L_{1} l_{2} \sin q_{2} \dot{q}_{2}^{2}\bigr)\bigr)",
+        r"t_{1} &= (J_{2} + m_{2} l_{2}^{2}) \bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} +"
+        r" m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr) \\ &\quad - m_{2}^{2} L_{1}^{2} l_{2}^{2} \cos^{2} q_{2}",
+        r"\ddot{q}_{1} &= \frac{1}{t_{1}} \bigl((J_{2} + m_{2} l_{2}^{2}) \bigl(\tau_{1} - b_{1}"
+        r" \dot{q}_{1} - m_{2} L_{1} l_{2} \sin(q_{2}) \bigl(\cos^{2}(q_{2}) \dot{q}_{1}^{2} -"
+        r" \dot{q}_{2}^{2}\bigr) \\ &\quad - 2 (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos(q_{2}) \dot{q}_{1}"
+        r" \dot{q}_{2}\bigr) \\ &\quad - m_{2} L_{1} l_{2} \cos(q_{2}) (\tau_{2} - m_{2} g l_{2} \sin q_{2}"
+        r" - b_{2} \dot{q}_{2})\bigr)",
+        r"\ddot{q}_{2} &= \frac{1}{t_{1}} \bigl(\bigl(J_{1} + m_{1} l_{1}^{2} + m_{2} L_{1}^{2} + (J_{2} +"
+        r" m_{2} l_{2}^{2}) \sin^{2} q_{2}\bigr) \bigl(\tau_{2} - m_{2} g l_{2} \sin q_{2} - b_{2}"
+        r" \dot{q}_{2} \\ &\quad + (J_{2} + m_{2} l_{2}^{2}) \sin q_{2} \cos(q_{2}) \dot{q}_{1}^{2}\bigr)"
+        r" \\ &\quad - m_{2} L_{1} l_{2} \cos(q_{2}) \bigl(\tau_{1} - b_{1} \dot{q}_{1} - 2 (J_{2} + m_{2}"
+        r" l_{2}^{2}) \sin q_{2} \cos(q_{2}) \dot{q}_{1} \dot{q}_{2} \\ &\quad + m_{2} L_{1} l_{2}"
+        r" \sin(q_{2}) \dot{q}_{2}^{2}\bigr)\bigr)",
     ],
     ("scara", "metric"): [
         r"g_{11} &= I_{1} + I_{2} + I_{a4} + m_{1} c_{1}^{2} + m_{2} (a_{1}^{2} + c_{2}^{2})"
@@ -122,8 +120,8 @@ LINES = {
         r" - 2 m_{2} l_{1} l_{c2} p_{2} (p_{1} - p_{2}) \cos q_{2}\bigr)",
     ],
     ("symmetric-top", "energy"): [
-        r"E &= m g l \cos \theta + \frac{1}{2} C (\dot{\phi} + \cos \theta \dot{\psi})^{2}"
-        r" + \frac{1}{2} (A + m l^{2}) (\sin^{2} \theta \dot{\psi}^{2} + \dot{\theta}^{2})"
+        r"E &= m g l \cos \theta + \frac{1}{2} C \bigl(\dot{\phi} + \cos(\theta) \dot{\psi}\bigr)^{2} +"
+        r" \frac{1}{2} (A + m l^{2}) \bigl(\sin^{2}(\theta) \dot{\psi}^{2} + \dot{\theta}^{2}\bigr)",
     ],
     ("sleigh", "bias"): [r"{\mathit{bias}}_{1} &= -m a w^{2}", r"{\mathit{bias}}_{2} &= m a u w"],
     ("four-bar", "metric"): [

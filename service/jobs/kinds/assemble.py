@@ -6,10 +6,12 @@ from collections.abc import Iterator, Mapping
 
 from service.cache import Cache
 from service.database.packed import pack
+from service.derivation import software
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, admitted, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
+from service.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.summaries import part_content, tree_summary
@@ -54,6 +56,9 @@ def pinned_spec(
         if instance.name in versions and versions[instance.name] is None
     ]
     found = {name: version for name, version in versions.items() if version is not None}
+    for version in found.values():
+        if version.software != software():  # it may lack what is coupled today
+            raise NotDerived("part", version.digest)
     faults += _faults(spec, found, library)
     if not is_stored:
         definitions = {each.name: _definition(each, found, library) for each in spec.instances}
@@ -136,6 +141,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "name": spec.name,
         "digest": spec.digest,
         "program": model.program.digest,
+        "software": software(),
         "nodes": len(model.program),
         "dof": model.dof,
         "joints": model.joints,

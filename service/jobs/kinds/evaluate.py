@@ -38,20 +38,17 @@ from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
 from substructures.quantities.evaluation import (
-    POWERS,
-    QUANTITIES,
-    REACTIONS,
-    REGRESSOR,
     evaluate,
     interpreted,
     numbers_per_state,
     read_quantities,
 )
+from substructures.quantities.quantity import LABELS, needs_parts
 from substructures.tree.model import Model
 
 FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
-ABOUT = ("coordinates", "digest", "frames", "columns", "joints", "loads", "warnings")
+ABOUT = ("coordinates", "digest", *LABELS, "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
 COMPILED = 1000
 #: warnings in the summary of an item; its result has all
@@ -180,8 +177,7 @@ def _with_axis(q: Any) -> Any:
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     quantities = EvaluationRequest.read(item["request"]).quantities
-    has_parts = any(QUANTITIES[name].source in (REGRESSOR, REACTIONS, POWERS) for name in quantities)
-    found, blobs = pinned(item, library, item["nodes"], has_parts)
+    found, blobs = pinned(item, library, item["nodes"], any(map(needs_parts, quantities)))
     return found, (*blobs, item["states"]) if "states" in item else blobs
 
 

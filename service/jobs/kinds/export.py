@@ -37,11 +37,9 @@ from service.analyses.printing import (
     Style,
     check_quantity,
     described,
+    has_parts,
     made_text,
-    model_quantity,
-    needs_parts,
     options_of_quantity,
-    quantities,
     source_glossary,
     text_of,
     with_numbers,
@@ -65,9 +63,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
 from substructures.printers.render import FORMS
-from substructures.quantities.evaluation import POWERS, REACTIONS
-from substructures.quantities.formulas import DERIVED
-from substructures.quantities.regressor import OUTPUTS
+from substructures.quantities.quantity import REGRESSOR, TABLE, askable
 
 PART = "substructure"
 
@@ -141,21 +137,22 @@ def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator
     """An unknown quantity, and options that it cannot have."""
     quantity, options = item["quantity"], item["options"]
     outputs = [name for name in summary["operations"] if name != "total"]
-    others = (*DERIVED, *OUTPUTS, REACTIONS, POWERS, *QUANTITIES, *WITH_DOCUMENT)
-    if quantity not in others and all(name not in outputs for name in quantities(quantity)):
-        names = dict.fromkeys(
-            [*outputs, *DERIVED, *OUTPUTS, REACTIONS, POWERS, "kinematics", "momentum", *QUANTITIES, *WITH_DOCUMENT]
-        )
-        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(names)}{meant(quantity, names)}"
+    known = dict.fromkeys([*askable(outputs), *QUANTITIES, *WITH_DOCUMENT])
+    if quantity not in known:
+        message = f"there is no quantity '{quantity[:80]}'; there are {', '.join(known)}{meant(quantity, known)}"
         yield Fault("/quantity", "unknown-quantity", message)
         return
     if item["group"] and quantity not in GROUPED:
         yield Fault("/group", "not-grouped", f"'{quantity[:80]}' has no formulas in grouped symbols")
-    known = tuple(OPTIONS) if quantity in QUANTITIES else options_of_quantity(quantity)
+    taken = tuple(OPTIONS) if quantity in QUANTITIES else options_of_quantity(quantity)
     for name, texts in options.items():
-        if texts and name not in known:
-            message = f"'{quantity}' has no option '{name[:80]}'{among(name, known)}"
+        if texts and name not in taken:
+            message = f"'{quantity}' has no option '{name[:80]}'{among(name, taken)}"
             yield Fault("/options" + pointer_step(name), "unknown-option", message)
+
+
+def _is_of_regressor(quantity: str) -> bool:
+    return quantity in TABLE and TABLE[quantity].source == REGRESSOR
 
 
 def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
@@ -168,7 +165,7 @@ def _bind_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fau
         value = "" if given is None else quantity_of(given)
         if not _is_expression(value.value if isinstance(value, Quantity) else value):
             yield Fault("/bind", "bind", f"'{(name if given is None else f'{name}:{given}')[:80]}' is not name:value")
-        elif name not in known and item["quantity"] not in OUTPUTS and not item["group"]:
+        elif name not in known and not _is_of_regressor(item["quantity"]) and not item["group"]:
             message = f"there is no parameter '{name[:80]}'{among(name, known)}"
             yield Fault("/bind", "unknown-parameter", message)
         else:
@@ -199,11 +196,11 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     summary = summary_of(known_tree(item, library).summary)
     if "target" in item:
         item = {**item, "called": item["tree"].partition("@")[0]}
-        return pinned(item, library, item["nodes"], item["target"] == URDF or any(map(needs_parts, item["quantities"])))
+        return pinned(item, library, item["nodes"], item["target"] == URDF or any(map(has_parts, item["quantities"])))
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
         raise InvalidDocument(faults)
-    return pinned(item, library, item["nodes"], item.get("group", False) or needs_parts(item["quantity"]))
+    return pinned(item, library, item["nodes"], item.get("group", False) or has_parts(item["quantity"]))
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
@@ -242,7 +239,7 @@ def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     source = source_of(item, blobs, {"program_nodes": item["nodes"]})
     request = read_item(item)
     return tree_package(
-        source.sources(),
+        source.sources,
         item["called"],
         str(item.get("reference", item["tree"])),
         source.digest,
@@ -264,11 +261,11 @@ def _place(pointer: str) -> str:
 
 
 def _stored(source: Source, item: ItemDocument, style: Style) -> str:
-    quantity, model, sources = item["quantity"], source.model, source.sources()
+    quantity, model, sources = item["quantity"], source.model, source.sources
     check_quantity(model, quantity)
     sources = with_options(sources, quantity, {name: tuple(texts) for name, texts in item["options"].items()})
     members, parameters = described(sources, quantity)
-    program = with_numbers(model_quantity(sources, quantity), parameters, model.inputs, style)
+    program = with_numbers(sources.formulas(quantity), parameters, model.inputs, style)
     named = source_glossary(source, style, parameters)
     return text_of(program, style, quantity, _interface(source), members, item["nodes"], glossary=named)
 

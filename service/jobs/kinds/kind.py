@@ -86,6 +86,11 @@ def stored_definition(digest: str, library: Library) -> Definition:
         return Definition.stored(read_json(content))
 
 
+def recipe_member(version: StoredVersion) -> ItemDocument:
+    """The member of an item that says what a part that is a published tree is coupled of."""
+    return {} if version.recipe is None else {"recipe": version.recipe}
+
+
 def known_tree(item: ItemDocument, library: Library) -> StoredTree:
     """The tree that an item refers to. Raises InvalidDocument."""
     reference = item["tree"]

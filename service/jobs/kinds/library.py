@@ -12,12 +12,15 @@ class StoredVersion:
     """A version of a substructure: its name, the digest of its definition, and that of its program.
 
     The blob of ``digest`` is the canonical definition (:meth:`substructures.part.definition.Definition.canonical`), the
-    blob of ``program`` the canonical program.
+    blob of ``program`` the canonical program, which ``software`` derived; ``recipe``: of a published tree
+    (:mod:`service.derivation`).
     """
 
     name: str
     digest: str
     program: str
+    software: str
+    recipe: str | None = None
 
 
 @dataclass(frozen=True)

@@ -51,7 +51,8 @@ def _publish(item: ItemDocument, blobs: Blobs) -> Outcome:
     """What is stored of the part that a tree becomes."""
     spec, parts = tree_parts(item["parts"], blobs)
     found = published(spec, parts, publication_of(read_model(PublishRequest, item["request"]), item["name"]))
-    return Outcome(files=part_content(published_part(found, parts, item["nodes"], admitted(item))).files())
+    part = published_part(found, parts, item["nodes"], admitted(item))
+    return Outcome(files=part_content(part, item["recipe"]).files())
 
 
 def _print_part(item: ItemDocument, blobs: Blobs) -> Outcome:

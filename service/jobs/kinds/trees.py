@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from typing import TypeVar
+from collections.abc import Mapping
+from typing import Any
 
 from service.analyses.source import Source
 from service.cache import Cache
@@ -15,31 +15,22 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.part.definition import Definition
-from substructures.part.part import Part
-from substructures.quantities.evaluation import Sources
-from substructures.quantities.powers import PowerModel, powers
-from substructures.quantities.reactions import ReactionModel, reactions
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.model import Model, couple
 from substructures.tree.plausibility import Plausibility
-
-Found = TypeVar("Found", PowerModel, ReactionModel, RegressorModel)
 
 CAPACITY = 2_000_000  # operations
 
 TREES = 200  # with what judges their values
 
 _plausibilities: Cache[Plausibility] = Cache(TREES, lambda _: 1)
-_powers: Cache[PowerModel] = Cache(CAPACITY, lambda found: len(found.program))
-_reactions: Cache[ReactionModel] = Cache(CAPACITY, lambda found: len(found.program))
-_regressors: Cache[RegressorModel] = Cache(CAPACITY, lambda found: len(found.program))
+_kept: Cache[Any] = Cache(CAPACITY, lambda found: len(found.program))
 
 
 def pinned(item: ItemDocument, library: Library, nodes: int, has_parts: bool) -> tuple[ItemDocument, tuple[str, ...]]:
     """The item with its tree pinned, and the digests of the blobs that it needs: program and definitions.
 
-    ``has_parts``: also the parts, from which regressor, reactions and powers are derived with at most ``nodes``
+    ``has_parts``: also the parts, from which more is derived with at most ``nodes``
     operations. Raises InvalidDocument.
     """
     tree = known_tree(item, library)
@@ -71,51 +62,22 @@ def _definition(instance: Instance, blobs: Blobs) -> Definition:
 
 def sources_of(item: ItemDocument, blobs: Blobs) -> Sources:
     """What quantities of the tree of an item are computed from. Raises InvalidProgram."""
-    has_parts = "parts" in item
     return Sources(
         model_of(item, blobs),
-        regressor=(lambda: _derived(item, blobs, _regressors, regressor)) if has_parts else None,
+        of_parts=(lambda name: _of_parts(item, blobs, name)) if "parts" in item else None,
         plausibility=(lambda: plausibility_of(item, blobs)) if "spec" in item else None,
-        reactions=(lambda: _derived(item, blobs, _reactions, reactions)) if has_parts else None,
-        powers=(lambda: _derived(item, blobs, _powers, powers)) if has_parts else None,
     )
 
 
-def _derived(
-    item: ItemDocument,
-    blobs: Blobs,
-    cache: Cache[Found],
-    derive: Callable[[TreeSpec, Mapping[str, Part], int], Found],
-) -> Found:
+def _of_parts(item: ItemDocument, blobs: Blobs, name: str) -> Any:
     """What is derived of the parts of a tree beside its model. Raises InvalidDocument, TooLarge."""
     parts: ItemDocument = item["parts"]
-    key = item["tree"], *sorted(parts["programs"].values())
-    found = cache.get(key)
-    if found is None:
-        found = derive(*tree_parts(parts, blobs), parts["nodes"])
-        cache.put(key, found)
-    return found
+    key = item["tree"], name, *sorted(parts["programs"].values())
+    return _kept.once(key, lambda: of_parts(*tree_parts(parts, blobs), parts["nodes"])(name))
 
 
 def source_of(item: ItemDocument, blobs: Blobs, limits: Mapping[str, int]) -> Source:
     """What analyses of the tree of an item work on. Raises InvalidProgram."""
     digest = item["tree"].partition("@")[2]
-    sources = sources_of(item, blobs)
-    judge = sources.plausibility
-    return Source(
-        sources.model,
-        digest,
-        lambda: _derived(item, blobs, _regressors, regressor),
-        Limits(**limits),
-        plausibility=judge,
-        reactions=sources.reactions,
-        powers=sources.powers,
-        grouped=(lambda: _grouped(item, blobs)) if "parts" in item else None,
-        parts=(lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None,
-    )
-
-
-def _grouped(item: ItemDocument, blobs: Blobs) -> Model:
-    """The model of the tree of an item with parts, with base parameters. Raises TooLarge."""
-    parts = item["parts"]
-    return couple(*tree_parts(parts, blobs), parts["nodes"], group=True)
+    parts = (lambda: tree_parts(item["parts"], blobs)) if "parts" in item else None
+    return Source(sources_of(item, blobs), digest, Limits(**limits), parts=parts)

@@ -1,20 +1,20 @@
 """upgrade: an item is ``{"substructure": reference}`` or ``{"tree": reference}``, ``*`` for the latest ones of all
 names that may be changed.
 
-Its formulas are derived anew with today's software, and take the place of those that are stored where they are shorter.
+Its formulas are derived anew with today's software, and take the place of those that are stored.
 """
 
 from __future__ import annotations
 
 from typing import Any
 
-from service import __version__
 from service.database.packed import pack
+from service.derivation import derived_part, software
 from service.improvement import improvement
 from service.integrity import reading
 from service.jobs.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree, recipe_member
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -22,9 +22,6 @@ from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
-from substructures.part.certificate import require_no_less
-from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
 from substructures.tree.model import couple
 
 ALL = "*"
@@ -44,17 +41,16 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     if not library.may_change(kind, found.name):
         message = f"'{found.name}' belongs to somebody else: only its owner or an admin derives it anew"
         raise InvalidDocument.at(f"/{kind}", "not-owner", message)
-    pinned = {kind: f"{found.name}@{found.digest}", "program": found.program, "software": __version__}
+    pinned = {kind: f"{found.name}@{found.digest}", "program": found.program, "software": software()}
     if kind == "substructure":
-        return {**item, **pinned}, (found.digest, found.program)
+        return {**item, **pinned, **recipe_member(known_part(item, library))}, (found.digest, found.program)
     tree = known_tree(item, library)
     parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library, is_stored=True)
-    certificate = read_json(tree.summary.encode()).get("certificate", {})
-    return {**item, **pinned, "parts": parts, "certificate": certificate}, (tree.program, *blobs)
+    return {**item, **pinned, "parts": parts}, (tree.program, *blobs)
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
-    """Files ``program``, and ``content`` of a part or ``summary`` of a tree, where they are better than what is stored.
+    """Files ``program``, and ``content`` of a part or ``summary`` of a tree, where they are others than what is stored.
 
     Raises VerificationFailed, TooLarge, Refused for damaged content.
     """
@@ -64,13 +60,12 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
 def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
     name, _, digest = item["substructure"].partition("@")
     with reading(f"the part {name}", digest):
-        definition = Definition.stored(read_json(blobs[digest]))
-        old = Part.load(definition, blobs[item["program"]], {})
-    new = derive(definition, item["nodes"])
-    found = improvement(old.program, new.program)
+        definition, old = blobs[digest], Program.from_bytes(blobs[item["program"]])
+    new = derived_part(definition, item.get("recipe"), item["nodes"])
+    found = improvement(old, new.program)
     told = {"name": name, "digest": digest, "program": new.program.digest}
     figures: dict[str, Any] = {"before": found.before, "after": found.after, "outcome": found.outcome}
-    return Outcome({**told, **figures}, part_content(new).files() if found.is_one else {})
+    return Outcome({**told, **figures}, part_content(new, item.get("recipe")).files() if found.is_one else {})
 
 
 def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
@@ -79,7 +74,6 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
         spec, parts = tree_parts(item["parts"], blobs)
         old = Program.from_bytes(blobs[item["program"]])
     model = couple(spec, parts, item["nodes"])
-    require_no_less(item["certificate"], model.certificate)
     found = improvement(old, model.program)
     told = {"name": name, "digest": digest, "program": model.program.digest, "nodes": len(model.program)}
     figures = {"dof": model.dof, "before": found.before, "after": found.after, "outcome": found.outcome}

@@ -11,7 +11,8 @@ from service.analyses.requests import arguments
 from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import QUANTITIES, REGRESSOR, read_quantities
+from substructures.quantities.evaluation import read_quantities
+from substructures.quantities.quantity import REGRESSOR, TABLE
 from substructures.quantities.states import States, given_values, read_states
 from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
@@ -55,8 +56,8 @@ def check_described(summary: Mapping[str, Any], request: EvaluationRequest, coun
 
 
 def _check_values(summary: Mapping[str, Any], request: EvaluationRequest, count: int, has_accelerations: bool) -> None:
-    quantities = [QUANTITIES[name] for name in read_quantities(request.quantities)]
-    needed = {field for quantity in quantities for field in quantity.requires}
+    quantities = read_quantities(request.quantities)
+    needed = {field for name in quantities for field in TABLE[name].requires}
     if "qdd" in needed and not has_accelerations and summary["coordinates"]:
         raise InvalidDocument.at("/qdd", "missing", "the quantities need accelerations 'qdd'")
     if "along" in needed and request.along is None:
@@ -65,6 +66,6 @@ def _check_values(summary: Mapping[str, Any], request: EvaluationRequest, count:
         given_values({"t": request.t}, "times", "", count, ("t",))
     for field, given in (("inputs", request.inputs), ("parameters", request.parameters)):
         known = list(given) if isinstance(given, Mapping) else []
-        if field == "parameters" and all(quantity.source != REGRESSOR for quantity in quantities):
+        if field == "parameters" and not any(TABLE[name].source == REGRESSOR for name in quantities):
             known = list(summary["parameters"])  # the regressor has more of them; inputs of loads are in the formulas
         given_values(given, field, f"/{field}", count, known, without_formulas(summary).units)

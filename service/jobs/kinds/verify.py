@@ -1,33 +1,46 @@
 """verify: an item is ``{"substructure": reference}`` or ``{"tree": reference}``, ``*`` for all there are.
 
-Its certificate is made anew from what is stored.
+It is proven by deriving: what is stored has to be what today's software makes of the document, by its digest.
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
+from service.derivation import derived_part
 from service.integrity import reading
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree
+from service.jobs.kinds.assemble import pinned_tree, tree_parts
+from service.jobs.kinds.kind import (
+    Blobs,
+    ItemProgress,
+    Kind,
+    check_fields,
+    known_part,
+    known_tree,
+    recipe_member,
+)
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json, write_json
+from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.part.definition import Definition
-from substructures.part.part import Part, recheck
-from substructures.tree.document import TreeSpec
-from substructures.tree.recheck import SUMMARY, recheck_tree
+from substructures.tree.model import couple
 
 ALL = "*"
+#: what is stored of a tree beside its program, but for the certificate
+SUMMARY = ("coordinates", "joints", "frames", "closures", "limited", "parameters", "inputs", "operations")
 
 
-def _spread(item: ItemDocument, _limits: Limits, library: Library) -> list[ItemDocument]:
+def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
     kind = "tree" if "tree" in item else "substructure"
     check_fields(item, (kind,))
-    if item[kind] != ALL:
-        return [item]
-    references = library.trees() if kind == "tree" else library.catalogue()
-    return [{kind: reference} for reference in references]
+    references = [item[kind]]
+    if item[kind] == ALL:
+        references = [*(library.trees() if kind == "tree" else library.catalogue())]
+    return [{kind: reference, "nodes": limits.job_nodes} for reference in references]
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
@@ -37,18 +50,18 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     version = known_part(item, library)
     pinned = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
-    return pinned, (version.digest, version.program)
+    return {**item, **pinned, **recipe_member(version)}, (version.digest, version.program)
 
 
 def _pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
-    """The document with the digests of its parts, and what the stored summary says beside the certificate."""
+    """The document with its parts, and what the stored summary says beside the certificate."""
     tree = known_tree(item, library)
     with reading(f"the document of tree {tree.name}", tree.digest):
         spec, summary = read_json(tree.spec.encode()), read_json(tree.summary.encode())
-        digests = {pin.partition("@")[2] for i in spec.get("instances", ()) if (pin := i.get("substructure"))}
+    parts, blobs = pinned_tree({"tree": spec, "nodes": item["nodes"]}, library, is_stored=True)
     said = {name: summary[name] for name in SUMMARY if name in summary}
-    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "spec": spec, "summary": said}
-    return pinned, (tree.program, *sorted(digests))
+    pinned = {"tree": f"{tree.name}@{tree.digest}", "program": tree.program, "parts": parts, "summary": said}
+    return {**item, **pinned}, (tree.program, *blobs)
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
@@ -59,30 +72,38 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
 def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
     name, _, digest = item["substructure"].partition("@")
     with reading(f"the part {name}", digest):
-        # never one that was decoded before
-        part = Part.load(Definition.stored(read_json(blobs[digest])), blobs[item["program"]], {})
-    certificate = recheck(part)
-    return _outcome(name, digest, certificate, {"warnings": certificate["warnings"]})
+        Program.from_bytes(blobs[item["program"]])
+    part = derived_part(blobs[digest], item.get("recipe"), item["nodes"])
+    _require_same(item["program"], part.program)
+    return _outcome(name, digest, part.certificate, {"warnings": part.certificate["warnings"]})
 
 
 def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     name, _, digest = item["tree"].partition("@")
     with reading(f"the tree {name}", digest):
-        spec = TreeSpec.stored(item["spec"])
-        program = Program.from_bytes(blobs[item["program"]])
-    definitions: dict[str, Definition] = {}
-    for instance in spec.instances:
-        pin = (instance.substructure or "").partition("@")[2]
-        with reading(f"the definition of '{instance.name}'", pin):
-            definitions[instance.name] = instance.definition or Definition.stored(read_json(blobs[pin]))
-    return _outcome(name, digest, recheck_tree(spec, definitions, item["summary"], program), {})
+        spec, parts = tree_parts(item["parts"], blobs)
+        Program.from_bytes(blobs[item["program"]])
+    model = couple(spec, parts, item["nodes"])
+    _require_same(item["program"], model.program)
+    made = read_json(write_json(model.summary()))
+    wrong = [each for each, said in item["summary"].items() if made.get(each) != said]
+    if wrong:
+        raise VerificationFailed(f"the {', '.join(wrong)} of the stored model are not those of its documents")
+    return _outcome(name, digest, model.certificate, {})
 
 
-def _outcome(name: str, digest: str, certificate: dict[str, object], more: dict[str, object]) -> Outcome:
+def _require_same(stored: str, made: Program) -> None:
+    if made.digest != stored:
+        raise VerificationFailed(
+            f"the stored formulas, {stored}, are not what is derived of the document, {made.digest}"
+        )
+
+
+def _outcome(name: str, digest: str, certificate: Mapping[str, Any], more: Mapping[str, object]) -> Outcome:
     agreement = certificate["direct_form"]
     errors = agreement["max_relative_error"] if isinstance(agreement, dict) else {}
     summary = {"name": name, "digest": digest, **more, "max_relative_error": errors}
-    return Outcome(summary, {"certificate": write_json(certificate)})
+    return Outcome(summary, {"certificate": write_json(dict(certificate))})
 
 
 VERIFY = Kind(_spread, _resolve, _run)

@@ -36,7 +36,8 @@ from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
-from substructures.mechanics.closure_rows import rank_of, row_sizes
+from substructures.mechanics.closure_rows import RowBounds, rank_of, row_sizes
+from substructures.quantities.closure_columns import row_bounds
 from substructures.tree.model import Model
 
 ALL = slice(None)
@@ -122,11 +123,21 @@ class Constrained:
 
         if not self.labels:
             return np.ones(0), np.ones(0)
-        found = row_sizes(self.model.joints, self.conditions.q[None], look)
+        found = row_sizes(self.model.joints, self.conditions.q[None], look, self._bounds)
         width = found.width[0]
         # of prescribed coordinates the value says nothing
         width[self.closed :] = 1.0
         return found.reach[0], width
+
+    def _bounds(self, places: Array) -> RowBounds:
+        """What the geometry allows; rows of prescribed coordinates are as long as they are."""
+        columns, spans = np.zeros((len(places), *self.G.shape)), np.zeros((len(places), len(self.labels)))
+        if self.closed:
+            names = self.model.coordinates
+            values = self.conditions.values | {name: places[:, a] for a, name in enumerate(names)}
+            found = row_bounds(self.model, values, len(places))
+            columns[:, : self.closed], spans[:, : self.closed] = found
+        return RowBounds(columns, spans)
 
     def move(self, t: float, q: Array, qd: Array) -> None:
         """Evaluate everything at a state."""
@@ -180,6 +191,11 @@ class Constrained:
         return float(np.abs(self.phi / self.width).max(initial=0))
 
     @property
+    def opening_rate(self) -> float:
+        """The largest |G q' + phi_t| over the width of its row [per s]."""
+        return float(np.abs(self.velocity_residual / self.width).max(initial=0))
+
+    @property
     def balanced(self) -> Array:
         """G with its rows over their ``reach``: numbers without unit, about 1 away from singular positions."""
         return np.asarray(self.G / self.reach[:, None], dtype=np.float64)
@@ -194,6 +210,13 @@ class Constrained:
         """T and V [J]."""
         # T = q'^T g q' / 2
         return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
+
+    @property
+    def effort(self) -> float:
+        """|Q_a| |q^a|, angles no less than 1: what forces do on the way to here, by which rounding is known [J]."""
+        turns = np.array([joint == "R" for joint in self.model.joints])
+        way = np.where(turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
+        return float(np.abs(self._out["forces"][0]) @ way)
 
     @property
     def lost_power(self) -> float:

@@ -72,7 +72,8 @@ class DryConstrained(Constrained):
         places, self.used = self.laws.places, 0.0
         if not (self.signs == 0).any():
             return super().accelerations(rows)
-        B = self.basis(rows)[places]
+        N = self.basis(rows)
+        B = N[places]
         stuck = np.flatnonzero((self.signs == 0) & B.any(axis=1))
         a = self.unheld(rows)[places[stuck]]
         force, self.used = holding(B[stuck], a, self.laws.static[stuck], self.least)
@@ -80,6 +81,8 @@ class DryConstrained(Constrained):
         friction[stuck] = force
         self._take(friction)
         q2, multipliers = super().accelerations(rows)
+        # what forces leave of those that stick is rounding, and so is what goes with it in the others
+        q2 += _stopping(N, places[stuck], q2)
         q2[places[stuck]] = 0.0
         return q2, multipliers
 

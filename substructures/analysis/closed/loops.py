@@ -18,12 +18,14 @@ from substructures.analysis.motion.problem import Start, StateVector
 from substructures.analysis.motion.signals import Signal
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
-from substructures.mechanics.closure_rows import RANK, rank_of
+from substructures.mechanics.closure_rows import RANK, rank_of, ranks
+from substructures.quantities.reaction_numbers import least_norm
 from substructures.tree.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]
 NEARBY = 1e-3
-#: residuals of a right state: of positions and velocities over their largest number or 1, and of equations over terms
+#: residuals of a right state: of positions and velocities over the width of their rows and their largest number or 1,
+#: and of equations over terms
 MET, SOLVED = 1e-9, 1e-8
 
 
@@ -136,10 +138,10 @@ def loop_state(
 def _checks(s: Constrained, state: Consistent, qdd: Array, multipliers: Array) -> Iterator[Check]:
     """Residuals of the closures, and of the equations that the accelerations and multipliers solve, where s is."""
     size, speed = (max(1.0, float(np.abs(x).max(initial=0))) for x in (state.q, state.qd))
-    met: About = ("position residual", "zero", "the closures (and prescribed motions) are met", "m, 1")
-    yield Check.at(met, state.residual, s.t, size, MET)
-    moved: About = ("velocity residual", "zero", "G q' + phi_t = 0", "m/s, 1/s")
-    yield Check.at(moved, state.velocity_residual, s.t, speed, MET)
+    met: About = ("position residual", "zero", "the closures (and prescribed motions) are met", "1")
+    yield Check.at(met, s.opening, s.t, size, MET)
+    moved: About = ("velocity residual", "zero", "G q' + phi_t = 0", "1/s")
+    yield Check.at(moved, s.opening_rate, s.t, speed, MET)
     # what forces cause where nothing holds: accelerations that the closures cancel are rounding beside it
     free = float(np.abs(s.f).max(initial=0)) / (float(np.abs(s.g).max(initial=0)) or 1.0)
     largest = float((np.abs(s.G) @ (np.abs(qdd) + free)).max(initial=0))
@@ -184,7 +186,8 @@ def _ambiguous(G: Array) -> NDArray[np.bool_]:
     if not G.size:
         return np.zeros(len(G), dtype=np.bool_)
     # lambda with G^T lambda = 0 can be added to any multipliers
-    free = scipy.linalg.null_space(G.T, rcond=RANK)
+    left, sizes, _ = np.linalg.svd(G)
+    free = left[:, int(ranks(sizes)) :]
     return np.asarray(np.abs(free).max(axis=1, initial=0) > np.sqrt(RANK))
 
 
@@ -206,17 +209,8 @@ def _is_singular(s: Constrained, t: float, q: Array, G: Array, rank: int) -> boo
 
 def least_multipliers(s: Constrained, qdd: Array) -> Array:
     """lambda of least norm with G^T lambda = g q'' + Gamma q'q' - Q."""
-    if not len(s.labels):
-        return np.zeros(0)
-    # G^T lambda = g q'' - f, f = Q - Gamma q'q', for multipliers times the reach of their rows
-    G, right = s.balanced, s.g @ qdd - s.f
-    found = scipy.linalg.lstsq(G.T, right, cond=RANK, lapack_driver="gelsd", check_finite=False)[0] / s.reach
-    free = scipy.linalg.null_space(G.T, rcond=RANK) if rank_of(G) < len(G) else np.zeros((len(G), 0))
-    if free.size:
-        # less what closures that depend on each other may add: lambda of least norm in N and N m
-        basis = np.linalg.qr(free / s.reach[:, None])[0]
-        found = found - basis @ (basis.T @ found)
-    return np.asarray(found, dtype=np.float64)
+    # G^T lambda = g q'' - f, f = Q - Gamma q'q'
+    return least_norm(s.G, s.reach, s.g @ qdd - s.f)
 
 
 def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reaction, ...]:

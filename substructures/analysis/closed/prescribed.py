@@ -9,13 +9,16 @@ import numpy as np
 import scipy
 
 from substructures.analysis.arguments import exact, require_read
-from substructures.analysis.motion.signals import Signal, Table, require_covered
+from substructures.analysis.closed.kinks import require_smooth, require_smooth_table
+from substructures.analysis.motion.signals import Signal, Table, polynomials, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
 from substructures.errors import among
+from substructures.expr.corners import corners, inner
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
 from substructures.part.scope import Scope
 from substructures.tree.model import Model
@@ -25,18 +28,19 @@ TIME = Symbol("t", "time", "s")
 
 class Prescribed:
     """Coordinates whose motion is given. ``index``: which they are; ``values[k]``: value, first and second derivative
-    of the k-th. Numbers and expressions in t are exact; tables are splines of degree five.
+    of the k-th. Numbers and expressions in t are exact; tables are splines of degree five, or what they say.
     """
 
     def __init__(self, model: Model, given: Mapping[str, Signal], span: tuple[float, float]) -> None:
         """Raises InvalidArgument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
-        the span.
+        the span, motions with a kink in it.
         """
         self.values = np.zeros((len(given), 3))
         self._tables: list[tuple[int, Any]] = []
         scope = Scope(Graph())
         time = {"t": scope.graph.symbol("t")}
         formulas: dict[int, Expr] = {}
+        unit_of = model.state_units["q"].get
         for k, (name, one) in enumerate(given.items()):
             pointer = f"/prescribed/{escape(name)}"
             if name not in model.coordinates:
@@ -44,7 +48,8 @@ class Prescribed:
                 scope.fault(pointer, "unknown-coordinate", message)
             elif isinstance(one, Table):
                 require_covered(one, span, pointer)
-                self._tables.append((k, _spline(np.array(one.times), np.array(one.values))))
+                curve = polynomials(one, "quintic")
+                self._tables.append((k, _rates(require_smooth_table(curve, span, pointer, unit_of(name, "")))))
             else:
                 formulas[k] = scope.read(exact(one, pointer), pointer, time.get)
         require_read(scope)
@@ -52,15 +57,14 @@ class Prescribed:
         self._time = np.zeros(1)
         self._places = list(formulas)
         self._found = np.zeros((1, len(formulas), 3))
-        self._run = self._compiled(scope.graph, list(formulas.values()))
+        rows = [_with_rates(x) for x in formulas.values()]
+        names = list(given)
+        for k, row in zip(formulas, rows, strict=True):
+            _require_smooth(row, span, f"/prescribed/{escape(names[k])}", unit_of(names[k], ""))
+        self._run = self._compiled(scope.graph, rows)
 
-    def _compiled(self, graph: Graph, formulas: Sequence[Expr]) -> Callable[[], None] | None:
+    def _compiled(self, graph: Graph, rows: Sequence[tuple[Expr, Expr, Expr]]) -> Callable[[], None] | None:
         """Expressions in t as machine code; constants are put in place at once."""
-        rows = []
-        # s(t), s'(t), s''(t)
-        for x in formulas:
-            rate = derivative(x, "t")
-            rows.append((x, rate, derivative(rate, "t")))
         if not rows:
             return None
         p = program(graph, {"motion": array((len(rows), 3), lambda k, i: rows[k][i])}, {"t": TIME})
@@ -80,15 +84,31 @@ class Prescribed:
         return self.values
 
 
-def _spline(times: Array, values: Array) -> Any:
-    """A spline of degree five (less for few points) and two derivatives as one piecewise polynomial.
+def _with_rates(x: Expr) -> tuple[Expr, Expr, Expr]:
+    """s(t), s'(t), s''(t)."""
+    rate = derivative(x, "t")
+    return x, rate, derivative(rate, "t")
 
-    The second derivative enters the equations of motion: of degree three, it is twice continuously differentiable.
-    """
-    of_degree = scipy.interpolate.make_interp_spline(times, values, k=min(5, len(times) - 1))
-    spline = scipy.interpolate.PPoly.from_spline(of_degree)
-    terms = [spline, spline.derivative(1), spline.derivative(2)]
-    stacked = np.zeros((*spline.c.shape, 3))
+
+def _require_smooth(row: tuple[Expr, Expr, Expr], span: tuple[float, float], pointer: str, unit: str) -> None:
+    """Raises InvalidArgument where an expression has a kink."""
+    found = [inner(node) for node in corners(row[:1])]
+    if not found:
+        return
+    outputs = {"motion": array((3,), lambda i: row[i]), "places": array((len(found),), lambda k: found[k])}
+    p = program(row[0].graph, outputs, {"t": TIME})
+
+    def columns(name: str) -> Callable[[Array], Array]:
+        """An output at times."""
+        return lambda t: interpret(p, {"t": t}, [name])[name]
+
+    require_smooth(columns("motion"), columns("places"), span, pointer, unit)
+
+
+def _rates(curve: Any) -> Any:
+    """A piecewise polynomial and two derivatives as one."""
+    terms = [curve, curve.derivative(1), curve.derivative(2)]
+    stacked = np.zeros((*curve.c.shape, 3))
     for i, term in enumerate(terms):
-        stacked[len(spline.c) - len(term.c) :, :, i] = term.c
-    return scipy.interpolate.PPoly(stacked, spline.x)
+        stacked[len(curve.c) - len(term.c) :, :, i] = term.c
+    return scipy.interpolate.PPoly(stacked, curve.x)

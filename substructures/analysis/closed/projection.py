@@ -60,7 +60,7 @@ def consistent_state(s: Constrained, t: float, q: Array, qd: Array, fixed: Colle
     s.move(t, q, qd)
     left = _largest(s.velocity_residual)
     message = _turned_message(s)
-    if not message and not _largest(s.velocity_residual / s.width) <= CLOSED * max(1.0, _largest(qd)):
+    if not message and not s.opening_rate <= CLOSED * max(1.0, _largest(qd)):
         message = _rate_message(s, fixed)
     return Consistent(q, qd, residual, left, iterations, message)
 

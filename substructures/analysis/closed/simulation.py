@@ -171,13 +171,13 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _at_states(_judged_quantities, s, t, x) | {"work": x[:, -1]}
-    residuals = _residual_checks(t, [judged.pop(name) for name in OPENINGS])
+    residuals, effort = _residual_checks(t, [judged.pop(name) for name in OPENINGS]), judged.pop("effort")
     names = s.conditions.varied_potential()
     if names:
         balance = unbalanced(names)
     else:
         doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
-        balance = energy_balance(t, judged, s.conservative, problem.drift_limit, doubt)
+        balance = energy_balance(t, judged | {"effort": effort}, s.conservative, problem.drift_limit, doubt)
     forces: Callable[[Constrained], dict[str, Any]] = _forces
     checks: tuple[Check, ...] = (*residuals, balance)
     if isinstance(s, DryConstrained) and isinstance(motion, DryRun):
@@ -246,8 +246,9 @@ def _judged_quantities(s: Constrained) -> dict[str, Any]:
         "potential_energy": potential,
         "position_residual": np.abs(s.phi).max(initial=0),
         "velocity_residual": np.abs(s.velocity_residual).max(initial=0),
+        "effort": s.effort,
         "opening": s.opening,
-        "opening_rate": np.abs(s.velocity_residual / s.width).max(initial=0),
+        "opening_rate": s.opening_rate,
     }
 
 

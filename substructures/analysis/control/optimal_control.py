@@ -56,7 +56,8 @@ ADVICE = {
 class Optimum:
     """The best ``controls`` found (nodes, m) [N m, N], in the order of ``names``, with their cost and motion.
 
-    ``status``: optimal; feasible (demands hold, not stationary yet); failed; ``message`` says what to change.
+    ``status``: optimal; feasible (demands hold, not stationary yet); failed (they do not, or the motion is not
+    accurate); ``message`` says what to change.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost;
     ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
     where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
@@ -181,6 +182,7 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
     status: Literal["optimal", "feasible", "failed"] = "failed"
     if violation <= limit and cost < BEYOND:
         status = "optimal" if stationarity <= STATIONARY else "feasible"
+    advice = ADVICE[status]
     run, _ = search.evaluated(z)
     motion, drift = _motion(search, run, nu)
     met: About = ("end", "zero", "the end state and the joints of segments are demanded", "")
@@ -188,7 +190,9 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
     end = float(motion.t[-1])
     necessary = Check.at(met, violation, end, 1.0, limit), Check.at(still, stationarity, end, 1.0, STATIONARY)
     accuracy = motion_checks(search.shooting, run, search.first, error_limit)
-    advice = ADVICE[status] or ("" if verdict(accuracy) else STEPS)
+    if not verdict(accuracy):
+        # of a motion that is wrong nothing is optimal
+        status, advice = "failed" if verdict(accuracy) is False else status, advice or STEPS
     return Optimum(
         status,
         advice,

@@ -29,6 +29,15 @@ def inverse(rows: Sequence[Sequence[Expr]]) -> list[list[Expr]] | None:
     return [[cofactors[j][i] / determinant for j in range(n)] for i in range(n)]
 
 
+def determinant(rows: Sequence[Sequence[Expr]]) -> Expr:
+    """det(Y) of at least one row. Raises TooLarge."""
+    graph, budget = rows[0][0].graph, [MAX_MINORS]
+    minors: dict[int, Expr] = {0: graph.one}
+    for row in rows:
+        minors = _extended(minors, row, budget)
+    return minors.get((1 << len(rows)) - 1, graph.zero)
+
+
 def _row_cofactors(rows: Sequence[Sequence[Expr]], left_out: int, budget: list[int]) -> list[Expr]:
     """Cofactors of the elements of one row: minors of all other rows."""
     n = len(rows)

@@ -8,14 +8,18 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.arguments import require_read
+from substructures.analysis.equations.cofactors import determinant
 from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
 from substructures.errors import InvalidArgument, among
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
+from substructures.printers.render import render
 from substructures.quantities.workspace import Workspace
 
 MatrixRows = list[list[Expr]]
+#: positions in which a determinant is looked at
+PLACES = 64
 
 
 def _numbers(f: Workspace, rows: Sequence[Sequence[Expr]], near: Mapping[str, float] | None = None) -> Any:
@@ -84,8 +88,28 @@ def quasi_velocity_rows(
         raise InvalidArgument.at(pointer, "wrong-length", message)
     for name in names:
         f.symbols.setdefault(name, Symbol(name, "velocity"))
-        f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration")
+        unit = f.symbols[name].unit
+        f.symbols[f"{name}'"] = Symbol(f"{name}'", "acceleration", f"{unit}^2" if unit else "")  # rad/s -> rad/s^2
     return names, own
+
+
+def vanishing(f: Workspace, rows: MatrixRows) -> str:
+    """Of quasi-velocities and constraints (n, n) the determinant as text, where it has both signs: between them it is
+    zero, and the quasi-velocities do not describe the motion there. Empty where it has one.
+    """
+    if not rows:
+        return ""
+    det = determinant(rows)
+    source = program(f.graph, {"determinant": array((), lambda: det)}, f.symbols)
+    rng = np.random.default_rng(3)
+    values = {s.name: rng.uniform(0.3, 1.1, PLACES) for s in source.symbols}
+    values |= {name: rng.uniform(-np.pi, np.pi, PLACES) for name in f.model.coordinates if name in values}
+    found = interpret(source, values)["determinant"]
+    if not (found.min() < 0 < found.max()):
+        return ""
+    return (
+        render(source, "text", "readable").partition("determinant = ")[2].strip() or "the determinant of the velocities"
+    )
 
 
 def _chosen(f: Workspace, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:

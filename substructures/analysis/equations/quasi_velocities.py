@@ -36,7 +36,7 @@ from typing import Any
 
 from substructures.analysis.arguments import exact
 from substructures.analysis.equations.cofactors import inverse
-from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows
+from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows, vanishing
 from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
 from substructures.certificate.quasi import Quasi
 from substructures.errors import InvalidArgument, listed
@@ -55,7 +55,8 @@ DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
 @dataclass(frozen=True)
 class QuasiVelocities:
     """The equations (the table above) with names: quasi-velocities v, constraint rows, gaps; rows left out because
-    they follow from others (``dependent``).
+    they follow from others (``dependent``). ``singular``: where this formula is zero they do not describe the motion;
+    empty where none is known.
     """
 
     model: Model
@@ -64,6 +65,7 @@ class QuasiVelocities:
     constraints: tuple[str, ...]
     gaps: tuple[str, ...]
     dependent: tuple[str, ...]
+    singular: str = ""
 
     def __repr__(self) -> str:
         return (
@@ -114,7 +116,8 @@ def quasi_velocity_equations(
     expectation = Quasi(result, texts, rows.labels, list(rows.gaps), plain, model.frames, closed)
     kinds = {s.name: s.kind for s in f.symbols.values()}
     certified(result, model, expectation, "velocity equations", needs=(*CERTIFIED, *KINEMATICS), more=kinds)
-    return QuasiVelocities(model, result, tuple(names), tuple(rows.labels), tuple(rows.gaps), tuple(dependent))
+    labels = tuple(rows.labels), tuple(rows.gaps), tuple(dependent)
+    return QuasiVelocities(model, result, tuple(names), *labels, vanishing(f, Y))
 
 
 def _exact(given: Any) -> Any:

@@ -12,9 +12,10 @@ from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
 
 
-def base_symbols(base: BaseParameters) -> tuple[Program, dict[str, str]]:
+def base_symbols(base: BaseParameters) -> tuple[Program, tuple[Symbol, ...], dict[str, str]]:
     """An output for every base parameter, ``arm.Jxx_link2`` of ``arm.link2.Jxx``, over the parameters of the tree and
-    those of drives; and by its name what was grouped into it, as a sum of standard parameters.
+    those of drives; these as symbols with their units, in the order of ``base.names``; and by its name what was grouped
+    into it, as a sum of standard parameters.
 
     Raises TooLarge for coefficients that are too long.
     """
@@ -32,7 +33,11 @@ def base_symbols(base: BaseParameters) -> tuple[Program, dict[str, str]]:
                 symbols[called[standard]] = Symbol(called[standard], "parameter", units[standard])
                 value = value + graph.lift(grouping[k, i]) * graph.symbol(called[standard])
         outputs[_free(called[name], symbols)] = Formulas((), {(): value})
-    return program(graph, outputs, symbols), _notes(outputs, base, combinations)
+    # a program has its outputs in the order of their names
+    own = tuple(
+        Symbol(name, "base parameter", units[standard]) for name, standard in zip(outputs, base.names, strict=True)
+    )
+    return program(graph, outputs, symbols), own, _notes(outputs, base, combinations)
 
 
 def symbol_name(standard: str) -> str:

@@ -88,15 +88,19 @@ def energy_balance(
 ) -> Check:
     """T + V - work is constant; relative to the largest of T, the change of V and the work.
 
-    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each. ``doubt`` (K,): what rounding
+    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each, and ``effort``, what forces do on the
+    whole way where that is known: its rounding is in them, also where nothing moves. ``doubt`` (K,): what rounding
     next to singular positions makes of them [J]; no more than DOUBTED times the limit is put down to it.
     """
     T, V, work = (columns[name] for name in ("kinetic_energy", "potential_energy", "work"))
-    scale = max(float(np.abs(x).max(initial=0)) for x in (T, V - V[0], work)) or 1.0
+    known = float(np.maximum(np.abs(T + V), columns.get("effort", 0.0)).max(initial=0))
+    scale = max(float(np.abs(x).max(initial=0)) for x in (T, V - V[0], work))
+    # what is nothing but rounding is no scale
+    scale = scale if scale > ROUNDING * known else known or 1.0
     reason = "T + V is constant: the forces have a potential, constraints do no work"
     if not conservative:
         reason = "T + V changes by the work of forces without potential and of prescribed motions only"
-    noise = ROUNDING * float(np.abs(T + V).max(initial=0)) + np.minimum(doubt, DOUBTED * limit * scale)
+    noise = ROUNDING * known + np.minimum(doubt, DOUBTED * limit * scale)
     return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
 
 

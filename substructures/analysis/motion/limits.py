@@ -1,4 +1,6 @@
-"""What a motion makes of the limits of its joints: it is told which they are, and warned of each that it leaves."""
+"""What a motion makes of the limits of its joints, and of relations that definitions leave out: it is told which limits
+there are, and warned of each that it leaves.
+"""
 
 from __future__ import annotations
 
@@ -17,4 +19,6 @@ def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Tr
     """
     limits = joint_limits(model, parameters)
     lowest, highest = motion.reached or reached(motion.t, motion.q, motion.qd)
-    return replace(motion, limits=limits.plain(), warnings=tuple(limits.warnings(lowest, highest)))
+    judge = model.plausibility
+    apart = [] if judge is None else judge.apart(motion.coordinates, motion.q)
+    return replace(motion, limits=limits.plain(), warnings=(*limits.warnings(lowest, highest), *apart))

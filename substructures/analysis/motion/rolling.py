@@ -8,36 +8,36 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
-import scipy
+from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.motion.conditions import Conditions, read_conditions
-from substructures.analysis.motion.corners import Laws, follow
+from substructures.analysis.motion.corners import has_corners
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
 from substructures.analysis.motion.output_times import OutputTimes
 from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem, StateVector
 from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.reduced_motion import FORMS, ReducedMotion
 from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
 from substructures.analysis.motion.single_steps import steps_again
 from substructures.analysis.motion.steppers import METHODS
-from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings
-from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.motion.velocity_choices import VelocityChoices
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.compile import compile_program
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.quantities.limits import reached
 from substructures.quantities.measured import numeric
 
-FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
 NEEDS = ("metric", "forces", "potential_energy")
 #: largest constrained velocity [m/s] and change of a gap [m] along a right motion
 RESIDUAL = 1e-9
+#: quasi-velocities describe a motion badly where velocities are so many times larger beside them than elsewhere
+FAR = 30
 ADVICE = "the quasi-velocities may not describe the motion there (take others), or a body may lie flat"
 
 
@@ -46,7 +46,8 @@ class RollingProblem(MotionProblem):
     """A motion with ``constraints`` from ``start.q`` and quasi-velocities ``v`` (0 by default), or from velocities
     ``start.qd`` that meet them.
 
-    ``velocities``, ``independent``: see :func:`quasi_velocity_equations`; ``form``: of the equations of motion.
+    ``velocities``, ``independent``: see :func:`quasi_velocity_equations`; where neither is given velocities of
+    coordinates are chosen, and others on the way where these fail. ``form``: of the equations of motion.
     """
 
     constraints: Sequence[Constraint] = ()
@@ -59,60 +60,6 @@ class RollingProblem(MotionProblem):
         super().__post_init__()
         one_of(self.integrator.method, "method", METHODS)
         one_of(self.form, "form", tuple(FORMS))
-
-
-class _Rolling:
-    """The right-hand side in compiled form. y = (q, v, work)."""
-
-    def __init__(self, equations: QuasiVelocities, conditions: Conditions, form: str, folder: Path | None) -> None:
-        model, self.conditions, self.form = equations.model, conditions, FORMS[form]
-        self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
-        self.columns = [*model.coordinates, *equations.velocities]
-        self._t, self._y, self._x = np.zeros(1), np.zeros((1, self.n + self.p)), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
-        wanted = ("metric", self.form, "forces", "lost_power")
-        self._rates = np.zeros((1, self.n))
-        self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
-        values = self.conditions.values | {"t": self._t}
-        columns = [(self.columns, self._y)]
-        rates = compile_program(equations.program, ["rates"], folder)
-        self._move = rates.bind({"rates": self._rates}, values, columns=columns)
-        kernel = compile_program(equations.program, wanted, folder)
-        source = equations.program.select(wanted)
-        self._laws = Laws(source, kernel, self._out, values, [*columns, *self.inputs.columns])
-
-    def corners(self, t: float, y: Array, folder: Path | None) -> list[Watch]:
-        """Follow force laws on one side of their corners, from a start on; the corners are to be watched."""
-        moving = ("t", *self.columns, *self.inputs.moving)
-        return follow([*self.inputs.laws, self._laws], moving, self._fill, self.rates, (t, y), folder)
-
-    def plain(self) -> None:
-        """Force laws as they are."""
-        for laws in (*self.inputs.laws, self._laws):
-            laws.plain()
-
-    def _fill(self, t: float, y: Array) -> None:
-        self._x[0] = self.state(t, y)
-        self.inputs.fill()
-
-    def state(self, t: float, y: Array) -> Array:
-        """(q, q') of y (a new array)."""
-        self._t[0], self._y[0] = t, y[:-1]
-        self._move()
-        return np.concatenate((y[: self.n], self._rates[0]))
-
-    def rates(self, t: float, y: Array) -> Array:
-        """y'; not finite where the reduced metric is singular."""
-        # g* v' = forces - bias, g* = T^T g T, q' = T v  (quasi_velocities)
-        self._fill(t, y)
-        self._laws.run()
-        out, result = self._out, np.empty(len(y))
-        force = out["forces"][0] - out[self.form][0]
-        # LAPACK takes no matrix without rows: nothing is left free
-        _, acceleration, info = scipy.linalg.lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
-        result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
-        result[self.n : -1] = acceleration if not info else np.nan
-        return result
 
 
 def simulate_rolling(
@@ -133,79 +80,101 @@ def simulate_rolling(
     equations = quasi_velocity_equations(
         model, problem.constraints, velocities=problem.velocities, independent=problem.independent, near=place
     )
-    rolling = _Rolling(equations, conditions, problem.form, folder)
+    rolling = ReducedMotion(equations, conditions, problem.form, folder)
     rolling.inputs.enter(*problem.span)
+    choices = _choices(rolling, problem, folder)
     y = np.concatenate((*_start(rolling, problem), (0.0,)))
+    x = choices.begun(start, y)
     if not np.isfinite(rolling.rates(start, y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
-        motion = IntegratedMotion([start], [y], [start], [y], status="failed", message=advice)
+        motion = IntegratedMotion([start], [x], [start], [x], status="failed", message=advice)
     else:
-        motion = _moved(rolling, problem, y, progress, folder)
-    found = _judged(rolling, problem, motion)
+        motion = _moved(choices, problem, x, progress, folder)
+    found = _judged(choices, problem, motion)
     more = _repeated if conditions.varied_potential() else _steps_again
-    return replace(found, checks=(*found.checks, *more(rolling, problem, y, motion, progress)))
+    return replace(found, checks=(*found.checks, *more(choices, problem, x, motion, progress)))
+
+
+def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | None) -> VelocityChoices:
+    """Velocities that the program chose are changed on the way, but where a corner of a force law is followed."""
+    equations, conditions = rolling.equations, rolling.conditions
+    given = problem.velocities is not None or problem.independent is not None
+    if given or not equations.singular or has_corners(equations.program) or has_corners(conditions.expressions):
+        return VelocityChoices(rolling, None)
+
+    def make(chosen: Sequence[str]) -> ReducedMotion:
+        """The motion in the velocities of these coordinates."""
+        other = quasi_velocity_equations(problem.model, problem.constraints, independent=chosen)
+        return ReducedMotion(other, conditions, problem.form, folder)
+
+    return VelocityChoices(rolling, make)
 
 
 def _repeated(
-    rolling: _Rolling, problem: RollingProblem, y: Array, first: IntegratedMotion, progress: ProgressReport | None
+    choices: VelocityChoices,
+    problem: RollingProblem,
+    x: Array,
+    first: IntegratedMotion,
+    progress: ProgressReport | None,
 ) -> tuple[Check, ...]:
     """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
-    rolling.conditions = replace(rolling.conditions, events=())
+    choices.first.conditions = replace(choices.first.conditions, events=())
 
     def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
         """The same motion more carefully."""
         other = replace(problem, times=OutputTimes(span, times), integrator=choice, events=())
-        return _moved(rolling, other, y, at_end(progress), None)
+        return _moved(choices, other, x, at_end(progress), None)
 
-    groups = state_groups(rolling.n, rolling.p, "v")
+    groups = state_groups(choices.first.n, choices.rates, "v" if choices.make is None else "qd")
     return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
 
 
 def _steps_again(
-    rolling: _Rolling, problem: RollingProblem, _: Array, first: IntegratedMotion, __: ProgressReport | None
+    choices: VelocityChoices, problem: RollingProblem, _: Array, first: IntegratedMotion, __: ProgressReport | None
 ) -> tuple[Check, ...]:
     """Some steps once more, where the balance of energy judges the whole."""
-    rolling.conditions = replace(rolling.conditions, events=())
+    choices.first.conditions = replace(choices.first.conditions, events=())
 
-    def again(span: tuple[float, float], y: Array, choice: IntegratorChoice) -> IntegratedMotion:
+    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
         """From a state of the motion."""
         other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
-        return _moved(rolling, other, y, None, None, turning=False)
+        return _moved(choices, other, x, None, None, turning=False)
 
-    groups = state_groups(rolling.n, rolling.p, "v")
+    groups = state_groups(choices.first.n, choices.rates, "v" if choices.make is None else "qd")
     return steps_again(first, problem.integrator, groups, problem.drift_limit, again)
 
 
 def _moved(
-    rolling: _Rolling,
+    choices: VelocityChoices,
     problem: RollingProblem,
-    y: Array,
+    x: Array,
     progress: ProgressReport | None,
     folder: Path | None,
     turning: bool = True,
 ) -> IntegratedMotion:
     """The motion. ``turning``: it begins anew at corners of force laws."""
-    integrator, conditions, span = problem.integrator, rolling.conditions, problem.span
+    rolling, integrator, span = choices.first, problem.integrator, problem.span
+    conditions = rolling.conditions
     breaks = conditions.breaks(span)
-    rolling.inputs.enter(span[0], [*breaks, span[1]][0])
-    corners = rolling.corners(span[0], y, folder) if turning else []
+    choices.enter(span[0], [*breaks, span[1]][0])
+    corners = rolling.corners(span[0], x, folder) if turning and choices.make is None else []
     motion = integrate(
         rolling.rates,
-        y,
+        x,
         span,
         problem.times.grid(),
-        IntegratorSettings(integrator.stepper(), integrator.max_steps, ADVICE),
-        [*conditions.watches(rolling.state, folder), *corners],
+        IntegratorSettings(choices.stepper(integrator.stepper()), integrator.max_steps, ADVICE),
+        [*conditions.watches(choices.state, folder), *corners],
         breaks,
         share_of(span, progress),
-        rolling.inputs.enter,
+        choices.enter,
     )
     rolling.plain()
-    rolling.inputs.leave()
+    choices.leave()
     return motion
 
 
-def _start(rolling: _Rolling, problem: RollingProblem) -> tuple[Array, Array]:
+def _start(rolling: ReducedMotion, problem: RollingProblem) -> tuple[Array, Array]:
     """q and v at the start."""
     model, names = rolling.equations.model, rolling.equations.velocities
     q, qd = rolling.conditions.q, rolling.conditions.qd
@@ -243,21 +212,20 @@ def _by_name(given: Any, names: tuple[str, ...]) -> Array:
     return v
 
 
-def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion) -> Trajectory:
-    equations, conditions, n = rolling.equations, rolling.conditions, rolling.n
-    t, y, results = motion.judged()
-    slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
-    x = np.concatenate([y[:, :n], slopes[:, :n]], axis=1)
-    values: dict[str, Any] = conditions.values | conditions.inputs_at(t, x) | {"t": t}
-    values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
-    values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
-    names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
-    found = interpret_in_blocks(equations.program, values, names, len(t))
-    series = {name: found[name] for name in names[1:]} | {"v": y[:, n:-1], "work": y[:, -1]}
+def _judged(choices: VelocityChoices, problem: RollingProblem, motion: IntegratedMotion) -> Trajectory:
+    equations, conditions, n = choices.first.equations, choices.first.conditions, choices.first.n
+    t, states, results = motion.judged()
+    x, columns = np.zeros((len(t), 2 * n)), dict[str, Array]()
+    for rolling, places, y in choices.pieces(states):
+        x[places], found = _series(rolling, t[places], y)
+        for name, values in found.items():
+            columns.setdefault(name, np.zeros((len(t), *values.shape[1:])))[places] = values
     # B_ka q'^a
-    series["constraints"] = np.einsum("kma,ka->km", found["constraints"], x[:, n:])
+    slips = np.einsum("kma,ka->km", columns.pop("constraints"), x[:, n:])
+    v = states[:, n:-1] if choices.make is None else x[:, n + _places(equations)]
+    series = columns | {"v": v, "work": states[:, -1], "constraints": slips}
     checks = _checks(t, series, problem.drift_limit, conditions.varied_potential())
-    span = reached(t, x[:, :n], x[:, n:])
+    span, message = reached(t, x[:, :n], x[:, n:]), _message(choices, motion, x[:, :n])
     t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
@@ -267,18 +235,47 @@ def _judged(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion
         {name: column[results] for name, column in series.items()} | conditions.series_at(t, x),
         checks,
         motion.status,
-        motion.message,
+        message,
         motion.steps,
-        _events(rolling, problem, motion),
+        crossings(problem.events, [(k, t, choices.state(t, x)) for k, t, x in motion.found], n),
         {"evaluations": float(motion.evaluations)},
         motion.cancelled,
         span,
     )
 
 
-def _events(rolling: _Rolling, problem: RollingProblem, motion: IntegratedMotion) -> tuple[Crossing, ...]:
-    found = [(k, t, rolling.state(t, y)) for k, t, y in motion.found]
-    return crossings(problem.events, found, rolling.n)
+def _series(rolling: ReducedMotion, t: Array, y: Array) -> tuple[Array, dict[str, Array]]:
+    """(q, q') (K, 2 n), and outputs of the equations by name, at states y (K, N)."""
+    equations, conditions, n = rolling.equations, rolling.conditions, rolling.n
+    slopes = np.array([rolling.rates(*pair) for pair in zip(t.tolist(), y, strict=True)])
+    x = np.concatenate([y[:, :n], slopes[:, :n]], axis=1)
+    values: dict[str, Any] = conditions.values | conditions.inputs_at(t, x) | {"t": t}
+    values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
+    values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
+    names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
+    return x, interpret_in_blocks(equations.program, values, names, len(t))
+
+
+def _places(equations: QuasiVelocities) -> NDArray[np.int64]:
+    """Of the coordinates whose velocities they are."""
+    rates = [f"{name}'" for name in equations.model.coordinates]
+    return np.array([rates.index(name) for name in equations.velocities], dtype=np.int64)
+
+
+def _message(choices: VelocityChoices, motion: IntegratedMotion, q: Array) -> str:
+    """That of the motion; or that velocities that were kept do not describe it somewhere on the way."""
+    equations = choices.first.equations
+    if motion.message or choices.make is not None or not equations.singular or not len(q):
+        return motion.message
+    values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True))
+    size = np.abs(interpret_in_blocks(equations.program, values, ["T"], len(q))["T"]).max(axis=(1, 2), initial=0)
+    if not size.max() > FAR * size.min():
+        return ""
+    names = ", ".join(equations.velocities)
+    return (
+        f"the velocities {names} describe the motion badly where {equations.singular} is near zero, as it is on this "
+        "way: take others ('velocities', or another choice of 'independent')"
+    )
 
 
 def _checks(t: Array, series: Mapping[str, Array], limit: float, varied: Sequence[str]) -> tuple[Check, ...]:

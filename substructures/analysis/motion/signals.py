@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_right
 from dataclasses import dataclass
 from itertools import pairwise
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import scipy
@@ -13,20 +13,22 @@ import scipy
 from substructures.analysis.arguments import NumberOrExpression, Numbers, one_of, reals
 from substructures.errors import InvalidArgument
 
-INTERPOLATIONS = ("hold", "linear", "cubic")
+Interpolation = Literal["hold", "linear", "cubic", "quintic"]
+INTERPOLATIONS: tuple[Interpolation, ...] = ("hold", "linear", "cubic", "quintic")
 
 
 @dataclass(frozen=True)
 class Table:
     """``values`` (K,) at increasing ``times`` (K,) [s], K >= 2.
 
-    ``interpolation`` of inputs: ``hold`` (each value up to the next time), ``linear``, or ``cubic`` (a spline with
-    two continuous derivatives); prescribed motions are splines of degree five whatever it says. Raises InvalidArgument.
+    ``interpolation``: ``hold`` (each value up to the next time), ``linear``, ``cubic`` or ``quintic`` (splines with two
+    and four continuous derivatives). Where none is given inputs are linear, and prescribed motions quintic, as a motion
+    must not jump, nor its velocity. Raises InvalidArgument.
     """
 
     times: Numbers
     values: Numbers
-    interpolation: Literal["hold", "linear", "cubic"] = "linear"
+    interpolation: Interpolation | None = None
 
     def __post_init__(self) -> None:
         for name in ("times", "values"):
@@ -34,7 +36,8 @@ class Table:
             if len(numbers) < 2:
                 raise InvalidArgument.at(f"/{name}", "too-short", f"'{name}' needs at least two numbers")
             object.__setattr__(self, name, numbers)
-        one_of(self.interpolation, "interpolation", INTERPOLATIONS)
+        if self.interpolation is not None:
+            one_of(self.interpolation, "interpolation", INTERPOLATIONS)
         if len(self.times) != len(self.values):
             raise InvalidArgument.at("/values", "wrong-length", "as many 'values' as 'times' are needed")
         require_increasing(self.times)
@@ -61,9 +64,10 @@ class Curve:
     """A table as piecewise polynomial of the time; ``breaks``: inner times where its value or its slope jumps."""
 
     def __init__(self, table: Table) -> None:
-        self.times = list(table.times)
-        self.pieces = _pieces(table)
-        self.breaks = [] if table.interpolation == "cubic" else self.times[1:-1]
+        curve = polynomials(table, "linear")
+        # coefficients of every piece, highest power first
+        self.times, self.pieces = curve.x.tolist(), curve.c.T.tolist()
+        self.breaks = [] if table.interpolation in ("cubic", "quintic") else self.times[1:-1]
         self._piece: int | None = None
 
     def enter(self, start: float, end: float) -> None:
@@ -87,15 +91,17 @@ class Curve:
         return value
 
 
-def _pieces(table: Table) -> list[list[float]]:
-    """Coefficients of every piece, highest power first."""
+def polynomials(table: Table, default: Interpolation) -> Any:
+    """A table as scipy.interpolate.PPoly; ``default``: the interpolation where it has none."""
     t, y = np.array(table.times), np.array(table.values)
-    if table.interpolation == "cubic":
-        rows = scipy.interpolate.CubicSpline(t, y).c.T
-    elif table.interpolation == "linear":
-        # s(t) = (y_k+1 - y_k) / (t_k+1 - t_k) (t - t_k) + y_k
-        rows = np.stack([np.diff(y) / np.diff(t), y[:-1]], axis=1)
-    else:
-        rows = y[:-1, None]
-    pieces: list[list[float]] = rows.tolist()
-    return pieces
+    how = table.interpolation or default
+    if how == "cubic":
+        return scipy.interpolate.CubicSpline(t, y)
+    if how == "quintic":
+        # of few points the degree is less; the knots at the ends are there several times
+        spline = scipy.interpolate.PPoly.from_spline(scipy.interpolate.make_interp_spline(t, y, k=min(5, len(t) - 1)))
+        x, long = spline.x, np.diff(spline.x) > 0
+        return scipy.interpolate.PPoly(spline.c[:, long], np.append(x[:-1][long], x[-1]))
+    # s(t) = (y_k+1 - y_k) / (t_k+1 - t_k) (t - t_k) + y_k, or s(t) = y_k
+    rows = [np.diff(y) / np.diff(t), y[:-1]] if how == "linear" else [y[:-1]]
+    return scipy.interpolate.PPoly(np.stack(rows), t)

@@ -16,11 +16,10 @@ from substructures.array import Array
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program, program
-from substructures.expr.walk import transfer
 from substructures.quantities.limits import joint_limits
 from substructures.quantities.states import default_numbers
 from substructures.textbook import Reading, Sum, Term
-from substructures.textbook.forms import atoms_of, to_expr
+from substructures.textbook.forms import to_expr
 from substructures.tree.model import Model
 
 #: a share that is called small, states that are sampled, and the range of slides without limits [m]
@@ -91,8 +90,7 @@ def _values(
 ) -> dict[str, Any]:
     """Every term of every form at the sampled states."""
     graph = Graph()
-    atoms = atoms_of(reading.forms)
-    moved = dict(zip(atoms, transfer(atoms, graph, {}), strict=True))
+    moved = reading.atoms_in(graph)
     outputs = {
         f"e{k}": Formulas(
             (len(form.terms),), {(i,): to_expr(Sum((term,)), graph, moved) for i, term in enumerate(form.terms)}

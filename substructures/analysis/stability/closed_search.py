@@ -24,6 +24,7 @@ from substructures.analysis.stability.equilibrium_search import (
     SearchRange,
 )
 from substructures.array import Array
+from substructures.mechanics.closure_rows import RANK
 from substructures.tree.model import Model
 
 
@@ -60,7 +61,7 @@ class ClosedSearch(RestSearch):
         F, _ = self.at(q)
         length, width = np.append(self.length[moving], np.ones(len(self.s.width))), self.s.width
         # multipliers over what they are for forces of one unit
-        force = multiplier_units(self.G[0], self.unit)
+        force = multiplier_units(self.G[0], self.s.reach, self.unit)
 
         def both(x: Array) -> tuple[Array, Array]:
             """Residuals and their Jacobian at free coordinates and multipliers."""
@@ -98,13 +99,19 @@ class ClosedSearch(RestSearch):
 
 
 def is_met(residual: Array, K: Array) -> bool:
-    """Whether forces, beside what a unit displacement causes (n, k), and openings, all over their units, are none."""
+    """Whether forces, each beside what a unit displacement causes there (n, k), and openings, all over their units, are
+    none.
+    """
     forces, openings = np.abs(residual[: len(K)]), np.abs(residual[len(K) :])
-    size = max(1.0, float(np.abs(K).max(initial=0)))
-    return bool(forces.max(initial=0) <= RESIDUAL * size and openings.max(initial=0) <= RESIDUAL)
+    sizes = np.maximum(1.0, np.abs(K).max(axis=1, initial=0))
+    return bool((forces <= RESIDUAL * sizes).all() and openings.max(initial=0) <= RESIDUAL)
 
 
-def multiplier_units(G: Array, unit: Array) -> Array:
-    """Multipliers (m,) of rows of G (m, n) that cause forces of about one ``unit`` (n,)."""
+def multiplier_units(G: Array, reach: Array, unit: Array) -> Array:
+    """Multipliers (m,) of rows of G (m, n) that cause forces of about one ``unit`` (n,); those of rows that are nothing
+    beside their ``reach`` (m,) cause none.
+    """
     sizes = (np.abs(G) / unit).max(axis=1, initial=0)
-    return np.divide(1.0, sizes, out=np.ones(len(G)), where=sizes > 0)
+    there = np.linalg.norm(G, axis=1) > RANK * reach
+    nothing = reach / float(unit.min(initial=np.inf)) if len(unit) else reach
+    return np.asarray(1 / np.where(there, sizes, nothing), dtype=np.float64)

@@ -12,7 +12,7 @@ import numpy as np
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.stability.closed_search import ClosedSearch
 from substructures.analysis.stability.equilibrium_search import RestConditions, RestSearch, SearchRange
-from substructures.analysis.stability.found_places import FoundPlaces, still
+from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check
@@ -51,7 +51,9 @@ class Equilibrium:
         if self.at.status == "failed" or not len(self.at.K):
             why = self.at.message or "nothing is left to move"
             return Check.left_out(f"rest at {place}", "zero", why, needed=self.at.status == "failed")
-        return still(f"rest at {place}", "no accelerations at rest", self.at.qdd, self.at.M, self.at.K)
+        names = self.at.independent if isinstance(self.at, ClosedLinearisation) else self.at.coordinates
+        qdd = self.at.qdd[[self.at.coordinates.index(name) for name in names]]
+        return still(f"rest at {place}", "no accelerations at rest", qdd, self.at.M, self.at.K)
 
 
 @dataclass(frozen=True, repr=False)
@@ -80,7 +82,7 @@ def equilibria(
     Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
     distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
     ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first moved onto the
-    closures; an equilibrium in a singular position has a linearisation that is ``failed``. That none is found is a
+    closures; an equilibrium in a singular position has a linearisation that is ``failed``, and is not judged. That none is found is a
     result with advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without
     derivative) and MissingValue. Source: notation.md, section 7.
     """
@@ -94,8 +96,8 @@ def equilibria(
     places[:, held] = places[0, held]
     found, _ = search.places(places, moving)
     names = tuple(model.coordinates[a] for a in held)
-    results = tuple(_described(model, conditions, q) for q in found)
-    message = "" if results else search.advice(places[0], held)
+    results, left_out = confirmed([_described(model, conditions, q) for q in found])
+    message = left_out if results or left_out else search.advice(places[0], held)
     return Equilibria(results, names, message=message)
 
 

@@ -192,8 +192,8 @@ class RestSearch:
                 ).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
-        # |Q| <= 1e-10 max(1, |K|)
-        if not np.abs(F).max(initial=0) <= RESIDUAL * max(1.0, float(np.abs(K * self.length).max(initial=0))):
+        # |Q_a| <= 1e-10 max(1, |K_ab|)
+        if not (np.abs(F) <= RESIDUAL * np.maximum(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all():
             return None
         return self._wound(q)
 

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
 
 import numpy as np
@@ -30,7 +31,7 @@ P = TypeVar("P", bound=Place, covariant=True)
 @dataclass(frozen=True, repr=False)
 class FoundPlaces(Generic[P]):
     """All that were found, in the order of their coordinates; ``message``: advice when nothing was found, and what was
-    left out.
+    left out. Each place has a check, and a verdict, of its own; there is none that a check contradicts.
     """
 
     found: tuple[P, ...]
@@ -43,8 +44,8 @@ class FoundPlaces(Generic[P]):
 
     @property
     def is_right(self) -> bool | None:
-        """Whether all that were found are what was looked for; None where there are none."""
-        return verdict(self.checks)
+        """Whether those that could be judged are what was looked for; None where there are none."""
+        return verdict(replace(check, needed=False) for check in self.checks)
 
     def _shown(self, **about: tuple[str, ...]) -> str:
         """Two lines: how many were found, with ``about``, and their verdicts."""
@@ -55,6 +56,24 @@ class FoundPlaces(Generic[P]):
 
 
 def still(name: str, reason: str, qdd: Array, M: Array, K: Array) -> Check:
-    """That accelerations q'' vanish beside those that a unit displacement causes, M^-1 K, or beside 1."""
+    """That accelerations q'' vanish, each beside those that a unit displacement causes there, M^-1 K, or beside 1."""
     about: About = (name, "zero", reason, "rad/s^2, m/s^2")
-    return Check.at(about, float(np.abs(qdd).max(initial=0)), 0.0, unit_accelerations(K, M), AT_REST)
+    if not len(qdd):
+        return Check.at(about, 0.0, 0.0, 1.0, AT_REST)
+    units = unit_accelerations(K, M)
+    worst = int(np.nan_to_num(np.abs(qdd) / units, nan=np.inf).argmax())
+    return Check.at(about, float(np.abs(qdd[worst])), 0.0, float(units[worst]), AT_REST)
+
+
+def confirmed(places: Sequence[P]) -> tuple[tuple[P, ...], str]:
+    """Those that their checks do not contradict, and what is to be said of the others."""
+    checks = [place.check() for place in places]
+    kept = tuple(place for place, check in zip(places, checks, strict=True) if check.holds is not False)
+    others = [check.worst for check in checks if check.holds is False]
+    if not others:
+        return kept, ""
+    count = "1 place was" if len(others) == 1 else f"{len(others)} places were"
+    return kept, (
+        f"{count} left out where accelerations up to {max(others):.3g} (rad/s^2, m/s^2) remain: the search came to a "
+        "position beside which the closures lose rank, or forces are not smooth"
+    )

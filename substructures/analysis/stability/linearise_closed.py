@@ -33,6 +33,7 @@ from substructures.analysis.stability.vibrations import first_order, input_matri
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
+from substructures.mechanics.accelerations import condition
 from substructures.quantities.states import read_states, symbol_values
 
 NEEDS = ("metric", "bias", "forces", "closure.residual", "closure.jacobian", "closure.acceleration")
@@ -149,7 +150,8 @@ def _tangent(
 
 def _state_space(M: Array, D: Array, K: Array, F: Array) -> tuple[Array, Array]:
     r = len(M)
-    if not np.isfinite([x.sum() for x in (M, D, K, F)]).all() or np.linalg.matrix_rank(M) < r:
+    regular = r == 0 or condition(M[None])[0] < 1 / (r * np.finfo(float).eps)
+    if not np.isfinite([x.sum() for x in (M, D, K, F)]).all() or not regular:
         return np.full((2 * r, 2 * r), np.nan), np.full((2 * r, F.shape[1]), np.nan)
     return first_order(M, D, K), input_matrix(M, F)
 

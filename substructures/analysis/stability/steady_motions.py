@@ -29,7 +29,7 @@ from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
-from substructures.analysis.stability.found_places import FoundPlaces, still
+from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.analysis.stability.vibrations import Mode, Stability, modes, normed, stability
 from substructures.analysis.verdict import Check
@@ -136,11 +136,11 @@ def steady_motions(
     kind = ClosedSteadySearch if model.closures else SteadySearch
     search = kind(model, moving, within, conditions, wanted, field == "momenta")
     found, failing = search.places(search.starts(), list(range(search.n)))
-    motions = tuple(_described(search, x, held) for x in found)
+    motions, left_out = confirmed([_described(search, x, held) for x in found])
     names = tuple(model.coordinates[s] for s in moving)
     message = "" if motions else "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
-    if failing:
-        message += f"{'; ' if message else ''}{failing} places were left out where these coordinates are singular"
+    singular = f"{failing} places were left out where these coordinates are singular" if failing else ""
+    message = "; ".join(filter(None, (message, singular, left_out)))
     return SteadyMotions(motions, names, held, message=message)
 
 

@@ -26,6 +26,7 @@ from substructures.analysis.stability.equilibrium_search import (
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
+from substructures.quantities.reaction_numbers import least_norm
 from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
@@ -174,11 +175,12 @@ class SteadySearch(RestSearch):
 class ClosedSteadySearch(SteadySearch):
     """The same with closures: E_x - G_kx lambda_k = 0 and phi_k = 0 for x and lambda together."""
 
-    def __init__(self, model: Model, moving: Sequence[int], within: SearchRange, *rest: Any) -> None:
-        super().__init__(model, moving, within, *rest)
-        conditions = self.conditions
+    def __init__(
+        self, model: Model, moving: Sequence[int], within: SearchRange, conditions: RestConditions, *rest: Any
+    ) -> None:
         start = Start([0.0] * model.dof, parameters=conditions.parameters, inputs=conditions.inputs)
         self.s = Constrained(model, start, (conditions.t, conditions.t))
+        super().__init__(model, moving, within, conditions, *rest)
 
     def _judged(self, q: Array) -> Array:
         return np.concatenate((self.at(q)[0], self.outputs["closure.residual"][0]))
@@ -187,12 +189,12 @@ class ClosedSteadySearch(SteadySearch):
         """With the multipliers of least squares: G^T lambda = E."""
         self.multipliers[:] = 0
         found, _ = super()._found(x)
-        self.multipliers[0] = _least(found["closure.jacobian"].T, found["residual"])
+        self.multipliers[0] = least_norm(found["closure.jacobian"], self.s.reach, found["residual"])
         return super()._found(x)
 
     def _tangent(self, found: dict[str, Array]) -> tuple[Array, list[int]]:
-        G = found["closure.jacobian"]
-        y = independent_coordinates(G / self.s.reach[:, None])
+        G = found["closure.jacobian"] / self.s.reach[:, None]
+        y = independent_coordinates(G)
         others = np.setdiff1d(np.arange(self.n), y)
         N = np.zeros((self.n, len(y)))
         N[y] = np.eye(len(y))
@@ -206,7 +208,7 @@ class ClosedSteadySearch(SteadySearch):
         first, _ = self._found(start)
         k, width = self.n, self.s.width
         length = np.append(self.length, np.ones(len(width)))
-        force = multiplier_units(first["closure.jacobian"], self.unit)
+        force = multiplier_units(first["closure.jacobian"], self.s.reach, self.unit)
 
         def both(z: Array) -> tuple[Array, Array]:
             """Residuals and their Jacobian at z = (x, lambda), each over its unit."""

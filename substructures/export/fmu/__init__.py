@@ -18,7 +18,8 @@ from substructures.export.fmu import model
 from substructures.export.fmu.binaries import libraries
 from substructures.export.fmu.description import build_description, description2, description3, terminals
 from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
-from substructures.export.fmu.variables import DYNAMICS, layout_of
+from substructures.export.fmu.variables import layout_of
+from substructures.quantities.quantity import FORWARD
 
 _SHARED = ("simulation.h", "simulation.c")
 
@@ -29,7 +30,7 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
     Raises InvalidArgument where there is nothing to be simulated, MissingValue, TooLarge.
     """
     layout = layout_of(exported)
-    dynamics = [each for each in exported.functions if each.quantity == DYNAMICS]
+    dynamics = [each for each in exported.functions if each.quantity == FORWARD]
     tangents = (
         tangent("dynamics_tangent", dynamics, layout.interface, OF_STATE),
         tangent("outputs_tangent", layout.outputs, layout.interface, OF_ALL),

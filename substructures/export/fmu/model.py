@@ -7,7 +7,8 @@ from math import prod
 
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu.tangents import directions
-from substructures.export.fmu.variables import DYNAMICS, TOLERANCE, Layout
+from substructures.export.fmu.variables import TOLERANCE, Layout
+from substructures.quantities.quantity import FORWARD
 
 _OF_ALL = "double t, const double *q, const double *qd, const double *qdd, const double *u, const double *p"
 _OF_STATE = "double t, const double *q, const double *qd, const double *u, const double *p"
@@ -38,7 +39,7 @@ def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) 
     sizes = [0] * layout.size
     for each in layout.variables:
         sizes[each.at] = each.size
-    dynamics = next(each for each in layout.exported.functions if each.quantity == DYNAMICS)
+    dynamics = next(each for each in layout.exported.functions if each.quantity == FORWARD)
     lines = ['#include "model.h"', "", f'#include "{core.name}.h"', "", "#include <string.h>", ""]
     lines += ["const unsigned FMU_SIZES[] = {", *_wrapped(map(str, sizes)), "};", ""]
     lines += ["void fmu_start(double *q, double *qd, double *u, double *p)", "{"]

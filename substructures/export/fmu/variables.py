@@ -15,14 +15,12 @@ from math import isfinite, prod
 from substructures.errors import InvalidArgument, MissingValue, TooLarge
 from substructures.export.exported import Exported, Function
 from substructures.export.interface import Interface
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.quantities.quantity import FORWARD, FRAMES, OUTPUTS, Array
 
 _NAME = re.compile(r"(der\()?[A-Za-z_]\w*(\.\w+)*\)?", re.ASCII)
-DYNAMICS = "forward_dynamics"
 #: most numbers of an instance
 MOST = 100_000
 TOLERANCE = 1e-8
-_UNITS = {"position": "m", "kinetic_energy": "J", "potential_energy": "J", "lagrangian": "J", "hamiltonian": "J"}
 
 
 @dataclass(frozen=True)
@@ -74,7 +72,7 @@ class Layout:
     @property
     def outputs(self) -> Sequence[Function]:
         """All functions but that of the accelerations."""
-        return [each for each in self.exported.functions if each.quantity != DYNAMICS]
+        return [each for each in self.exported.functions if each.quantity != FORWARD]
 
     @cached_property
     def begins(self) -> Mapping[str, int]:
@@ -139,18 +137,19 @@ class Layout:
         at = self.begins["y"]
         for function in self.outputs:
             for name, array in function.program.outputs.items():
-                for called, shape in self._apart(name, array.shape):
+                told = OUTPUTS.get(name, Array(name))
+                for called, shape in self._apart(told, array.shape):
                     unique = called if called not in taken else f"output.{called}"
                     taken.add(unique)
-                    yield Variable(unique, at, "output", _UNITS.get(name, ""), shape)
+                    yield Variable(unique, at, "output", told.unit, shape)
                     at += prod(shape)
 
-    def _apart(self, name: str, shape: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
+    def _apart(self, told: Array, shape: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
         """Of poses and velocities a variable for each frame."""
-        if name in KINEMATICS:
-            yield from ((f"{frame}.{name}", shape[1:]) for frame in self.interface.frames)
+        if told.axes[:1] == (FRAMES,):
+            yield from ((f"{frame}.{told.name}", shape[1:]) for frame in self.interface.frames)
         else:
-            yield name, shape
+            yield told.name, shape
 
 
 def _named(names: Sequence[str], units: Sequence[str]) -> Iterator[tuple[int, tuple[str, str]]]:
@@ -159,7 +158,7 @@ def _named(names: Sequence[str], units: Sequence[str]) -> Iterator[tuple[int, tu
 
 def layout_of(exported: Exported) -> Layout:
     """Raises InvalidArgument where there are no accelerations of a tree."""
-    if all(each.quantity != DYNAMICS for each in exported.functions):
+    if all(each.quantity != FORWARD for each in exported.functions):
         message = "an FMU needs the accelerations of a tree: make a tree of the part, which says gravity and mounts"
         raise InvalidArgument.at("/target", "not-a-tree", message)
     if not len(exported.interface.vectors["q"]):

@@ -13,17 +13,9 @@ from substructures.expr.replay import replay
 from substructures.interchange.difference.formulas import FormulaSet
 from substructures.part.outputs import OWN_INERTIA, inertia_bindings, over_formulas
 from substructures.part.part import INTERNAL, LEADING, Part
+from substructures.quantities.quantity import COORDINATES, FRAMES, OUTPUTS
 from substructures.tree.model import Model
 
-#: what the axes of the outputs of a tree mean; those that are left out are numbers
-AXES: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("gravity", "forces", "bias", "nonlinear_effects", "inverse_dynamics", "limits"), ("coordinate",)),
-    **dict.fromkeys(("linear_momentum", "angular_momentum"), ("coordinate",)),
-    **dict.fromkeys(("position", "rotation"), ("frame",)),
-    **dict.fromkeys(("U", "Omega"), ("frame", "coordinate")),
-    "metric": ("coordinate",) * 2,
-    "christoffel": ("coordinate",) * 3,
-}
 #: outputs of a tree that are made of others that are compared
 MADE = frozenset(("nonlinear_effects", "inverse_dynamics"))
 
@@ -48,13 +40,13 @@ def of_part(graph: Graph, part: Part) -> FormulaSet:
 def of_model(graph: Graph, model: Model) -> FormulaSet:
     """The formulas of a tree."""
     names = [name for name in model.program.outputs if name not in MADE and not name.startswith("closure")]
-    known = {"coordinate": model.coordinates, "frame": model.frames}
+    known = {COORDINATES: model.coordinates, FRAMES: model.frames}
 
     def labels(name: str) -> tuple[tuple[str, ...] | None, ...]:
         """Of the leading axes."""
         if name not in names:
             return ()
-        axes = [known[axis] for axis in AXES.get(name, ())]
+        axes = [known.get(axis) for axis in OUTPUTS[name].axes] if name in OUTPUTS else []
         return (*axes, *[None] * (len(model.program.outputs[name].shape) - len(axes)))
 
     symbols: dict[str, Symbol] = {symbol.name: symbol for symbol in model.program.symbols}

@@ -2,20 +2,32 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from substructures.array import Array
-from substructures.interchange.merge import Seat, vector
-from substructures.interchange.mjcf.geoms import Mass, mass_of, summed
+from substructures.interchange.merge import Seat, judge, vector
+from substructures.interchange.mjcf.geoms import Mass, UnknownMass, mass_of, summed
 from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation
-from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, decimal_of, is_zero, triple, value
-from substructures.interchange.report import Report, refuse
+from substructures.interchange.numbers import (
+    ONE,
+    ORIGIN,
+    ZERO,
+    Number,
+    Triple,
+    axis_of,
+    cleaned,
+    decimal_of,
+    direction,
+    is_zero,
+    triple,
+    undusted,
+    value,
+)
+from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Motion, MotionType, NamedFrame
 from substructures.interchange.rotations import from_z_axis, six_of, tensor, to_rpy
-from substructures.interchange.urdf import judge
 from substructures.interchange.xml import Node
 
 _MOTION: dict[str, MotionType] = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical", "free": "free"}
@@ -38,7 +50,10 @@ class Bodies:
     report: Report
     links: list[Link] = field(default_factory=list)
     frames: list[NamedFrame] = field(default_factory=list)
+    armatures: Mapping[str, Number] = field(default_factory=dict)  #: of actuators, by joint
+    dampings: Mapping[str, Number] = field(default_factory=dict)
     _joints: int = 0
+    _moving: set[str] = field(default_factory=set)
     _named: set[str] = field(default_factory=set)  #: names in the file, which nothing without a name gets
 
     def world(self, node: Node) -> None:
@@ -79,7 +94,7 @@ class Bodies:
         childclass = node.attributes.get("childclass", childclass)
         if float(value(node.number("gravcomp", ZERO))):
             message = "gravcomp, a force against gravity, is left out: add a load for it"
-            self.report.warning(node.place, message)
+            self.report.lost(node.place, message)
         seat = outer.beyond(self._seat(node))
         inside = list(self._inside(node, childclass, Seat()))
         motions = tuple(self._motion(child, inner) for child, inner in inside if child.tag in ("joint", "freejoint"))
@@ -87,10 +102,15 @@ class Bodies:
             raise refuse(node.place, "two-joints", "a free joint is the only one of its body")
         if parent is not None and any(m.type == "free" for m in motions):
             raise refuse(node.place, "free-joint", "only a body of the world may have a free joint")
-        inertial = self._inertial(node, inside)
+        if motions or parent in self._moving:
+            self._moving.add(name)
+        geoms = [(child, inner) for child, inner in inside if child.tag == "geom"]
+        unweighed = None if name in self._moving else self._unweighed(node, geoms)
+        inertial = self._inertial(node, geoms if unweighed is None else [])
         if any(m.type == "free" for m in motions):
             motions, inertial = self._rotor(motions, inertial)
-        self.links.append(Link(name, parent, node.place, seat.position, seat.rpy, motions, inertial))
+        made = Link(name, parent, node.place, seat.position, seat.rpy, motions, inertial)
+        self.links.append(replace(made, has_shape=bool(geoms), unweighed=unweighed))
         self._children(node, name, childclass, Seat())
 
     def _unnamed(self, name: str) -> str:
@@ -120,17 +140,20 @@ class Bodies:
         self._strict(node, kind)
         read = self._angle if kind == "revolute" else _plain
         laws = {key: self._law(node, key) for key in ("stiffness", "damping", "armature")}
+        laws["armature"] = _sum(laws["armature"], self.armatures.get(name, ZERO))
+        laws["damping"] = _sum(laws["damping"], self.dampings.get(name, ZERO))
         if kind in ("free", "spherical"):
             anchor = ORIGIN if kind == "free" else outer.point(triple(node.numbers("pos", 3, ORIGIN)))
             return Motion(name, kind, node.place, anchor=anchor, damping=laws["damping"], armature=laws["armature"])
         axis = triple(node.numbers("axis", 3, _Z))
         if all(map(is_zero, axis)):
             raise refuse(node.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
+        turned = Seat(ORIGIN, outer.rpy).point(axis)
         return Motion(
             name,
             kind,
             node.place,
-            axis=Seat(ORIGIN, outer.rpy).point(axis) if outer.is_turned else axis,
+            axis=direction([value(x) for x in turned]) if outer.is_turned else axis_of(triple(undusted(axis))),
             anchor=outer.point(triple(node.numbers("pos", 3, ORIGIN))) if kind == "revolute" else ORIGIN,
             offset=read(node.number("ref", ZERO)),
             rest=read(node.number("springref", ZERO)),
@@ -150,7 +173,9 @@ class Bodies:
             raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
         if value(node.number("frictionloss", ZERO)):
             message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
-            self.report.warning(node.place, message)
+            self.report.lost(node.place, message)
+        if value(node.number("springyield", ZERO)):
+            self.report.lost(node.place, "springyield is not read: the spring of the joint does not yield")
 
     def _law(self, node: Node, name: str) -> Number:
         """Stiffness, damping or armature; polynomials of higher order are refused."""
@@ -180,7 +205,21 @@ class Bodies:
         six = tuple(decimal_of(value(x) + (value(a) if i < 3 else 0)) for i, x in enumerate(inertial.inertia))
         return motions, replace(inertial, inertia=six)
 
-    def _inertial(self, node: Node, inside: list[tuple[Node, Seat]]) -> Inertial:
+    def _unweighed(self, node: Node, geoms: list[tuple[Node, Seat]]) -> Place | None:
+        """Where a body that does not move has a mass that is not known, and needs not be while nothing moves it."""
+        of_geoms = self.compiler.inertiafromgeom
+        if of_geoms == "false" or (of_geoms == "auto" and node.one("inertial") is not None):
+            return None
+        for geom, _ in geoms:
+            try:
+                mass_of(geom, self.compiler)
+            except UnknownMass:
+                message = "the mass of a mesh needs its file: it is left out, as the body does not move here"
+                self.report.lost(geom.place, message, "physics")
+                return geom.place
+        return None
+
+    def _inertial(self, node: Node, geoms: list[tuple[Node, Seat]]) -> Inertial:
         """As given or, as the compiler says, of the geoms."""
         given, of_geoms = node.one("inertial"), self.compiler.inertiafromgeom
         if given is not None and of_geoms != "true":
@@ -188,16 +227,15 @@ class Bodies:
         if of_geoms == "false":
             return Inertial()
         masses = []
-        for child, outer in inside:
-            mass = mass_of(child, self.compiler) if child.tag == "geom" else None
+        for child, outer in geoms:
+            mass = mass_of(child, self.compiler)
             if mass is not None:
                 masses.append(_moved(mass, outer))
         total = summed(masses)
         if total is None:
             return Inertial()
-        six = tuple(map(decimal_of, six_of(_clean(total.theta))))
-        com = _clean(total.com, 1e-16 * max(1.0, float(np.abs(total.com).max())))
-        return self._bounded(node, Inertial(decimal_of(total.m), vector(com), six))
+        own = Inertial(cleaned([total.m])[0], vector(total.com, total.size), cleaned(six_of(total.theta)))
+        return self._bounded(node, own)
 
     def _given(self, node: Node) -> Inertial:
         """Mass, and R I R^T of <inertial>."""
@@ -210,12 +248,16 @@ class Bodies:
         else:
             raise refuse(node.place, "missing-attribute", "'diaginertia' or 'fullinertia' is needed")
         if not np.array_equal(R, np.eye(3)):
-            six = tuple(map(decimal_of, six_of(_clean(R @ tensor([value(x) for x in six]) @ R.T))))
-        judge(node.place, mass, com, six, self.report)
+            six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
         return Inertial(mass, com, six)
 
     def _bounded(self, node: Node, own: Inertial) -> Inertial:
-        """With the least mass and moments that the compiler asks for."""
+        """With the least mass and moments that the compiler asks for, and judged as that."""
+        found = self._with_bounds(node, own)
+        judge(node.place, found.mass, found.com, found.inertia, self.report)
+        return found
+
+    def _with_bounds(self, node: Node, own: Inertial) -> Inertial:
         low_mass, low_moment = self.compiler.boundmass, self.compiler.boundinertia
         mass = own.mass if value(own.mass) >= low_mass else decimal_of(low_mass)
         moments, axes = np.linalg.eigh(tensor([value(x) for x in own.inertia]))
@@ -225,7 +267,7 @@ class Bodies:
             return replace(own, mass=mass)
         self.report.warning(node.place, "moments of inertia changed as <compiler> asks for", "physics")
         theta = axes @ np.diag(np.maximum(moments, low_moment)) @ axes.T
-        return Inertial(mass, own.com, tuple(map(decimal_of, six_of(theta))))
+        return Inertial(mass, own.com, cleaned(six_of(theta)))
 
 
 def _moved(mass: Mass, outer: Seat) -> Mass:
@@ -242,7 +284,5 @@ def _plain(x: Number) -> Number:
     return x
 
 
-def _clean(x: Array, least: float | None = None) -> Array:
-    """Without what is only rounding of products that cancel."""
-    bound = 1e-15 * float(np.abs(x).max(initial=0)) if least is None else least
-    return np.where(np.abs(x) < bound, 0.0, x)
+def _sum(a: Number, b: Number) -> Number:
+    return a if is_zero(b) else decimal_of(value(a) + value(b))

@@ -18,6 +18,7 @@ from decimal import Decimal
 import numpy as np
 
 from substructures.array import Array
+from substructures.errors import InvalidDocument
 from substructures.interchange.mjcf.settings import Compiler, orientation
 from substructures.interchange.numbers import ORIGIN, ZERO, value
 from substructures.interchange.report import refuse
@@ -36,10 +37,15 @@ class Mass:
     m: float
     com: Array
     theta: Array
+    size: float = 0.0  #: of the places that the mass centre was computed of
+
+
+class UnknownMass(InvalidDocument):
+    """The mass of a geom is in a file, or that of a shell."""
 
 
 def mass_of(geom: Node, compiler: Compiler) -> Mass | None:
-    """The mass of a geom, None where it has none. Raises InvalidDocument for a mesh that has one."""
+    """The mass of a geom, None where it has none. Raises UnknownMass for a mesh that has one."""
     kind = geom.attributes.get("type", "mesh" if "mesh" in geom.attributes else "sphere")
     low, high = compiler.inertiagrouprange
     given = "mass" in geom.attributes
@@ -47,10 +53,10 @@ def mass_of(geom: Node, compiler: Compiler) -> Mass | None:
     if kind in _MASSLESS or not low <= value(geom.number("group", ZERO)) <= high or not (mass if given else density):
         return None
     if geom.attributes.get("shellinertia", "false") == "true":
-        raise refuse(geom.place, "shell", "shellinertia is not read: give the body an <inertial>")
+        raise UnknownMass(refuse(geom.place, "shell", "shellinertia is not read: give the body an <inertial>").faults)
     if kind not in _SIZES or "mesh" in geom.attributes:
         message = f"the mass of a {kind[:20]} needs its file: give the body an <inertial>, or the geom mass='0'"
-        raise refuse(geom.place, "mesh-inertia", message)
+        raise UnknownMass(refuse(geom.place, "mesh-inertia", message).faults)
     size, centre, R = _placed(geom, kind, compiler)
     volume, unit = _shape(kind, *size)
     m = mass if given else density * volume
@@ -111,4 +117,4 @@ def summed(masses: list[Mass]) -> Mass | None:
     for one in masses:
         r = one.com - com
         theta += one.theta + one.m * ((r @ r) * np.eye(3) - np.outer(r, r))
-    return Mass(m, com, theta)
+    return Mass(m, com, theta, max(float(np.abs(one.com).max()) for one in masses))

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from substructures.array import Array
 from substructures.errors import among
-from substructures.interchange.bindings import mimic_of, single_coordinates
+from substructures.interchange.bindings import joints_of, mimic_of
 from substructures.interchange.merge import vector
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
@@ -14,6 +16,7 @@ from substructures.interchange.robot import Link, Loop, Mimic
 from substructures.interchange.rotations import from_quaternion, from_rpy, to_rpy
 from substructures.interchange.xml import Node
 
+WORLD = "world"
 #: R and position in the world
 Pose = tuple[Array, Array]
 
@@ -30,7 +33,7 @@ def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop,
                 continue  # see bindings_of
             elif node.tag not in ("connect", "weld"):
                 message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
-                report.warning(node.place, message, "topology")
+                report.lost(node.place, message, "topology")
             else:
                 name = node.attributes.get("name", f"loop{len(found) + 1}")
                 found.append(_loop(node, name, poses))
@@ -41,7 +44,7 @@ def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mi
     """The linear <joint> constraints that are active: q1 - ref1 = c0 + c1 (q2 - ref2)."""
     found: list[Mimic] = []
     refs = {motion.name: value(motion.offset) for link in links for motion in link.motions}
-    known = single_coordinates(links)
+    known = joints_of(links)
     for node in (each for section in root.all("equality") for each in section.all("joint")):
         if node.attributes.get("active", "true") == "false":
             continue
@@ -49,7 +52,7 @@ def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mi
         c = [*(value(x) for x in node.numbers("polycoef", None, (ZERO, ONE))), 0.0, 0.0, 0.0, 0.0, 0.0][:5]
         if second is None or any(c[2:]):
             message = "a joint held at a number, or bound by a polynomial, is left out: add a prescribed motion for it"
-            report.warning(node.place, message, "topology")
+            report.lost(node.place, message, "topology")
             continue
         shift = refs.get(first, 0.0) + c[0] - c[1] * refs.get(second, 0.0)
         factors = decimal_of(c[1]), decimal_of(shift)
@@ -59,7 +62,8 @@ def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mi
 
 def _poses(links: tuple[Link, ...]) -> dict[str | None, Pose]:
     """Where the bodies are at the start."""
-    poses: dict[str | None, Pose] = {None: (np.eye(3), np.zeros(3))}
+    still = np.eye(3), np.zeros(3)
+    poses: dict[str | None, Pose] = {None: still, WORLD: still}
     for link in links:
         R, r = poses[link.parent]
         poses[link.name] = R @ from_rpy(link.rpy), r + R @ [value(x) for x in link.position]
@@ -69,24 +73,36 @@ def _poses(links: tuple[Link, ...]) -> dict[str | None, Pose]:
 def _loop(node: Node, name: str, poses: dict[str | None, Pose]) -> Loop:
     if "site1" in node.attributes or "site2" in node.attributes:
         raise refuse(node.place, "not-read", "constraints between sites are not read: give body1, body2 and anchor")
-    first, second = node.text_of("body1"), node.attributes.get("body2")
+    first, second = node.text_of("body1"), node.attributes.get("body2", WORLD)
     for body in (first, second):
         if body not in poses:
             raise refuse(node.place, "unknown-link", f"there is no body '{body}'{among(body, filter(None, poses))}")
+    if first == second:
+        raise refuse(node.place, "same-body", f"both bodies are '{first}': name two")
     if node.tag == "connect":
         anchor = np.array([value(x) for x in node.numbers("anchor", 3)])
-        return _ball(name, first, second, anchor, poses)
-    return _weld(node, name, first, second, poses)
+        found = _ball(name, first, second, anchor, poses)
+    else:
+        found = _weld(node, name, first, second, poses)
+    return _to_world(found)
 
 
-def _ball(name: str, first: str, second: str | None, anchor: Array, poses: dict[str | None, Pose]) -> Loop:
+def _to_world(loop: Loop) -> Loop:
+    """With the world, which is no link, as the other end."""
+    if loop.link != WORLD:
+        return replace(loop, other=None) if loop.other == WORLD else loop
+    here, there = (loop.position, loop.rpy), (loop.other_position, loop.other_rpy)
+    return Loop(loop.name, loop.kind, str(loop.other), None, *there, *here)
+
+
+def _ball(name: str, first: str, second: str, anchor: Array, poses: dict[str | None, Pose]) -> Loop:
     """The anchor is given in the first body."""
     (R1, r1), (R2, r2) = poses[first], poses[second]
     other = R2.T @ (r1 + R1 @ anchor - r2)
     return Loop(name, "ball", first, second, vector(anchor), ORIGIN, vector(other), ORIGIN)
 
 
-def _weld(node: Node, name: str, first: str, second: str | None, poses: dict[str | None, Pose]) -> Loop:
+def _weld(node: Node, name: str, first: str, second: str, poses: dict[str | None, Pose]) -> Loop:
     """The pose of the second body in the first one: as given, or what it is at the start."""
     (R1, r1), (R2, r2) = poses[first], poses[second]
     R, r = R1.T @ R2, R1.T @ (r2 - r1)

@@ -5,21 +5,22 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import replace
 
+from substructures.interchange.known.mjcf import MJCF
+from substructures.interchange.mjcf.actuators import rotor_laws
 from substructures.interchange.mjcf.bodies import Bodies
 from substructures.interchange.mjcf.loops import bindings_of, loops_of
 from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
 from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
-from substructures.interchange.report import Report, refuse
+from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Robot, in_order
 from substructures.interchange.xml import Node, read_xml
 
 GRAVITY = "0 0 -9.81"
-_READ = ("compiler", "option", "default", "worldbody", "equality", "include")
+_READ = ("compiler", "option", "default", "worldbody", "equality", "include", "actuator")
 _IGNORED = {
     "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks, and meshes",
-    "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data", "actuator": "actuators: "
-    "every coordinate has the input tau.<coordinate>", "extension": "plugins",
+    "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data",
 }  # fmt: skip
 _MOST_INCLUDES = 100
 
@@ -33,12 +34,16 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         raise refuse(root.place, "not-mjcf", "the root of an MJCF file is <mujoco>")
     root = _with_included(root, {} if included is None else included, [])
     report = Report()
-    bodies = Bodies(Compiler.of(root), Defaults(root), report)
+    MJCF.tell(root, report)
+    defaults = Defaults(root)
+    bodies = Bodies(Compiler.of(root), defaults, report)
+    bodies.armatures, bodies.dampings = rotor_laws(root, defaults, report)
     for node in root.all("worldbody"):
         bodies.world(written_out(node, bodies.compiler))
     if not bodies.links:
         raise refuse(root.place, "no-links", "the file has no <body>")
     _tell_of_others(root, report)
+    gravity, place = _gravity(root, report)
     links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
     return Robot(
         root.attributes.get("model", ""),
@@ -47,7 +52,8 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         frames=tuple(bodies.frames),
         mimics=bindings_of(root, links, report),
         loops=loops_of(root, links, report),
-        gravity=_gravity(root, report),
+        gravity=gravity,
+        gravity_place=place,
     )
 
 
@@ -66,19 +72,25 @@ def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) 
     return replace(node, children=children)
 
 
-def _gravity(root: Node, report: Report) -> Triple:
-    """The last one that is given."""
-    found, place = GRAVITY.split(), root.place
+def _gravity(root: Node, report: Report) -> tuple[Triple, Place | None]:
+    """The last one that is given, and where; that of the format without any."""
+    found, place = GRAVITY.split(), None
     for node in root.all("option"):
-        found = node.attributes.get("gravity", " ".join(found)).split()
+        if "gravity" in node.attributes:
+            found, place = node.attributes["gravity"].split(), node.place
         for name in ("density", "viscosity"):
             if name in node.attributes and value(node.number(name)):
-                report.warning(node.place, f"forces of a fluid ({name}) are left out")
-        if any(flag.attributes.get("gravity") == "disable" for flag in node.all("flag")):
-            return ORIGIN
+                report.lost(node.place, f"forces of a fluid ({name}) are left out")
+        for flag in node.all("flag"):
+            for name in ("passive", "spring", "damper"):
+                if flag.attributes.get(name) == "disable":
+                    report.lost(flag.place, f"{name}='disable' is not read: springs and dampers of joints act here")
+            if flag.attributes.get("gravity") == "disable":
+                return ORIGIN, flag.place
+    here = root.place if place is None else place
     if len(found) != 3:
-        raise refuse(place, "wrong-length", "gravity needs 3 numbers")
-    return triple(tuple(number_of(x, place, "gravity") for x in found))
+        raise refuse(here, "wrong-length", "gravity needs 3 numbers")
+    return triple(tuple(number_of(x, here, "gravity") for x in found)), place
 
 
 def _tell_of_others(root: Node, report: Report) -> None:
@@ -92,18 +104,15 @@ def _tell_of_others(root: Node, report: Report) -> None:
                 _tell_of_tendon(tendon, report)
         elif node.tag == "deformable":
             raise refuse(node.place, "not-read", "deformable bodies have no relative coordinates")
-        else:
-            report.warning(node.place, f"<{node.tag[:40]}> is not known in <mujoco> and ignored")
-    for actuators in root.all("actuator"):
-        for node in actuators.children:
-            if any(value(x) for name in ("armature", "damping") for x in node.numbers(name, None, ())):
-                report.warning(node.place, "armature and damping of actuators are left out: give them to the joint")
+        elif node.tag == "extension":
+            for plugin in node.children:
+                report.lost(plugin.place, "what a plugin does is not known here: its forces are left out")
 
 
 def _tell_of_tendon(node: Node, report: Report) -> None:
     acting = [n for n in ("stiffness", "damping", "armature", "frictionloss") if n in node.attributes]
     if acting:
-        report.warning(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
+        report.lost(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
     else:
         report.ignored(node.place, "a tendon without stiffness and damping has no influence on the equations of motion")
 
@@ -112,6 +121,10 @@ def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:
     """All masses and moments scaled to a total mass, where one is asked for."""
     if total <= 0:
         return links
+    for link in links:
+        if link.unweighed is not None:
+            message = "the mass of a mesh needs its file, as all masses are scaled by settotalmass: give an <inertial>"
+            raise refuse(link.unweighed, "mesh-inertia", message)
     factor = total / sum(value(link.inertial.mass) for link in links)
     scaled = []
     for link in links:

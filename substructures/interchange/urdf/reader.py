@@ -7,13 +7,14 @@ are entries of the tensor, ixy = -integral of x y dm.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import dataclass
-
-import numpy as np
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, replace
 
 from substructures.errors import among, meant
 from substructures.interchange.bindings import mimic_of
+from substructures.interchange.known.check import acting
+from substructures.interchange.known.urdf import URDF
+from substructures.interchange.merge import judge
 from substructures.interchange.numbers import (
     ONE,
     ORIGIN,
@@ -21,29 +22,39 @@ from substructures.interchange.numbers import (
     Number,
     Triple,
     angle,
-    decimal_of,
+    axis_of,
+    cleaned,
+    direction,
     is_zero,
     triple,
+    undusted,
     value,
 )
-from substructures.interchange.report import Place, Report, refuse
+from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, Robot, in_order
 from substructures.interchange.rotations import from_rpy, from_z_axis, six_of, tensor
+from substructures.interchange.urdf.transmissions import armatures
 from substructures.interchange.xml import Node
 
 X_AXIS: Triple = (ONE, ZERO, ZERO)
 _MOTION: dict[str, MotionType] = {"revolute": "revolute", "continuous": "revolute", "prismatic": "prismatic"}
-_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar")
+_TYPES = ("revolute", "continuous", "prismatic", "fixed", "floating", "planar", "spherical")
+WORLD = "world"
 #: elements without influence on the equations of motion
 _SHOWN_ONLY = {
     "visual": "how it looks", "collision": "contacts", "contact": "contacts", "sensor": "sensors",
     "self_collision_checking": "contacts", "material": "colours", "gazebo": "what another program needs",
-    "transmission": "transmissions (rotor inertia would be the armature of a joint)", "ros2_control": "controllers",
-    "safety_controller": "controllers", "calibration": "calibration", "verbose": "what another program needs",
+    "ros2_control": "controllers", "safety_controller": "controllers", "calibration": "calibration",
+    "mujoco": "what another program needs", "collision_filter_group": "contacts", "frame": "frames",
 }  # fmt: skip
-_IN_ROBOT = ("link", "joint")
-_IN_LINK = ("inertial",)
-_IN_JOINT = ("origin", "parent", "child", "axis", "limit", "dynamics", "mimic")
+#: what other programs take as mechanics in their own elements, and the values with which it is none
+_ACTING: dict[str, tuple[str, ...]] = {
+    **dict.fromkeys(("springStiffness", "dampingFactor", "boundmass", "boundinertia"), ("0", "0.0", "")),
+    **dict.fromkeys(("turnGravityOff", "balanceinertia"), ("0", "false")),
+    **dict.fromkeys(("linear_bushing_rpy", "ball_constraint", "loop_joint", "loop"), ()),
+    "gravity": ("1", "true"), "inertia_scaling": ("1", "1.0"), "settotalmass": ("-1",),
+    "inertiafromgeom": ("false", "auto"),
+}  # fmt: skip
 
 
 @dataclass(frozen=True)
@@ -62,7 +73,8 @@ def read_urdf(root: Node) -> Robot:
     if root.tag != "robot":
         raise refuse(root.place, "not-urdf", "the root of a URDF file is <robot>")
     report = Report()
-    _tell_of_others(root, _IN_ROBOT, report)
+    URDF.tell(root, report)
+    _tell_of_others(root, report)
     links = {}
     for node in root.all("link"):
         name = node.text_of("name")
@@ -71,14 +83,24 @@ def read_urdf(root: Node) -> Robot:
         links[name] = node
     if not links:
         raise refuse(root.place, "no-links", "the robot has no <link>")
+    _with_world(root, links, report)
     joints = list(_joints(root, links))
     made = [_root(links, joints, report)]
     mimics: list[Mimic] = []
-    single = {joint.name for joint in joints if joint.type in _MOTION}
+    single = {joint.name: joint.type in _MOTION for joint in joints}
+    rotors = armatures(root, single, report)
     for joint in joints:
-        made += _links_of(joint, links[joint.child], report)
+        made.append(_link(joint, links[joint.child], rotors, report))
         mimics += _mimic(joint, single, report)
     return Robot(root.attributes.get("name", ""), in_order(made), report, mimics=tuple(mimics))
+
+
+def _with_world(root: Node, links: dict[str, Node], report: Report) -> None:
+    """The link 'world' is there without being written, where joints hang on it."""
+    ends = [end for joint in root.all("joint") for end in joint.all("parent") if end.attributes.get("link") == WORLD]
+    if ends and WORLD not in links:
+        links[WORLD] = Node("link", {"name": WORLD}, ends[0].line)
+        report.merged(ends[0].place, "the link 'world' is not in the file: it is the frame that the part stands on")
 
 
 def _joints(root: Node, links: dict[str, Node]) -> Iterator[_Joint]:
@@ -123,21 +145,25 @@ def _root(links: dict[str, Node], joints: list[_Joint], report: Report) -> Link:
     return Link(roots[0], None, node.place, inertial=_inertial(node, report))
 
 
-def _links_of(joint: _Joint, node: Node, report: Report) -> list[Link]:
-    """The child link of a joint; before it a massless one where the joint needs turned axes (planar)."""
-    _tell_of_others(joint.node, _IN_JOINT, report)
+def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Report) -> Link:
+    """The child link of a joint."""
+    _tell_of_others(joint.node, report)
     position, rpy = _origin(joint.node)
-    inertial = _inertial(node, report)
-    if joint.type == "fixed":
-        return [Link(joint.child, joint.parent, node.place, position, rpy, (), inertial)]
+    motions: tuple[Motion, ...] = ()
     if joint.type == "floating":
-        return [Link(joint.child, joint.parent, node.place, position, rpy, (_free(joint),), inertial)]
-    if joint.type == "planar":
-        return [Link(joint.child, joint.parent, node.place, position, rpy, _planar(joint), inertial)]
-    return [Link(joint.child, joint.parent, node.place, position, rpy, (_motion(joint, report),), inertial)]
+        motions = (Motion(joint.name, "free", joint.node.place),)
+    elif joint.type == "spherical":  # of Bullet and MuJoCo
+        motions = (Motion(joint.name, "spherical", joint.node.place),)
+    elif joint.type == "planar":
+        motions = _planar(joint)
+    elif joint.type != "fixed":
+        motions = (_motion(joint, rotors.get(joint.name, ZERO), report),)
+    is_shown = any(node.all("visual", "collision"))
+    inertial = _inertial(node, report)
+    return Link(joint.child, joint.parent, node.place, position, rpy, motions, inertial, joint.name, is_shown)
 
 
-def _motion(joint: _Joint, report: Report) -> Motion:
+def _motion(joint: _Joint, armature: Number, report: Report) -> Motion:
     """A joint of one degree of freedom."""
     node = joint.node
     kind = _MOTION[joint.type]
@@ -147,19 +173,16 @@ def _motion(joint: _Joint, report: Report) -> Motion:
         damping = dynamics.number("damping", ZERO)
         if not is_zero(dynamics.number("friction", ZERO)):
             message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
-            report.warning(dynamics.place, message)
-    return Motion(joint.name, kind, place, _axis(node), damping=damping, limits=_limits(joint, report))
-
-
-def _free(joint: _Joint) -> Motion:
-    return Motion(joint.name, "free", joint.node.place)
+            report.lost(dynamics.place, message)
+    made = Motion(joint.name, kind, place, _axis(node), damping=damping, armature=armature)
+    return replace(made, limits=_limits(joint, report))
 
 
 def _planar(joint: _Joint) -> tuple[Motion, ...]:
     """Along two axes across the given one, then about it."""
     n = _axis(joint.node)
     R = from_z_axis([value(x) for x in n])
-    along = [triple(tuple(decimal_of(float(x)) for x in R[:, i])) for i in (0, 1)]
+    along = [direction(R[:, i].tolist()) for i in (0, 1)]
     place = joint.node.place
     return (
         Motion(f"{joint.name}_1", "prismatic", place, along[0]),
@@ -175,7 +198,7 @@ def _axis(node: Node) -> Triple:
     xyz = triple(axis.numbers("xyz", 3, X_AXIS))
     if all(map(is_zero, xyz)):
         raise refuse(axis.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
-    return xyz
+    return axis_of(triple(undusted(xyz)))
 
 
 def _limits(joint: _Joint, report: Report) -> tuple[Number, Number] | None:
@@ -191,7 +214,7 @@ def _limits(joint: _Joint, report: Report) -> tuple[Number, Number] | None:
     return low, high
 
 
-def _mimic(joint: _Joint, single: set[str], report: Report) -> list[Mimic]:
+def _mimic(joint: _Joint, single: Mapping[str, bool], report: Report) -> list[Mimic]:
     node = joint.node.one("mimic")
     if node is None:
         return []
@@ -207,12 +230,12 @@ def _origin(node: Node) -> tuple[Triple, Triple]:
     if "quat_xyzw" in origin.attributes:
         raise refuse(origin.place, "unknown-attribute", "'quat_xyzw' is not in URDF 1.1: give rpy")
     roll, pitch, yaw = map(angle, origin.numbers("rpy", 3, ORIGIN))
-    return triple(origin.numbers("xyz", 3, ORIGIN)), (roll, pitch, yaw)
+    return triple(undusted(origin.numbers("xyz", 3, ORIGIN))), (roll, pitch, yaw)
 
 
 def _inertial(node: Node, report: Report) -> Inertial:
     """Mass, mass centre, and R I R^T."""
-    _tell_of_others(node, _IN_LINK, report)
+    _tell_of_others(node, report)
     inertial = node.one("inertial")
     if inertial is None:
         return Inertial()
@@ -222,46 +245,31 @@ def _inertial(node: Node, report: Report) -> Inertial:
     mass = mass_of.number("value")
     com, rpy = _origin(inertial)
     if inertia_of is None:
-        report.warning(inertial.place, "no <inertia>: the link is a point mass", "physics")
+        report.lost(inertial.place, "no <inertia>: the link is a point mass", "physics")
         return Inertial(mass, com)
-    six = (
+    six: tuple[Number, ...] = (
         *(inertia_of.number(name) for name in ("ixx", "iyy", "izz")),
         *(inertia_of.number(name, ZERO) for name in ("ixy", "ixz", "iyz")),
     )
+    six = undusted(six)
     if not all(map(is_zero, rpy)):
         R = from_rpy(rpy)
-        six = tuple(map(decimal_of, six_of(R @ tensor([value(x) for x in six]) @ R.T)))
+        six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
     judge(inertial.place, mass, com, six, report)
     return Inertial(mass, com, six)
 
 
-def judge(place: Place, mass: Number, com: Triple, six: tuple[Number, ...], report: Report) -> None:
-    """Warn of masses and tensors that no rigid body can have, and of mass centres that are far away."""
-    m, numbers = value(mass), [value(x) for x in six]
-    if m < 0:
-        raise refuse(place, "negative-mass", f"the mass {mass} kg is negative")
-    moments = np.linalg.eigvalsh(tensor(numbers))
-    largest = max(float(np.abs(moments).max()), 1e-300)
-    if moments[0] < -1e-9 * largest or moments[0] + moments[1] < moments[2] * (1 - 1e-9):
-        shown = ", ".join(f"{x:.4g}" for x in moments)
-        report.warning(
-            place, f"no rigid body has the principal moments {shown} kg m^2 (triangle inequality)", "physics"
-        )
-    if m == 0 and any(numbers):
-        report.warning(place, "a moment of inertia without a mass", "physics")
-    distance = float(np.linalg.norm([value(x) for x in com]))
-    if m > 0 and distance > 10 and distance**2 * m > 100 * largest:
-        report.warning(place, f"the mass centre is {distance:.3g} m away: are these millimetres?", "physics")
-
-
-def _tell_of_others(node: Node, known: tuple[str, ...], report: Report) -> None:
-    """One remark for every kind of element that is not read here."""
+def _tell_of_others(node: Node, report: Report) -> None:
+    """One remark for every kind of element that is known and not read here; each thing in them that acts is told."""
     told: set[str] = set()
     for child in node.children:
-        if child.tag in known or child.tag in told:
+        if child.tag not in _SHOWN_ONLY and child.tag not in _ACTING:
             continue
-        told.add(child.tag)
-        if child.tag in _SHOWN_ONLY:
+        found = list(acting(child, _ACTING))
+        for each in found:
+            report.lost(
+                each.place, f"<{each.tag}> of <{child.tag}> is not read: what it says of the mechanics is left out"
+            )
+        if not found and child.tag not in told and child.tag in _SHOWN_ONLY:
+            told.add(child.tag)
             report.ignored(child.place, f"{_SHOWN_ONLY[child.tag]}: no influence on the equations of motion")
-        else:
-            report.warning(child.place, f"<{child.tag[:40]}> is not known in <{node.tag[:40]}> and ignored")

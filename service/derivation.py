@@ -1,0 +1,88 @@
+"""What is stored of documents, derived from them alone: pure functions of bytes, and which software does it.
+
+A store never believes formulas that come with a document. It holds what these functions made of it, with the name of
+the software that did (:func:`software`); what another version made is made anew.
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping
+from functools import lru_cache
+from importlib.resources import files
+from importlib.resources.abc import Traversable
+from typing import Any
+
+from substructures.documents import read_json, write_json
+from substructures.part.definition import Definition
+from substructures.part.part import MAX_NODES, Part, derive
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model, couple
+from substructures.tree.published import Publication, published
+from substructures.tree.published_formulas import published_part
+
+#: packages of the science that formulas and certificates come from
+SOURCES = ("certificate", "documents", "expr", "mechanics", "part", "tree")
+NAMED = 16  # characters
+
+
+@lru_cache(maxsize=1)
+def software() -> str:
+    """The name of the software that derives here: a digest of its source, so that no two versions share it."""
+    found, root = hashlib.sha256(), files("substructures")
+    for package in SOURCES:
+        for name, text in _modules(root / package, package):
+            found.update(f"{name}\n{len(text)}\n".encode() + text)
+    return found.hexdigest()[:NAMED]
+
+
+def _modules(folder: Traversable, path: str) -> list[tuple[str, bytes]]:
+    found: list[tuple[str, bytes]] = []
+    for each in sorted(folder.iterdir(), key=lambda each: each.name):
+        name = f"{path}/{each.name}"
+        if each.is_dir():
+            found += _modules(each, name)
+        elif each.name.endswith(".py"):
+            found.append((name, each.read_bytes()))
+    return found
+
+
+def derived_part(definition: bytes, recipe: str | None = None, max_nodes: int = MAX_NODES) -> Part:
+    """The part of a stored definition. ``recipe``: of a part that is a published tree (:func:`recipe_of`).
+
+    Raises as :func:`substructures.part.part.derive`.
+    """
+    wanted = Definition.stored(read_json(definition))
+    found = None if recipe is None else _published(wanted, read_json(recipe.encode()), max_nodes)
+    return derive(wanted, max_nodes, is_stored=True) if found is None else found
+
+
+def _published(wanted: Definition, recipe: Mapping[str, Any], max_nodes: int) -> Part | None:
+    """The part coupled of its instances; None where the recipe is that of another definition."""
+    spec = TreeSpec.stored(recipe["tree"])
+    parts = {
+        name: derived_part(write_json(each["definition"]), each.get("recipe"), max_nodes)
+        for name, each in recipe["parts"].items()
+    }
+    how = Publication(recipe["about"], recipe["ports"], tuple(recipe["free"]), recipe["defaults"])
+    found = published(spec, parts, how)
+    return published_part(found, parts, max_nodes) if found.definition.digest == wanted.digest else None
+
+
+def recipe_of(spec: TreeSpec, parts: Mapping[str, Part], recipes: Mapping[str, str | None], how: Publication) -> str:
+    """All that the formulas of a published tree follow from: its document, the definitions of its instances (with their
+    ``recipes``, where these are published trees themselves), and what was asked for.
+    """
+    told = {
+        name: {"definition": read_json(part.definition.canonical()), "recipe": recipes.get(name)}
+        for name, part in parts.items()
+    }
+    ports = None if how.ports is None else dict(how.ports)
+    asked = {"about": dict(how.about), "ports": ports, "free": list(how.free), "defaults": dict(how.defaults)}
+    return write_json({"tree": read_json(spec.canonical()), "parts": told, **asked}).decode()
+
+
+def coupled_tree(document: bytes, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> tuple[TreeSpec, Model]:
+    """A stored tree and its model; ``parts``: by instance. Raises as :func:`substructures.tree.model.couple`."""
+    spec = TreeSpec.stored(read_json(document))
+    return spec, couple(spec, parts, max_nodes)

@@ -1,0 +1,177 @@
+"""Parts and trees of a store derived anew from their documents, and written over what is stored of them.
+
+It is done for what this server has not derived itself (a store that came from elsewhere, or from before seals), for
+what is damaged, and for what another version of the software derived: on request for what is asked for, and in the
+background for the rest (:mod:`service.renewing`). Documents never change, nor do their digests.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from service.database.connections import Connection, Database
+from service.database.packed import pack
+from service.derivation import coupled_tree, derived_part, software
+from service.integrity import checked, digest_of
+from service.operations.catalogue import mend_part
+from service.queries import audit, catalogue, content, trees
+from service.queries.trees import Tree
+from service.refusals import Refused
+from service.summaries import PartContent, part_content, tree_summary
+from service.viewer import CONSOLE, OPEN, SCOPES, Viewer
+from substructures.documents import read_json
+from substructures.expr.program import Program
+from substructures.part.definition import Definition
+from substructures.part.part import MAX_NODES, Part
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
+
+#: who works on a store directly
+OPERATOR = Viewer(CONSOLE, OPEN, SCOPES)
+
+
+@dataclass(frozen=True, slots=True)
+class CoupledAnew:
+    """A revision as it has to be stored, its model, and the digests of its parts by instance."""
+
+    tree: Tree
+    model: Model
+    parts: Mapping[str, str]
+
+    @property
+    def program(self) -> Program:
+        """Of the model."""
+        return self.model.program
+
+
+def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES) -> tuple[Part, PartContent]:
+    """A part derived of its stored definition, and what has to be stored of it. Raises ValueError, Refused for a
+    definition that is gone or damaged, and as :func:`substructures.part.part.derive`.
+    """
+    definition = content.get_definition(connection, digest)
+    if definition is None:
+        raise ValueError("its definition is gone from the store; submit it again")
+    recipe = content.get_recipe(connection, digest)
+    part = derived_part(definition, recipe, max_nodes)
+    return part, part_content(part, recipe)
+
+
+def tree_anew(connection: Connection, name: str, revision: int, max_nodes: int = MAX_NODES) -> CoupledAnew:
+    """A revision coupled of its stored document, and of its parts as they are stored; one that is not as this software
+    derives it is derived. Raises as :func:`part_anew`.
+    """
+    tree, spec = read_tree(connection, name, revision)
+    definitions = stored_definitions(connection, spec)
+    parts = {each: _newest(connection, definition, max_nodes) for each, definition in definitions.items()}
+    spec, model = coupled_tree(tree.spec.encode(), parts, max_nodes)
+    summary = tree_summary(spec, model)
+    made: dict[str, Any] = {"dof": model.dof, "joints": model.joints, "mass": Plausibility(spec, definitions).mass}
+    made |= {"program": model.program.digest, "summary": summary.decode(), "summary_digest": digest_of(summary)}
+    digests = {each: definition.digest for each, definition in definitions.items()}
+    return CoupledAnew(replace(tree, **made), model, digests)
+
+
+def _newest(connection: Connection, definition: Definition, max_nodes: int) -> Part:
+    try:
+        stored = content.get_part(connection, definition.digest)
+    except Refused:  # damaged
+        stored = None
+    if stored is not None and stored.is_derived and stored.software == software():
+        return Part.load(definition, stored.program, read_json(stored.certificate))
+    recipe = content.get_recipe(connection, definition.digest)
+    return derived_part(definition.canonical(), recipe, max_nodes)
+
+
+def read_tree(connection: Connection, name: str, revision: int) -> tuple[Tree, TreeSpec]:
+    """A revision whose document is sound, whatever else is stored of it. Raises ValueError, Refused."""
+    tree = trees.get_damaged(connection, name, revision)
+    if tree is None:
+        raise ValueError("it is gone from the store")
+    checked("its document", tree.digest, tree.spec.encode())
+    return tree, TreeSpec.stored(read_json(tree.spec.encode()))
+
+
+def stored_definitions(connection: Connection, spec: TreeSpec) -> Mapping[str, Definition]:
+    """What every instance is. Raises ValueError for what is gone."""
+    found = {}
+    for instance in spec.instances:
+        digest = (instance.substructure or "").partition("@")[2]
+        text = None if instance.definition is not None else content.get_definition(connection, digest)
+        if text is None and instance.definition is None:
+            raise ValueError(f"the definition {digest} of '{instance.name}' is gone from the store")
+        found[instance.name] = instance.definition or Definition.stored(read_json(text or b""))
+    return found
+
+
+def renew_part(database: Database, digest: str, max_nodes: int = MAX_NODES, viewer: Viewer = OPERATOR) -> PartContent:
+    """Derive a part anew, and write it over what is stored under its digest. Raises as :func:`part_anew`.
+
+    The old program stays under its digest, for items of jobs that are queued with it, if this server derived it.
+    """
+    with database.read() as connection:
+        row = content.get_row(connection, digest)
+        before, is_ours = row["program"], row["seal"] == content.seal_of_part(connection, row)
+        made = part_anew(connection, digest, max_nodes)[1]
+    with database.write() as connection:
+        mend_part(connection, made)
+        catalogue.show_again(connection, digest)
+        if made.row["program"] != before:
+            if not is_ours:
+                content.forget_program(connection, before)
+            audit.note(connection, viewer, "substructure.renew", digest, program=made.row["program"], was=before)
+    return made
+
+
+def renew_tree(
+    database: Database, name: str, revision: int, max_nodes: int = MAX_NODES, viewer: Viewer = OPERATOR
+) -> CoupledAnew:
+    """Couple a revision anew, of parts that are derived anew where they need it, and write it over what is stored.
+
+    Raises as :func:`tree_anew`.
+    """
+    for digest in _stale_parts_of(database, name, revision):
+        renew_part(database, digest, max_nodes, viewer)
+    with database.read() as connection:
+        was = read_tree(connection, name, revision)[0]
+        before = was.program
+        found = tree_anew(connection, name, revision, max_nodes)
+    packed, nodes = pack(found.program), len(found.program)
+    with database.write() as connection:
+        content.replace_program(connection, found.program.digest, packed, nodes)
+        trees.replace_model(connection, found.tree)
+        trees.put_parts(connection, name, revision, found.parts)
+        if found.program.digest != before:
+            if not was.is_derived:
+                content.forget_program(connection, before)
+            told = {"program": found.program.digest, "was": before}
+            audit.note(connection, viewer, "tree.renew", f"{name}@{revision}", **told)
+    return found
+
+
+def _stale_parts_of(database: Database, name: str, revision: int) -> list[str]:
+    """The digests of the stored parts of a revision that are not as this software derives them."""
+    with database.read() as connection:
+        definitions = stored_definitions(connection, read_tree(connection, name, revision)[1])
+        digests = dict.fromkeys(definition.digest for definition in definitions.values())
+        return [digest for digest in digests if not is_part_newest(connection, digest)]
+
+
+def is_part_newest(connection: Connection, digest: str) -> bool:
+    """Whether a part is as this software derives it, or not there at all."""
+    try:
+        stored = content.get_part(connection, digest)
+    except Refused:
+        return False
+    return stored is None or (stored.is_derived and stored.software == software())
+
+
+def is_tree_newest(connection: Connection, name: str, revision: int, is_older_good: bool = False) -> bool:
+    """Whether a revision is as this server has coupled it, with this software or, if that is ``good``, another one."""
+    tree = trees.get_damaged(connection, name, revision)
+    if tree is None:
+        return True
+    is_sound = tree.is_derived and digest_of(tree.summary.encode()) == tree.summary_digest
+    return is_sound and (is_older_good or tree.software == software())

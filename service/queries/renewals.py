@@ -1,0 +1,36 @@
+"""Which software has derived all of a store anew, under a seal, and how far another one is."""
+
+from __future__ import annotations
+
+from sqlalchemy import Connection, delete, insert, select
+
+from service.database.seals import seal
+from service.database.tables import renewals
+from service.derivation import software
+from service.queries.common import now
+from service.queries.content import count_parts
+from service.queries.trees import count_revisions
+
+
+def is_done(connection: Connection) -> bool:
+    """Whether this software has looked at all parts and trees of this store."""
+    found = connection.execute(select(renewals.c.seal).where(renewals.c.software == software())).scalar()
+    return found == _seal(connection)
+
+
+def note(connection: Connection) -> None:
+    """Note that it has."""
+    connection.execute(delete(renewals))
+    connection.execute(insert(renewals), {"software": software(), "seal": _seal(connection), "ended": now()})
+
+
+def progress(connection: Connection) -> tuple[int, int] | None:
+    """How many parts and trees are as this software derives them, and of how many; None when it has looked at all."""
+    if is_done(connection):
+        return None
+    parts, trees = count_parts(connection), count_revisions(connection)
+    return parts[0] + trees[0], parts[1] + trees[1]
+
+
+def _seal(connection: Connection) -> str:
+    return seal(connection, ["renewal", software()])

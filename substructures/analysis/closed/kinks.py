@@ -1,0 +1,88 @@
+"""Kinks of given motions: where a motion or its velocity jumps, the force of its actuator would have to be infinite."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from typing import Any
+
+import numpy as np
+import scipy
+
+from substructures.array import Array
+from substructures.errors import InvalidArgument
+
+#: a jump is more than this part of the greatest change or velocity
+JUMP = 1e-6
+#: how near to a kink both of its sides are looked at, as a part of the time
+BESIDE = 1e-12
+#: times at which signs are looked at
+LOOKS = 2001
+
+#: columns (K, k) at times (K,)
+Columns = Callable[[Array], Array]
+
+
+def require_smooth_table(curve: Any, span: tuple[float, float], pointer: str, unit: str) -> Any:
+    """The part of a piecewise polynomial (scipy.interpolate.PPoly, in ``unit``) that a span needs.
+
+    Raises InvalidArgument (``kink``) where it or its slope jumps there.
+    """
+    start, end = span
+    slope = curve.derivative()
+    sizes = JUMP * np.array([np.ptp(curve(curve.x)), np.abs(slope(curve.x)).max()])
+    for k, t in enumerate(curve.x[1:-1].tolist()):
+        if start < t < end or start == t == end:
+            before = [np.polyval(each.c[:, k], t - curve.x[k]) for each in (curve, slope)]
+            _require(t, np.array(before), np.array([curve(t), slope(t)]), sizes, f"{pointer}/interpolation", unit)
+    first = int(np.searchsorted(curve.x[1:-1], start, side="right"))
+    last = max(first, int(np.searchsorted(curve.x[1:-1], end, side="left")))
+    return scipy.interpolate.PPoly(curve.c[:, first : last + 1], curve.x[first : last + 2])
+
+
+def require_smooth(motion: Columns, places: Columns, span: tuple[float, float], pointer: str, unit: str) -> None:
+    """Raises InvalidArgument (``kink``) where a motion or its velocity jumps within the span or at its ends.
+
+    ``motion``: s, s', s'' [``unit``; s]; ``places``: what changes sign where there may be a kink.
+    """
+    start, end = span
+    h = BESIDE * max(1.0, abs(start), abs(end))
+    times = np.linspace(start - h, end + h, LOOKS if end > start else 3)
+    changes = np.abs(motion(times) - [motion(times[:1])[0, 0], 0, 0])
+    greatest = np.where(np.isfinite(changes), changes, 0).max(axis=0)
+    for a, b in _changes(places, times, h):
+        before, after = motion(np.array([a, b]))[:, :2]
+        # what is more than a smooth motion changes by
+        t = (a + b) / 2
+        _require(
+            t if abs(t) > 4 * h else 0.0, before, after, JUMP * greatest[:2] + 4 * (b - a) * greatest[1:], pointer, unit
+        )
+
+
+def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, float]]:
+    """Times less than 4 h apart between which a place changes its sign."""
+    signs = np.sign(places(times))
+    for k in range(signs.shape[1]):
+        there = np.flatnonzero(np.abs(signs[:, k]) == 1)
+        for i, j in zip(there[:-1], there[1:], strict=True):
+            if signs[i, k] != signs[j, k]:
+                a, b = float(times[i]), float(times[j])
+                while b - a > 4 * h:
+                    middle = (a + b) / 2
+                    sign = float(np.sign(places(np.array([middle]))[0, k]))
+                    # the place itself has no side
+                    a, b = (middle - h, middle + h) if not sign else (middle, b) if sign == signs[i, k] else (a, middle)
+                yield a, b
+
+
+def _require(t: float, before: Array, after: Array, allowed: Array, pointer: str, unit: str) -> None:
+    """``before``, ``after``: value and velocity on both sides of t."""
+    for what, unit_of, a, b, most in zip(
+        ("it", "its velocity"), (unit, f"{unit}/s"), before, after, allowed, strict=True
+    ):
+        if abs(b - a) > most:
+            message = (
+                f"the given motion has a kink at t = {t:.6g} s: {what} jumps from {a:.6g} to {b:.6g} {unit_of}, which "
+                "takes an infinite force; round it, as tables are whose 'interpolation' is 'cubic' or 'quintic' (or not "
+                "given), or end the span there and begin anew with the state and the motion after it"
+            )
+            raise InvalidArgument.at(pointer, "kink", message)

@@ -1,0 +1,149 @@
+"""Velocities of coordinates that are changed on the way, where those at hand determine the others badly.
+
+With constraints B q' = 0 and velocities v of some coordinates, B_z z' = -B_v v for the others z. A blade that has turned
+by a right angle is as well described by the other coordinate; no choice holds in all positions. How good one is at a
+position is the smallest singular value of B_z there over that of B. The state is x = (q, q', work) for all choices.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from substructures.analysis.motion.reduced_motion import ReducedMotion
+from substructures.analysis.motion.steppers import Stepper, within
+from substructures.array import Array
+from substructures.expr.interpret import interpret
+
+#: a choice is given up where it is worse than this, and the best one there is taken
+WORN = 0.3
+
+
+class VelocityChoices:
+    """The choices that were made along a motion, the ``first`` of them; ``make``: the motion in the velocities of the
+    coordinates that are named, None where the first choice stays, and states are y = (q, v, work) of it.
+    """
+
+    def __init__(self, first: ReducedMotion, make: Callable[[Sequence[str]], ReducedMotion] | None) -> None:
+        self.first, self.make = first, make
+        self.known: dict[tuple[str, ...], ReducedMotion] = {first.equations.velocities: first}
+        self._between: tuple[float, float] | None = None
+
+    @property
+    def rates(self) -> int:
+        """How many velocities are in a state."""
+        return self.first.p if self.make is None else self.first.n
+
+    def enter(self, start: float, end: float) -> None:
+        """Told the times between which states are next."""
+        self._between = start, end
+        for motion in self.known.values():
+            motion.inputs.enter(start, end)
+
+    def leave(self) -> None:
+        """Any time again."""
+        self._between = None
+        for motion in self.known.values():
+            motion.inputs.leave()
+
+    def begun(self, t: float, y: Array) -> Array:
+        """The state of y of the first choice."""
+        return y if self.make is None else self.first.full(t, y)
+
+    def state(self, t: float, x: Array) -> Array:
+        """(q, q') of a state."""
+        return self.first.state(t, x) if self.make is None else x[:-1]
+
+    def stepper(self, make: Stepper) -> Stepper:
+        """Of states, by an integrator of y."""
+        if self.make is None:
+            return make
+        return lambda _, t, x, end, **__: ChangingStepper(self, make, t, x, end)
+
+    def pieces(self, x: Array) -> list[tuple[ReducedMotion, NDArray[np.int64], Array]]:
+        """States (K, N) by the choice that is best at them: their places, and y there."""
+        if self.make is None:
+            return [(self.first, np.arange(len(x)), x)]
+        best = [self.at(state) for state in x]
+        found = []
+        for motion in dict.fromkeys(best):
+            places = np.flatnonzero([one is motion for one in best])
+            found.append((motion, places, np.array([motion.reduced(state) for state in x[places]])))
+        return found
+
+    def good(self, x: Array, motion: ReducedMotion) -> bool:
+        """Whether a choice may be kept at a state."""
+        return self._share(self._constraints(x), motion) >= WORN
+
+    def at(self, x: Array) -> ReducedMotion:
+        """The best choice at a state, of those that are known if one of them is good."""
+        B = self._constraints(x)
+        shares = {motion: self._share(B, motion) for motion in self.known.values()}
+        best = max(shares, key=lambda motion: shares[motion])
+        return best if shares[best] >= WORN else self._new(B)
+
+    def _new(self, B: Array) -> ReducedMotion:
+        """The choice by QR with pivoting of B."""
+        names = self.first.equations.model.coordinates
+        others = scipy.linalg.qr(B, mode="economic", pivoting=True)[2][: len(B)]
+        chosen = tuple(name for a, name in enumerate(names) if a not in others)
+        key = tuple(f"{name}'" for name in chosen)
+        if key not in self.known and self.make is not None:
+            self.known[key] = self.make(chosen)
+            if self._between is not None:
+                self.known[key].inputs.enter(*self._between)
+        return self.known[key]
+
+    def _constraints(self, x: Array) -> Array:
+        """B (m, n)."""
+        names = self.first.equations.model.coordinates
+        values = self.first.conditions.values | dict(zip(names, x[: len(names)].tolist(), strict=True))
+        return interpret(self.first.equations.program, values, ["constraints"])["constraints"]
+
+    @staticmethod
+    def _share(B: Array, motion: ReducedMotion) -> float:
+        names = [f"{name}'" for name in motion.equations.model.coordinates]
+        z = [a for a, name in enumerate(names) if name not in motion.equations.velocities]
+        least = float(scipy.linalg.svdvals(B)[-1])
+        return float(scipy.linalg.svdvals(B[:, z])[-1]) / least if least else 0.0
+
+
+class ChangingStepper:
+    """Steps of states x = (q, q', work); the attributes are those of scipy.integrate.OdeSolver."""
+
+    def __init__(self, choices: VelocityChoices, make: Stepper, t: float, x: Array, end: float) -> None:
+        self.choices, self.make, self.end = choices, make, end
+        self.t = self.t_old = t
+        self.y, self.status, self._counted = x, "running", 0
+        self._begin({})
+
+    def _begin(self, step: dict[str, float]) -> None:
+        self.motion = self.choices.at(self.y)
+        self.inner: Any = self.make(self.motion.rates, self.t, self.motion.reduced(self.y), self.end, **step)
+
+    @property
+    def nfev(self) -> int:
+        """Evaluations of the right-hand side."""
+        return self._counted + int(self.inner.nfev)
+
+    def step(self) -> str | None:
+        """Advance by one step, at most to the end; a message when that failed."""
+        if not self.choices.good(self.y, self.motion):
+            self._counted += self.inner.nfev
+            first = getattr(self.inner, "h_abs", None)
+            self._begin({} if first is None else {"first_step": min(float(first), self.end - self.t)})
+        self.t_old = self.t
+        message: str | None = self.inner.step()
+        self.status = self.inner.status
+        if self.status != "failed":
+            self.t, self.y = float(self.inner.t), self.motion.full(self.inner.t, self.inner.y)
+        return message
+
+    def dense_output(self) -> Callable[[float], Array]:
+        """States within the last step."""
+        motion, dense = self.motion, within(self.inner, self.make)
+        return lambda t: motion.full(t, dense(t))

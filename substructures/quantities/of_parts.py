@@ -1,0 +1,59 @@
+"""What is derived of the parts of a tree beside its model: formed, bounded, and certified from the documents."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+from substructures.errors import TooLarge
+from substructures.expr.program import Formulas, Program, program
+from substructures.part.part import Part
+from substructures.tree.assembly import Assembly, assemble, division_by_zero
+from substructures.tree.certificate import RowsExpected, certify_rows
+from substructures.tree.document import TreeSpec
+
+#: outputs, and the names of their rows
+Rows = tuple[Mapping[str, Formulas], Sequence[str]]
+
+
+@dataclass(frozen=True)
+class OfParts:
+    """Formulas with their rows along ``axis``; ``parameters``: those of the tree, by name."""
+
+    program: Program
+    rows: tuple[str, ...]
+    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    axis: ClassVar[str] = ""
+
+    @property
+    def labels(self) -> Mapping[str, Any]:
+        """Names of places by axis."""
+        return {self.axis: self.rows} if self.axis else {}
+
+
+def formed(
+    what: str,
+    spec: TreeSpec,
+    parts: Mapping[str, Part],
+    make: Callable[[Assembly], Rows],
+    expected: RowsExpected,
+    max_nodes: int,
+) -> tuple[Program, tuple[str, ...], Mapping[str, Mapping[str, Any]]]:
+    """The program of what ``make`` gives for the parts of a tree, its rows, and the parameters of the tree.
+
+    Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
+    VerificationFailed unless every element is what ``expected`` makes of the documents.
+    """
+    assembly = assemble(spec, parts)
+    try:
+        outputs, rows = make(assembly)
+    except ZeroDivisionError:
+        raise division_by_zero(spec, assembly) from None
+    result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    if len(result) > max_nodes:
+        raise TooLarge(f"the {what} (in operations)", len(result), max_nodes)
+    multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
+    definitions = {name: part.definition for name, part in parts.items()}
+    certify_rows(what, spec, definitions, result, rows, expected, multipliers)
+    return result, tuple(rows), assembly.parameters

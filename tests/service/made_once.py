@@ -1,0 +1,50 @@
+"""What every store and every app of a worker begins with, made once: the schema, and what the routes take.
+
+A new SQLite file gets the tables of the first one, which was migrated, instead of running all migrations again; a file
+that has tables is migrated as ever. An app gets the routes of the first one: FastAPI reads the parameters of all their
+functions again for each app. Tests of migrations call ``service.database.migrate.upgrade`` themselves.
+"""
+
+from __future__ import annotations
+
+import sqlite3
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+
+from fastapi import FastAPI
+from sqlalchemy import Engine, create_engine, inspect
+
+from service.app import bare_app
+from service.database.migrate import upgrade
+
+
+def upgrade_from(first: Path) -> Callable[..., None]:
+    """In place of ``upgrade``; ``first``: where the first file of all will be."""
+
+    @cache
+    def made() -> sqlite3.Connection:
+        engine = create_engine(f"sqlite:///{first}")
+        upgrade(engine)
+        engine.dispose()
+        return sqlite3.connect(first, check_same_thread=False)
+
+    def quick(engine: Engine, *revision: str) -> None:
+        if revision or engine.dialect.name != "sqlite" or inspect(engine).get_table_names():
+            upgrade(engine, *revision)
+            return
+        with engine.connect() as connection:
+            made().backup(connection.connection.driver_connection)
+
+    return quick
+
+
+def bare_app_from(first: FastAPI) -> Callable[..., FastAPI]:
+    """In place of ``bare_app``; ``first``: whose routes all others have."""
+
+    def quick(*about: object) -> FastAPI:
+        made = bare_app(*about)
+        made.router = first.router
+        return made
+
+    return quick

@@ -1,0 +1,173 @@
+"""Stores that come from elsewhere, with forged formulas: named by verify, never served, derived anew."""
+
+from __future__ import annotations
+
+import json
+import shutil
+import sqlite3
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.cli.main import main
+from service.database.backup import backup, restore
+from service.database.packed import pack, unpack
+from service.operations.verification import verify_all
+from service.renewing import Renewal
+from service.settings import Settings
+from substructures.documents import write_json
+from substructures.errors import VerificationFailed
+from substructures.expr.program import Program
+from substructures.part.definition import Definition
+from substructures.part.part import derive, recheck
+
+from .conftest import HAND, PENDULUM, make_client
+from .seals import seal_again
+from .test_bundles import bump, swapped, wrong_elsewhere
+
+Forgery = Callable[[Any], None]
+AT_HALF = {"q": [0.5], "quantities": ["metric"]}
+
+
+def forged(path: Path, forgery: Forgery) -> None:
+    """Other formulas of the pendulum, under a digest of their own, in its part and in the tree that is made of it."""
+    with closing(sqlite3.connect(path)) as connection:
+        old = connection.execute("SELECT program FROM parts JOIN versions USING (digest) WHERE name = 'pendulum'")
+        for table, (program,) in (
+            ("parts", old.fetchone()),
+            ("trees", connection.execute("SELECT program FROM trees").fetchone()),
+        ):
+            (content,) = connection.execute("SELECT content FROM programs WHERE digest = ?", (program,)).fetchone()
+            document = json.loads(unpack(content))
+            if table == "trees" and forgery is not bump:
+                continue
+            forgery(document)
+            wrong = Program.from_bytes(write_json(document))
+            connection.execute("INSERT INTO programs VALUES (?, ?, ?, '')", (wrong.digest, pack(wrong), len(wrong)))
+            connection.execute(f"UPDATE {table} SET program = ? WHERE program = ?", (wrong.digest, program))  # noqa: S608
+        connection.commit()
+
+
+def boasting(path: Path) -> None:
+    """Another certificate."""
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("""UPDATE parts SET certificate = replace(certificate, '"states":1', '"states":9')""")
+        connection.commit()
+
+
+DONE: dict[str, Callable[[Path], None]] = {
+    "a bump": lambda path: forged(path, bump),
+    "right at a known state": lambda path: forged(path, wrong_elsewhere),
+    "swapped rows": lambda path: forged(path, swapped),
+    "another certificate": boasting,
+    "nothing": lambda _: None,
+}
+
+
+@pytest.mark.parametrize("forgery", [bump, wrong_elsewhere])
+def test_what_sampling_takes_for_right(forgery: Forgery) -> None:
+    """Why formulas of others are not compared at states: whoever forges them knows the states, or differs between."""
+    part = derive(Definition.read(PENDULUM))
+    document = json.loads(part.program.to_bytes())
+    forgery(document)
+    wrong = type(part)(part.definition, Program.from_bytes(write_json(document)), {})
+    try:
+        assert recheck(wrong)["direct_form"]
+    except VerificationFailed:
+        pytest.fail("this forgery is found by sampling; plant a better one")
+    assert wrong.program.digest != part.program.digest
+
+
+def served(client: TestClient) -> None:
+    """Right numbers of a tree that there is, and of one that is coupled now."""
+    answer = client.post("/v1/trees/cell/evaluations", json=AT_HALF)
+    assert (answer.status_code, answer.json()["metric"]) == (200, [[2.2]]), answer.text  # m l^2 + m l^2 / 10
+    found = client.get("/v1/substructures/pendulum").json()
+    assert (found["certificate"]["states"], found["derived_here"]) == (1, True)
+    assert client.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+
+
+@pytest.mark.parametrize("case", DONE)
+@pytest.mark.parametrize("is_in_background", [False, True])
+def test_a_store_from_elsewhere(case: str, is_in_background: bool, template: Path, tmp_path: Path) -> None:
+    """Its file without the key beside it: what is asked for is derived first, or all of it in the background."""
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    DONE[case](path)
+    assert main(["verify", "--database", f"sqlite:///{path}"]) == 1
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        if is_in_background:
+            assert Renewal(store).all() == 0
+            assert [each for each in verify_all(store.database) if each.fault] == []
+        served(make_client(store))
+        with store.database.read() as connection:
+            kept = set(
+                connection.exec_driver_sql("SELECT program FROM parts UNION SELECT program FROM trees").scalars()
+            )
+            assert set(connection.exec_driver_sql("SELECT digest FROM programs").scalars()) == kept
+
+
+@pytest.mark.parametrize("case", [case for case in DONE if case != "nothing"])
+def test_verify_names_what_has_the_seal_of_this_server(
+    case: str, template: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Also where whoever forged it has the key: nothing is believed that is not derived."""
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    DONE[case](path)
+    seal_again(path)
+    assert main(["verify", "--database", f"sqlite:///{path}"]) == 1
+    what = "certificate" if case == "another certificate" else "program"
+    assert f"substructure pendulum@1: what is stored is not what this version derives of its document: {what}" in (
+        capsys.readouterr().out
+    )
+    assert main(["verify", "--repair", "--database", f"sqlite:///{path}"]) == 0
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        served(make_client(store))
+
+
+def test_who_submits_the_definition_gets_its_own_formulas(template: Path, tmp_path: Path) -> None:
+    """Content that came from elsewhere is none that is known."""
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    forged(path, bump)
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        answer = make_client(store).post("/v1/substructures", json=PENDULUM)
+        right = derive(Definition.read(PENDULUM)).program.digest
+        assert (answer.status_code, answer.json()["program"]) == (200, right)
+
+
+def test_a_backup_is_believed_where_it_was_made(tmp_path: Path) -> None:
+    """Its seals are those of the store beside whose key it is put back; elsewhere it is derived anew."""
+    settings = Settings(database=f"sqlite:///{tmp_path / 'store.db'}", catalogue=False)
+    with open_store(settings) as store:
+        assert make_client(store).post("/v1/substructures", json=PENDULUM).status_code == 201
+    backup(settings.database, tmp_path / "saved")
+    restore(tmp_path / "saved", settings.database, overwrite=True)
+    elsewhere = Settings(database=f"sqlite:///{tmp_path / 'other.db'}", catalogue=False)
+    restore(tmp_path / "saved", elsewhere.database)
+    for where, is_believed in ((settings, True), (elsewhere, False)):
+        with open_store(where) as store:
+            client = make_client(store)
+            (item,) = client.get("/v1/substructures").json()["items"]
+            assert item["derived_here"] is is_believed
+            assert client.get("/v1/substructures/pendulum").json()["derived_here"] is True
+
+
+def test_a_published_tree_is_proven_by_what_it_was_coupled_of(filled: TestClient) -> None:
+    """Its formulas are others than those that its definition alone leads to, and the tree may be gone."""
+    assert filled.post("/v1/trees/cell/couplings", json=HAND).status_code == 201
+    answer = filled.post("/v1/trees/cell/publish", json={"name": "arm", "ports": {"grip": "hand.tip"}})
+    assert answer.status_code == 201, answer.text
+    assert filled.delete("/v1/trees/cell").status_code == 204
+    store = filled.app.state.store  # type: ignore[attr-defined]
+    assert [each for each in verify_all(store.database) if each.fault] == []
+    with store.database.write() as connection:
+        connection.exec_driver_sql("UPDATE parts SET seal = '' WHERE recipe IS NOT NULL")
+    again = filled.get("/v1/substructures/arm").json()
+    assert (again["program"], again["derived_here"]) == (answer.json()["program"], True)

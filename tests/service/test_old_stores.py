@@ -1,0 +1,153 @@
+"""Stores of all earlier versions: opened by today's code they have the same digests and right answers."""
+
+from __future__ import annotations
+
+import gzip
+import logging
+import sqlite3
+from collections.abc import Iterator
+from contextlib import closing
+from math import cos
+from pathlib import Path
+from time import sleep
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from service.app import open_store
+from service.database.schema import NEWEST
+from service.operations.verification import verify_all
+from service.queries import renewals
+from service.renewing import Renewal
+from service.server import background
+from service.settings import Settings
+from service.store import Store
+from substructures.client import Client
+
+from .conftest import make_client
+
+STORES = Path(__file__).parent / "stores"
+OLD = sorted(path.name.partition(".")[0] for path in STORES.glob("*.gz"))
+STATE = {"q": [0.3, -0.2], "qd": [1, 0.5], "quantities": ["metric", "forces"]}
+#: M of two pendulums with l = 1, m = 2 and 1/2, inertia m l^2 / 10, by hand
+L, M, N = 1.0, 2.0, 0.5
+
+
+def metric(bend: float) -> list[list[float]]:
+    """Of the double pendulum of cell@2, whose bodies have their mass at the ends."""
+    own = N * L**2 * 1.1
+    cross = own + N * L**2 * cos(bend)
+    return [[M * L**2 * 1.1 + N * L**2 + own + 2 * N * L**2 * cos(bend), cross], [cross, own]]
+
+
+def unpacked(name: str, folder: Path) -> Path:
+    path = folder / "store.db"
+    path.write_bytes(gzip.decompress((STORES / f"{name}.db.gz").read_bytes()))
+    return path
+
+
+def digests(path: Path) -> list[Any]:
+    """Digests of definitions and of documents, as they are stored."""
+    with closing(sqlite3.connect(path)) as connection:
+        queries = "SELECT name, version, digest FROM versions", "SELECT name, revision, digest FROM trees"
+        return [sorted(connection.execute(query).fetchall()) for query in queries]
+
+
+@pytest.fixture(params=OLD)
+def path(request: pytest.FixtureRequest, tmp_path: Path) -> Path:
+    return unpacked(request.param, tmp_path)
+
+
+@pytest.fixture
+def store(path: Path) -> Iterator[Store]:
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, key_seconds=0)) as opened:
+        yield opened
+
+
+def test_there_is_one_of_each_schema() -> None:
+    """0010 came with 0011: no version has had it."""
+    schemas = [f"{number:04}" for number in range(1, int(NEWEST))]
+    assert [name for name in schemas if name != "0010"] == OLD
+
+
+def _is_right(client: TestClient | Client) -> None:
+    answer = client.request("POST", "/v1/trees/cell/evaluations", json=STATE)
+    assert answer.status_code == 200, answer.text
+    for found, right in zip(answer.json()["metric"], metric(-0.2), strict=True):
+        assert found == pytest.approx(right, rel=1e-13)
+
+
+def test_a_request_is_answered_before_all_is_derived_anew(path: Path, store: Store) -> None:
+    """The numbers are right at once, and of what is asked for nothing old is left."""
+    client = make_client(store)
+    _is_right(client)
+    squeezer = client.post("/v1/trees/machines/evaluations", json={"q": [[0.0] * 7], "quantities": ["metric"]})
+    assert squeezer.status_code in (200, 422), squeezer.text
+    assert squeezer.status_code == 200 or "is needed" not in squeezer.text
+    tree = {"name": "new", "instances": [{"name": "a", "substructure": "andrews-squeezer", "at": "world"}]}
+    assert client.post("/v1/trees", json=tree).status_code == 201
+    listed = {each["name"]: each["derived_here"] for each in client.get("/v1/substructures").json()["items"]}
+    assert listed == {"andrews-squeezer": True, "pendulum": True}
+    versions = {each["name"]: each["digest"] for each in client.get("/v1/substructures").json()["items"]}
+    assert versions["pendulum"] in str(digests(path))
+
+
+def test_all_is_derived_anew(path: Path, store: Store, caplog: pytest.LogCaptureFixture) -> None:
+    """As a server does in the background; pages and log say so, and verify proves all of it afterwards."""
+    caplog.set_level(logging.INFO, "service.renewing")
+    before, client = digests(path), make_client(store)
+    assert "0 of 5 parts and trees are derived anew" in client.get("/trees").text
+    assert not any(each["derived_here"] for each in client.get("/v1/trees").json()["items"])
+    assert Renewal(store).all() == 0
+    assert "5 parts and trees are derived anew" in caplog.text
+    assert "derived anew" not in client.get("/trees").text
+    assert [finding for finding in verify_all(store.database) if finding.fault] == []
+    assert digests(path) == before
+    _is_right(client)
+    caplog.clear()
+    assert Renewal(store).all() == 0
+    assert caplog.text == ""
+
+
+def test_what_is_stopped_goes_on(tmp_path: Path) -> None:
+    """What was done stays; the next start does the rest."""
+    settings = Settings(database=f"sqlite:///{unpacked(OLD[0], tmp_path)}", catalogue=False)
+    with open_store(settings) as store:
+        Renewal(store).all(lambda _: True)
+        with store.database.read() as connection:
+            assert renewals.progress(connection) == (1, 5)
+    with open_store(settings) as store:
+        assert Renewal(store).all() == 0
+        with store.database.read() as connection:
+            assert renewals.progress(connection) is None
+
+
+def test_a_server_does_it_by_itself(tmp_path: Path) -> None:
+    settings = Settings(database=f"sqlite:///{unpacked(OLD[0], tmp_path)}", catalogue=False, engine="none")
+    with background(settings) as address, Client(address) as client:
+        _is_right(client)
+        for _ in range(600):
+            if "derived anew" not in client.request("GET", "/trees").text:
+                break
+            sleep(0.1)
+        items = client.request("GET", "/v1/trees").json()["items"]
+        assert all(each["derived_here"] for each in items)
+    with open_store(settings) as store:
+        assert [finding for finding in verify_all(store.database) if finding.fault] == []
+
+
+def test_what_cannot_be_derived_is_told(tmp_path: Path, caplog: pytest.LogCaptureFixture) -> None:
+    """And is not served; all else is."""
+    path = unpacked(OLD[0], tmp_path)
+    with closing(sqlite3.connect(path)) as connection:
+        connection.execute("UPDATE parts SET definition = replace(definition, '/10', '/11') WHERE title = ''")
+        connection.execute("UPDATE parts SET definition = replace(definition, 'm*l^2/10', 'm*l^2/11')")
+        connection.commit()
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        client = make_client(store)
+        assert Renewal(store).all() >= 1
+        assert "cannot be derived anew" in caplog.text
+        answer = client.get("/v1/substructures/pendulum")
+        assert (answer.status_code, answer.json()["code"]) == (500, "damaged-content")
+        assert client.get("/v1/substructures/andrews-squeezer").status_code == 200
