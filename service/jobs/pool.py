@@ -53,13 +53,15 @@ class InProcess:
 
     def compute(self, share: str, work: Work, seconds: float) -> AttemptReport:
         """The last report about a work. Raises TimeoutError after so many seconds, or after the CPU time of its budget;
-        what was begun goes on then."""
+        what was begun goes on then, but for what tells how far it is.
+        """
         end, took = monotonic() + seconds, Took()
         future: Future[AttemptReport] = self.threads.submit(share, partial(_computed, work, took))
         while not future.done():
             left = min(LOOK, end - monotonic())
             if left <= 0 or took.cpu_seconds() > work.budget.cpu_seconds:
                 future.cancel()
+                took.is_given_up = True
                 raise TimeoutError
             wait((future,), left)
         return future.result()
@@ -70,9 +72,13 @@ class InProcess:
 
 
 class Took:
-    """The CPU time of a thread since it began, for others to look at; 0 where the system does not tell."""
+    """The CPU time of a thread since it began, for others to look at; 0 where the system does not tell.
+
+    ``is_given_up``: nobody waits for it any more.
+    """
 
     def __init__(self) -> None:
+        self.is_given_up = False
         self._clock: int | None = None
         self._begun = 0.0
 
@@ -80,6 +86,11 @@ class Took:
         """In the thread."""
         if hasattr(time, "pthread_getcpuclockid"):
             self._begun, self._clock = time.thread_time(), time.pthread_getcpuclockid(get_ident())
+
+    def go_on(self, _share: float) -> None:
+        """A listener of progress. Raises TimeoutError when nobody waits."""
+        if self.is_given_up:
+            raise TimeoutError("nobody waits for this any more")
 
     def cpu_seconds(self) -> float:
         """So much until now."""
@@ -90,12 +101,8 @@ def _computed(work: Work, took: Took) -> AttemptReport:
     """As everywhere: what comes and goes is what is sent."""
     took.begin()
     given = read_work(work_frame(work), {})
-    outcome = run(given.kind, dict(given.item), given.blobs, _unheard)
+    outcome = run(given.kind, dict(given.item), given.blobs, took.go_on)
     return read_report(report_frame(AttemptReport(work.id, 1.0, outcome, cpu_seconds=took.cpu_seconds())))
-
-
-def _unheard(_share: float) -> None:
-    """Nobody asks how far it is."""
 
 
 @dataclass(eq=False)

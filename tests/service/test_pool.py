@@ -225,6 +225,25 @@ def test_cpu_time_and_the_clock_end_a_work(pool: WorkerPool) -> None:
     assert worker(pool)("derive", item(PENDULUM)).files  # there is another runner
 
 
+def test_work_that_is_given_up_ends_where_it_tells_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also in a process that cannot be ended: closing it waits for what was begun."""
+    told = 0
+
+    def endless(_kind: str, _item: Any, _blobs: Any, progress: Callable[[float], None]) -> Outcome:
+        nonlocal told
+        while True:
+            told += 1
+            progress(0.5)
+            time.sleep(0.001)
+
+    monkeypatch.setattr("service.jobs.pool.run", endless)
+    workers = InProcess()
+    with pytest.raises(TimeoutError):
+        worker(workers, seconds=0.2)("derive", item(PENDULUM))
+    workers.close()
+    assert told > 1
+
+
 def test_memory_ends_a_work(pool: WorkerPool) -> None:
     ask = worker(pool)
     ask.memory_bytes = 150 * 2**20
