@@ -70,6 +70,8 @@ def pinned_spec(
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
+    if "gravity" in spec.model_fields_set:  # also where it is none: it was given
+        tree.setdefault("gravity", [0, 0, 0])
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
