@@ -23,8 +23,7 @@ from benchmarks.robots import CALLS, Robot, robots
 from benchmarks.timing import alternating, ratio
 from substructures.compile import Kernel, compile_program
 from substructures.mechanics.accelerations import cholesky_solve
-from substructures.quantities.formulas import derived
-from substructures.quantities.table import DYNAMICS
+from substructures.quantities.formulas import DYNAMICS, derived
 
 FORWARD, DERIVATIVE = "forward_dynamics", "forward_dynamics_derivative"
 

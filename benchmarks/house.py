@@ -7,7 +7,8 @@ imported here; only the stories run it, in a process of their own (benchmarks/st
 
 import       of one module by another of the checkout, anywhere in the file; ``from a import b`` means the module
              ``a.b`` if there is one, else ``a``. Modules that are imported by name at run time do not count.
-rooms        of a folder: the modules and subfolders directly in it that hold code, its ``__init__`` left out
+rooms        of a folder: the modules and subfolders directly in it that hold code, its ``__init__`` left out; "fuller"
+             are folders that have more than 25
 floors       rooms on the longest path of imports between the rooms; rooms that import each other in a circle are one,
              and the circle is told
 chain        the same between all modules of a package, and between its folders (a module stands for its folder, one in
@@ -16,6 +17,10 @@ comments     share of the lines of the files that hold nothing but a ``#`` comme
 docstrings   functions, methods and classes whose names do not begin with an underscore, wherever they are defined,
              and how many of these have no docstring
 stories      modules that one opens to understand how something works: see benchmarks/stories.py
+quantity     files of code that name the quantity which the most name, of those added last: what one more touches
+long         functions of more than 40 lines, files of more than 300
+
+The house may only become better: tests/test_house.py compares these figures with those of tests/house.json.
 """
 
 from __future__ import annotations
@@ -25,14 +30,23 @@ import ast
 import io
 import json
 import os
+import re
 import subprocess
 import sys
 import tokenize
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 PACKAGES = ("substructures", "service")
+CODE = (*PACKAGES, "migrations")
+#: what a folder holds at most without being listed
+ROOMS = 25
+#: the quantities that were added last
+NEWEST = ("mass_centre", "centroidal_momentum_matrix")
+#: lines that a function and a file have at most without being counted
+FUNCTION, FILE = 40, 300
 STORIES = Path(__file__).with_name("stories.py")
 Graph = Mapping[str, set[str]]
 
@@ -42,6 +56,11 @@ def modules(root: Path) -> dict[str, Path]:
     files = [file for package in PACKAGES for file in sorted((root / package).rglob("*.py"))]
     names = [".".join(file.relative_to(root).with_suffix("").parts).removesuffix(".__init__") for file in files]
     return dict(zip(names, files, strict=True))
+
+
+def sources(root: Path) -> list[Path]:
+    """All files of code, without tests."""
+    return [file for folder in CODE for file in sorted((root / folder).rglob("*.py"))]
 
 
 def imports(root: Path) -> dict[str, set[str]]:
@@ -119,6 +138,51 @@ def room_in(folder: str) -> Callable[[str], str | None]:
     return lambda name: name[len(folder) + 1 :].split(".")[0] if name.startswith(f"{folder}.") else None
 
 
+def rooms(root: Path) -> dict[str, int]:
+    """By folder how many rooms it has."""
+    paths = [name.split(".") for name in modules(root)]
+    places = {tuple(path[:k]) for path in paths for k in range(2, len(path) + 1)}
+    return dict(Counter(".".join(place[:-1]) for place in places))
+
+
+def longest_chains(root: Path) -> dict[str, list[str]]:
+    """By package the longest chain of imports between its modules."""
+    graph = imports(root)
+    return {package: longest(contracted(graph, within(package))) for package in PACKAGES}
+
+
+def naming(root: Path, quantity: str) -> list[str]:
+    """Files of code in which a quantity is named, or a name begins with it."""
+    named = re.compile(rf"\b{quantity}")
+    return [str(file.relative_to(root)) for file in sources(root) if named.search(file.read_text())]
+
+
+def long_functions(root: Path) -> dict[str, int]:
+    """Functions of more than FUNCTION lines: ``file:function`` -> lines, docstring included."""
+    return {
+        f"{file.relative_to(root)}:{node.name}": lines
+        for file in sources(root)
+        for node in ast.walk(ast.parse(file.read_text()))
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and (lines := (node.end_lineno or node.lineno) - node.lineno + 1) > FUNCTION
+    }
+
+
+def long_files(root: Path) -> dict[str, int]:
+    """Files of more than FILE lines, and how many they have."""
+    sizes = {str(file.relative_to(root)): len(file.read_text().splitlines()) for file in sources(root)}
+    return {name: lines for name, lines in sizes.items() if lines > FILE}
+
+
+def bounds(root: Path) -> dict[str, dict[str, int]]:
+    """What tests/test_house.py keeps from becoming worse."""
+    return {
+        "rooms": {folder: n for folder, n in sorted(rooms(root).items()) if n > ROOMS},
+        "chains": {package: len(path) for package, path in longest_chains(root).items()},
+        "long": {"functions": len(long_functions(root)), "files": len(long_files(root))},
+    }
+
+
 def within(package: str) -> Callable[[str], str | None]:
     """The module itself, if it belongs to the package."""
     return lambda name: name if name.split(".")[0] == package else None
@@ -181,6 +245,12 @@ def measured(root: Path) -> dict[str, Any]:
         "comments": {"all": comments(known.values()), **{place: comments(some) for place, some in places.items()}},
         "docstrings": {"all": docstrings(known.values()), **{p: docstrings(places[p]) for p in PACKAGES}},
         "stories": stories(root),
+        "lines": {
+            "source": sum(len(file.read_text().splitlines()) for file in sources(root)),
+            "tests": sum(len(file.read_text().splitlines()) for file in (root / "tests").rglob("*.py")),
+        },
+        "files of a quantity": {quantity: naming(root, quantity) for quantity in NEWEST},
+        "bounds": bounds(root),
     }
 
 
@@ -194,8 +264,30 @@ def stories(root: Path) -> dict[str, Any]:
     return told
 
 
+def summary(figures: Mapping[str, Any]) -> dict[str, str]:
+    """What matters most, a line each."""
+    folders, chains, stories_ = figures["rooms"], figures["chains of modules"], figures["stories"]
+    root = {name: f"{folders[name]['rooms']} / {folders[name]['floors']}" for name in PACKAGES}
+    return {
+        "science, root: rooms / floors": root["substructures"],
+        "service, root: rooms / floors": root["service"],
+        "longest chain of modules, science / service": " / ".join(str(chains[p]["floors"]) for p in PACKAGES),
+        "modules one opens: g / Gamma over HTTP / a job item": "failed"
+        if "failed" in stories_
+        else " / ".join(str(len(each)) for each in stories_.values()),
+        "files that one new quantity touches": str(max(map(len, figures["files of a quantity"].values()))),
+        "comment lines in part, tree": f"{figures['comments']['part and tree']['percent']} %",
+        "lines of source / tests": " / ".join(str(figures["lines"][what]) for what in ("source", "tests")),
+        "functions / files with many lines": " / ".join(map(str, figures["bounds"]["long"].values())),
+        "fuller folders": ", ".join(f"{name} {n}" for name, n in figures["bounds"]["rooms"].items()),
+    }
+
+
 def show(figures: Mapping[str, Any]) -> None:
     """The figures as a table."""
+    for name, told in summary(figures).items():
+        print(f"{name:52} {told}")
+    print()
     print(f"{'':40} {'files':>6} {'rooms':>6} {'floors':>7}")
     for title in ("rooms", "chains of modules", "chains of folders"):
         for folder, each in figures[title].items():

@@ -191,7 +191,8 @@ def ran(listener: Listener, part: Any, limits: Any) -> set[str]:
         importlib.import_module("service.jobs.engine"),
         importlib.import_module("substructures.documents"),
     )
-    version = SimpleNamespace(name=part.name, digest=part.definition.digest, program=part.program.digest)
+    own = found("software")()
+    version = found("StoredVersion")(part.name, part.definition.digest, part.program.digest, own)
     blobs = {version.digest: part.definition.canonical(), version.program: part.program.to_bytes()}
     library = SimpleNamespace(version=lambda _: version, tree=lambda _: None, catalogue=list, blob=blobs.get)
     (expanded,) = kinds.expand("assemble", {"items": [TREE]}, limits, library)

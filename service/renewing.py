@@ -35,15 +35,20 @@ class Renewal:
         self._store, self._lock = store, store.runtime.renewing
 
     def on_request(self, wanted: NotDerived) -> None:
-        """Derive anew what is asked for, unless somebody else just has. Raises Refused 500 where that cannot be."""
+        """Derive anew what is asked for, unless somebody else just has. Raises Refused 500 where that cannot be, and
+        NotDerived where something else takes all the time of a request.
+        """
+        if not self._lock.acquire(timeout=self._store.settings.limits.sync_seconds):
+            raise wanted
         try:
-            with self._lock:
-                self._renew(wanted, is_served=True)
+            self._renew(wanted, is_served=True)
         except (Refused, DBAPIError):
             raise
         except Exception as error:
             detail = f"the {wanted.kind} {wanted.key} is not as this server derived it, and cannot be derived anew"
             raise Refused(500, "damaged-content", f"{detail}: {told(error)}") from error
+        finally:
+            self._lock.release()
 
     def _renew(self, wanted: NotDerived, is_served: bool = False) -> None:
         """``is_served``: a tree of other software is good enough, if this server coupled it."""

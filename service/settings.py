@@ -12,6 +12,7 @@ from service.sources import read_source
 from service.turns import PROCESSES
 from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
+from substructures.errors import meant
 
 PREFIX = "SUBSTRUCTURES_"
 LIMIT_PREFIX = "LIMIT_"
@@ -107,6 +108,12 @@ class Settings(BaseModel):
     key_seconds: float = Field(1.0, ge=0, le=86400, description="for how long a key is not checked again, seconds")
     limits: Limits = Limits()
 
+    @field_validator("database")
+    @classmethod
+    def _address(cls, text: str) -> str:
+        """The name of a file is that of an SQLite file."""
+        return f"sqlite:///{text}" if text and ":" not in text else text
+
     @field_validator("mirror_sources")
     @classmethod
     def _readable(cls, texts: tuple[str, ...]) -> tuple[str, ...]:
@@ -161,9 +168,18 @@ def from_environment(environment: Mapping[str, str], **overrides: object) -> Set
         name = str(first["loc"][0])
         of_command_line = overrides.get(name) is not None
         place = f"--{name.replace('_', '-')}" if of_command_line else _variable(first["loc"])
-        raise SettingsError(f"{place}: {message_of(first)}") from None
+        like = _meant(place) if first["type"] == "extra_forbidden" else ""
+        raise SettingsError(f"{place}: {message_of(first)}{like}") from None
     except ValueError as error:
         raise SettingsError(str(error)) from None
+
+
+def _meant(variable: str) -> str:
+    """The setting that may have been meant, a limit without LIMIT first."""
+    limits = [_variable(("limits", name)) for name in Limits.model_fields]
+    known = [*(_variable((name,)) for name in Settings.model_fields if name != "limits"), *limits]
+    ends = [name for name in limits if name == f"{PREFIX}{LIMIT_PREFIX}{variable.removeprefix(PREFIX)}"]
+    return f"; did you mean '{ends[0]}'?" if ends else meant(variable, known)
 
 
 def _variable(location: tuple[int | str, ...]) -> str:

@@ -23,8 +23,9 @@ U, Omega       partial velocities: mechanics.kinematics (base_functions), carrie
 g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric), of parallel axes
                mechanics.parallel_axes
 Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: the same modules (christoffel)
-Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: part.applied_forces
-               (own forces of a part) and tree.coupling (gravity, and wrenches on what others carry)
+Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
+               (loads.kinds), summed in part.applied_forces (own forces of a part), tree.coupling (gravity, and
+               wrenches on what others carry) and tree.loads (between parts)
 =============  ================================================================================================
 
 What leaves as functions of other languages is made by export, on one calling convention (export.interface). Beside

@@ -1,5 +1,7 @@
 """Closed trees in worlds that are turned and shifted anyhow, by numbers in decimals as a person or an import writes."""
 
+# ruff: noqa: N806 -- symbols of the notation
+
 from __future__ import annotations
 
 from typing import Any

@@ -16,7 +16,7 @@ from .bad_documents import GOOD, TREE, Plain, changed
 
 SPRING = {"type": "spring", "from": {"body": "base"}, "to": {"body": "b2"}, "stiffness": 3}
 UNTYPED = {name: value for name, value in SPRING.items() if name != "type"}
-TYPES = "there are force, torque, spring, bushing, joint, potential, friction"
+TYPES = "there are force, torque, spring, bushing, cable, joint, potential, friction"
 COORDINATE = ("bodies", 0, "joint", "coordinate")
 LIMITS = ("bodies", 0, "joint", "limits")
 NAME = "a name is a letter and up to 63 letters, digits and '_'"

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from pydantic import Field
 
 from substructures.documents import (
     MAX_DEPTH,
@@ -21,6 +22,7 @@ from substructures.documents import (
     write_json,
     write_yaml,
 )
+from substructures.documents.fields import Name
 from substructures.errors import InvalidDocument
 
 READERS = pytest.mark.parametrize("read", [read_json, read_yaml])
@@ -332,3 +334,16 @@ def test_yaml_that_is_written_is_read_back_exactly(value: Any) -> None:
 def test_any_plain_data_in_yaml(value: dict[str, Any]) -> None:
     text = write_yaml(value)
     assert write_json(read_yaml(text)) == write_json(value)
+
+
+class _Names(DocumentPart):
+    names: tuple[Name, ...] = Field(min_length=2)
+
+
+@pytest.mark.parametrize(
+    ("names", "places"), [(["a", "1b"], ["/names/1"]), (["a"], ["/names"]), (["1b"], ["/names/0", "/names"])]
+)
+def test_a_wrong_entry_makes_no_list_too_short(names: list[str], places: list[str]) -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        read_model(_Names, {"names": names})
+    assert [fault.pointer for fault in caught.value.faults] == places

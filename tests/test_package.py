@@ -13,7 +13,7 @@ import pytest
 
 import substructures
 
-FOLDERS = "analysis|expr|mechanics|part|quantities|tree"
+FOLDERS = "analysis|expr|loads|mechanics|part|quantities|tree"
 SOURCE = Path(substructures.__file__ or "").read_text()
 
 

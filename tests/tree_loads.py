@@ -14,7 +14,7 @@ from random_trees import GRAVITY, Kind, Plain, number, random_definition, vector
 
 Array = Any
 NAMES = ("a", "b")
-KINDS = ("spring", "bushing", "force", "torque", "joint", "potential")
+KINDS = ("spring", "bushing", "force", "torque", "joint", "potential", "cable")
 
 
 def two_definitions(rng: np.random.Generator) -> dict[str, Plain]:
@@ -31,7 +31,7 @@ def frames_of(name: str, definition: Plain) -> list[str]:
     return [f"{name}.{x['name']}" for x in (*definition["bodies"], *definition["ports"])]
 
 
-def random_tree(rng: np.random.Generator, definitions: dict[str, Plain], count: int = 6) -> Plain:
+def random_tree(rng: np.random.Generator, definitions: dict[str, Plain], count: int = 7) -> Plain:
     """Both instances, on the world or on each other, with one load of every type and some more."""
     hosts = [x for x in frames_of("a", definitions["a"]) if "port" not in x]
     at = str(rng.choice(hosts)) if rng.random() < 0.5 else "world"
@@ -66,6 +66,15 @@ def random_load(rng: np.random.Generator, definitions: dict[str, Plain], kind: s
     if kind == "bushing":
         fields = ("stiffness", "damping", "angular_stiffness", "angular_damping")
         return ends | {field: [abs(x) for x in vector(rng, 2)] for field in fields}
+    if kind == "cable":
+        middle = str(rng.choice([f"{n}.base" for n in NAMES]))
+        points = [
+            start,
+            {"frame": middle, "at": [number(rng, 1, 2), number(rng), 0]},
+            {"frame": end, "at": vector(rng)},
+        ]
+        law = {"stiffness": "2*k", "damping": number(rng, 0, 1), "length": number(rng, 0, 1)}
+        return {"name": name, "type": kind, "along": points, **law}
     if kind in ("force", "torque"):
         axes = str(rng.choice(["to", "from", "world"]))
         return {**ends, "vector": some, "axes": axes} | ({"at": vector(rng)} if kind == "force" else {})
@@ -161,6 +170,8 @@ class ByHand:
             return np.eye(self.n)[self.coordinates.index(load["coordinate"])] * self.read(load["force"])
         if load["type"] == "potential":
             return self.potential(load)
+        if load["type"] == "cable":
+            return self.cable(load)
         (R, p, J), (S, r, K) = self.frame(load["from"]), self.frame(load["to"])
         if load["type"] == "spring":
             p, r = p + R @ values(load["from_at"]), r + S @ values(load["to_at"])
@@ -176,6 +187,23 @@ class ByHand:
             return F @ (K[3:] - J[3:])
         x = r + S @ values(load["at"])
         return F @ (self.moving(K, x) - self.moving(J, x))
+
+    def cable(self, load: Plain) -> Array:
+        """The tension, as a force on every point along both of its legs."""
+        given = [{"frame": x, "at": [0, 0, 0]} if isinstance(x, str) else x for x in load["along"]]
+        frames = [self.frame(x["frame"]) for x in given]
+        points = [p + R @ values(x["at"]) for x, (R, p, _) in zip(given, frames, strict=True)]
+        moving = [self.moving(J, x) for x, (_, _, J) in zip(points, frames, strict=True)]
+        legs = np.diff(points, axis=0)
+        lengths = np.linalg.norm(legs, axis=1)
+        units = legs / lengths[:, None]
+        rate = sum(e @ (y - x) @ self.qd for e, x, y in zip(units, moving, moving[1:], strict=False))
+        k, c, l0 = (self.read(load[x]) for x in ("stiffness", "damping", "length"))
+        tension = k * (lengths.sum() - l0) + c * rate
+        # along the leg that leaves a point, and against the one that comes to it
+        pulls = [tension * e for e in units]
+        forces = [x - y for x, y in zip([*pulls, np.zeros(3)], [np.zeros(3), *pulls], strict=True)]
+        return sum(F @ u for F, u in zip(forces, moving, strict=True))
 
     def bushing(self, load: Plain, A: Any, B: Any) -> Array:
         (R, p, J), (S, r, K) = A, B

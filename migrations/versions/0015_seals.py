@@ -21,6 +21,8 @@ def upgrade() -> None:
         op.create_index(op.f(f"ix_{table}_software"), table, ["software"])
     op.add_column("parts", sa.Column("index_digest", sa.Text(), nullable=False, server_default=""))
     op.add_column("parts", sa.Column("recipe", sa.Text(), nullable=True))
+    for table in ("results", "result_files"):
+        op.add_column(table, sa.Column("digest", sa.Text(), nullable=False, server_default=""))
     op.create_table(
         "renewals",
         sa.Column("software", sa.Text(), nullable=False),

@@ -63,11 +63,11 @@ def bound(program: Program, parameters: Parameters, text: str, inputs: Parameter
         return program
     try:
         result = bind(program, chosen)
-        require_same(result, program, chosen, "formulas with numbers in them")
+        found = require_same(result, program, chosen, "formulas with numbers in them")
     except InvalidInput as error:
         message = "; ".join(fault.message for fault in error.faults)
         raise unprocessable("bind", message, PLACE) from None
-    return result
+    return result.marked(program.not_judged.union(found))
 
 
 def unit_faults(name: str, value: str | Quantity, parameters: Parameters) -> list[Fault]:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from service.analyses.binding import DEFAULTS, Parameters, bound, bound_names
-from service.analyses.printing import NAME
 from substructures.errors import InvalidArgument
 from substructures.export import (
     TARGETS,
@@ -29,6 +28,8 @@ from substructures.quantities.evaluation import Sources
 from substructures.quantities.quantity import FORWARD, askable
 from substructures.tree.document import TreeSpec
 
+#: prefix of functions where none is given
+NAME = "model"
 ZIP = "application/zip"
 _MEDIA = {
     "json": "application/json",

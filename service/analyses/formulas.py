@@ -122,7 +122,12 @@ def velocity_equations_of(source: Source, body: Any) -> Made:
     """
     found = quasi_velocity_equations(source.model, **arguments(read_constraints(body)))
     names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
-    members = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
+    members: dict[str, Any] = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
+    if found.singular:
+        called = ", ".join(found.velocities)
+        message = f"the velocities {called} do not describe the motion where {found.singular} is zero, nor do formulas"
+        advice = "give 'velocities' that always do, or 'independent' ones for where the motion is"
+        members["warnings"] = [{"pointer": "", "code": "singular-velocities", "message": f"{message}: {advice}"}]
     size, limit = len(found.program), source.limits.program_nodes
     if size > limit:
         raise TooLarge("the formulas (in operations)", size, limit)

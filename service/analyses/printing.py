@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 
 from service.analyses.binding import Parameters, bound, bound_names
+from service.analyses.exporting import NAME
 from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
 from service.analyses.source import Source
 from service.refusals import not_found
@@ -22,6 +23,7 @@ from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import momentum
+from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
 from substructures.quantities.result import plain_names
 from substructures.quantities.sources import Sources
@@ -29,8 +31,6 @@ from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
 JSON = "json"
-#: prefix of functions where none is given
-NAME = "model"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"
 #: formats that have a title
 DOCUMENTS = ("latex-document", "mathml")
@@ -138,10 +138,12 @@ def text_of(
     Raises TooLarge for more than ``limit`` nodes, InvalidArgument for a bad name of a function."""
     if style.format in TO_READ:
         program = program.select([name for name in program.outputs if name not in JUDGES] or list(program.outputs))
-    text = _rendered(program, style, quantity, interface, limit, definitions, glossary)
+    warnings = not_judged_warnings([quantity] if program.not_judged else [])
+    members = {**(members or {}), **({"warnings": warnings} if warnings else {})}
+    text = _rendered(program, style, quantity, interface, limit, definitions, glossary, warnings)
     if style.format == JSON and CHRISTOFFEL in program.outputs:
         text = _with_entries(text, program, style, interface.vectors["q"].names)
-    if style.format == "text" and members and "note" in members:
+    if style.format == "text" and "note" in members:
         return f"{text.rstrip()}\n{members['note']}\n"
     return _joined(members, text) if style.format == JSON and members else text
 
@@ -154,11 +156,13 @@ def _rendered(
     limit: int,
     definitions: Definitions | None = None,
     glossary: Program | None = None,
+    warnings: Sequence[Mapping[str, str]] = (),
 ) -> str:
     """The program, as a function of what was not bound where it is code."""
     left = interface.bound(bound_names(interface.vectors["p"].with_default, style.bind))
     try:
-        return render(program, style.format, style.form, style.name, limit, left, quantity, definitions, glossary)
+        more = definitions, glossary, warnings
+        return render(program, style.format, style.form, style.name, limit, left, quantity, *more)
     except InvalidInput as error:
         raise error.moved(lambda pointer: f"/query{pointer}") from None
 
@@ -179,11 +183,15 @@ def made_text(
     model = source.model
     if isinstance(found.value, BaseParameters) and quantity == BASE and style.format in TO_READ:
         return _base_text(found.value, interface, model, style, limit)
+    members = dict(found.members)
+    warnings = [*members.get("warnings", ()), *not_judged_warnings([quantity] if found.program.not_judged else [])]
+    if warnings:
+        members["warnings"] = warnings
     program = with_numbers(found.program, model.parameters, model.inputs, style)
     named = source_glossary(source, style, model.parameters)
-    text = _rendered(program, style, quantity, interface, limit, glossary=named)
-    if style.format == JSON and found.members:
-        return _joined(found.members, text)
+    text = _rendered(program, style, quantity, interface, limit, glossary=named, warnings=warnings)
+    if style.format == JSON and members:
+        return _joined(members, text)
     if style.format != "text":
         return text
     return "\n".join([text.rstrip("\n"), *_notes(found.members), ""])

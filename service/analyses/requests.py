@@ -10,7 +10,8 @@ from pydantic import BaseModel
 from service.schemas.measured import read_measured
 from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.parts import RequestPart
-from substructures.documents import require_object
+from substructures.documents import escape, require_object
+from substructures.errors import Fault, InvalidArgument
 from substructures.tree.model import Model
 
 
@@ -20,8 +21,32 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
     Raises InvalidInput with pointers.
     """
     require_object(body)
-    is_closed = model is not None and bool(model.closures)
-    return read_measured(_motion(body, is_closed) if schema is AnySimulationRequest else schema, body, model)
+    if schema is not AnySimulationRequest:
+        return read_measured(schema, body, model)
+    chosen = _motion(body, model is not None and bool(model.closures))
+    _require_fields_of(chosen, body)
+    return read_measured(chosen, body, model)
+
+
+#: the simulations that there are, and what makes a request one of them
+MOTIONS: dict[type[BaseModel], str] = {
+    SimulationRequest: "of trees without closures",
+    ClosedRequest: "with closures or 'prescribed' coordinates",
+    RollingRequest: "with velocity constraints ('constraints')",
+}
+
+
+def _require_fields_of(chosen: type[BaseModel], body: Mapping[str, Any]) -> None:
+    """Raises InvalidArgument for fields that only other simulations have, and says which."""
+    faults = []
+    for name in body:
+        others = [what for schema, what in MOTIONS.items() if name in schema.model_fields]
+        if others and name not in chosen.model_fields:
+            why = "; its reactions are the series 'multipliers'" if name == "reactions" else ""
+            message = f"'{name}' is a field of simulations {' and '.join(others)}, not of those {MOTIONS[chosen]}{why}"
+            faults.append(Fault(f"/{escape(name)}", "extra-forbidden", message))
+    if faults:
+        raise InvalidArgument(faults)
 
 
 def _motion(body: Mapping[str, Any], is_closed: bool) -> type[BaseModel]:

@@ -9,6 +9,8 @@ from pydantic import BaseModel
 
 from service.analyses.source import Source
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.quantities.certificate import DYNAMICS
+from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.states import read_states
 from substructures.quantities.warnings import Notice, value_warnings
 
@@ -24,9 +26,11 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     q: Any = None if told else getattr(request, "q", None)
     states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
     notices = value_warnings(source.sources, given, inputs, states)
+    notices += not_judged_warnings(name for name in DYNAMICS if name in source.model.program.not_judged)
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
     # a model with its definitions has told of relations itself
-    if motion is not None and source.model.plausibility is None and source.sources.judge is not None:
-        notices += source.sources.judge.apart(motion.coordinates, motion.q)
+    judge = source.sources.judge if motion is not None and source.model.plausibility is None else None
+    if motion is not None and judge is not None:
+        notices += judge.apart(motion.coordinates, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

@@ -12,30 +12,30 @@ from typing import Annotated, Any
 import orjson
 import typer
 
+from service.analyses.exporting import NAME
 from service.analyses.formulas import OPTIONS, QUANTITIES, Options, made
 from service.analyses.numbers import ANALYSES
-from service.analyses.printing import NAME, made_text
+from service.analyses.printing import (
+    Style,
+    check_quantity,
+    described,
+    made_text,
+    source_glossary,
+    text_of,
+    with_numbers,
+    with_options,
+)
 from service.analyses.results import JSON, MEDIA_TYPES, written
-from service.analyses.source import Source
-from service.answers import Answer
 from service.cli import completion
 from service.cli.choices import Form, Format
 from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Server, with_more, with_server
 from service.cli.output import tell_warnings, waiting
-from service.cli.tree_files import parts_beside
-from service.operations import models
-from service.operations.models import Style
-from service.settings import Limits
+from service.cli.tree_files import local_source
 from substructures.client.connection import step
 from substructures.errors import meant
 from substructures.export import interface_of_model
-from substructures.part.part import Part
 from substructures.printers import FORMS
-from substructures.quantities.sources import Sources, of_parts
-from substructures.quantities.warnings import BY_VALUE, TOLD
-from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
 
 #: what is said of results that are not known to be right
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
@@ -126,22 +126,15 @@ def _formula(wanted: _Wanted, what: str, style: Style, chosen: Options) -> bytes
             found: bytes = client.request("GET", f"/v1/trees/{step(wanted.tree)}/{step(what)}", params=asked).content
             return found
     source = local_source(Path(wanted.tree))
-    if what in QUANTITIES:
-        interface = interface_of_model(source.model, digest=source.digest)
-        return made_text(made(source, what, chosen), what, interface, source, style).encode()
-    return _model_formula(source, what, style, chosen).body
-
-
-def _model_formula(source: Source, what: str, style: Style, chosen: Options) -> Answer:
-    sources = source.sources
-    models.check_quantity(source.model, what)
-    sources = models.with_options(sources, what, chosen)
-    members, parameters = models.described(sources, what)
-    inputs = source.model.inputs
-    program = models.with_numbers(sources.formulas(what), parameters, inputs, style)
     interface = interface_of_model(source.model, digest=source.digest)
-    named = models.source_glossary(source, style, parameters)
-    return models.printed(program, style, what, interface, members, named)
+    if what in QUANTITIES:
+        return made_text(made(source, what, chosen), what, interface, source, style).encode()
+    check_quantity(source.model, what)
+    sources = with_options(source.sources, what, chosen)
+    members, parameters = described(sources, what)
+    program = with_numbers(sources.formulas(what), parameters, source.model.inputs, style)
+    named_steps = source_glossary(source, style, parameters)
+    return text_of(program, style, what, interface, members, glossary=named_steps).encode()
 
 
 def _numbers(wanted: _Wanted, name: str, given: Path | None) -> int:
@@ -205,26 +198,6 @@ def _found(check: Mapping[str, Any]) -> str:
 
 def _short(number: float | None) -> str:
     return "not finite" if number is None else f"{number:.2g}"
-
-
-def local_source(path: Path) -> Source:
-    """A tree document coupled here. Its parts are inline definitions, files ``<name>.yaml`` or ``.json`` beside the
-    document, or entries of the shipped catalogue. Raises InvalidDocument.
-    """
-    document = read_document(path)
-    with named(path):
-        spec = TreeSpec.read(document)
-        return coupled_source(spec, parts_beside(spec, path.parent))
-
-
-def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
-    """A tree of parts coupled here; its warnings are told. Raises InvalidDocument."""
-    limits = Limits()
-    model = couple(spec, parts, limits.program_nodes)
-    # the others come with the result
-    tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
-    sources = Sources(model, of_parts=of_parts(spec, parts, limits.program_nodes))
-    return Source(sources, spec.digest, limits, parts=lambda: (spec, parts))
 
 
 COMMANDS = {"simulate": simulate, "analyse": analyse}

@@ -40,8 +40,9 @@ def drawn_tree(client: Client, tree: Mapping[str, Any]) -> Tree:
     mount(root.add(WORLD), WORLD)
     for kind in ("closures", "loads"):
         for each in tree.get(kind, ()):
-            ends = " - ".join(filter(None, (each.get("from"), each.get("to"), each.get("coordinate"))))
-            root.add(f"{each['name']}: {each['type']} {ends}".rstrip())
+            along = [x if isinstance(x, str) else x["frame"] for x in each.get("along", ())]
+            ends = filter(None, (each.get("from"), each.get("to"), each.get("coordinate"), *along))
+            root.add(f"{each['name']}: {each['type']} {' - '.join(ends)}".rstrip())
     return root
 
 

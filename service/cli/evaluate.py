@@ -11,10 +11,10 @@ import orjson
 import typer
 
 from service.cli import completion
-from service.cli.analysis import local_source
 from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
+from service.cli.tree_files import local_source
 from service.cli.trees import values
 from substructures.client.connection import step
 from substructures.quantities.evaluation import evaluate as evaluated

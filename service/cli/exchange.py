@@ -131,8 +131,10 @@ def _tell_mirrored(client: Client, job: str) -> None:
         found = item["result"]
         for each in found["refused"]["items"]:
             print(f"refused: {each['name']}: {each['message']}", file=sys.stderr)
-        counts = ", ".join(f"{found[name]['count']} {name}" for name in ("stored", "same", "differing", "refused"))
+        counts = ", ".join(f"{found[name]['count']} {name}" for name in ("stored", "same", "refused"))
         print(f"{found['offered']} parts at {found['source']}: {counts}")
+        for each in found["differing"]["items"]:
+            print(f"{each}: formulas derived here, those of the source differ")
 
 
 def _other(url: str, key: str | None) -> Server:

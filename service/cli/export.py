@@ -10,12 +10,12 @@ import typer
 
 from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
 from service.cli import completion
-from service.cli.analysis import coupled_source
 from service.cli.choices import one_of
 from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.robots import part_or_tree
+from service.cli.tree_files import coupled_source
 from service.settings import Limits
 from substructures.client.connection import step
 from substructures.part.part import Part

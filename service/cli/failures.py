@@ -2,19 +2,19 @@
 
 from __future__ import annotations
 
+from importlib import import_module
 from pathlib import Path
 
 import httpx2
-from sqlalchemy.exc import DBAPIError
 
-from service.database.connections import DatabaseError, told
-from service.database.schema import MigrationError
 from service.refusals import Refused
 from service.settings import SettingsError
 from substructures.client import ProblemError
 from substructures.errors import InvalidInput, SubstructuresError
 
-EXPECTED = (SubstructuresError, SettingsError, DatabaseError, MigrationError, ProblemError, Refused)
+EXPECTED = (SubstructuresError, SettingsError, ProblemError, Refused)
+#: by module and name, since most commands open no database
+DATABASE, DRIVER = "service.database", ("sqlalchemy.exc", "DBAPIError")
 
 
 def told_of(error: Exception) -> list[str] | None:
@@ -22,8 +22,8 @@ def told_of(error: Exception) -> list[str] | None:
     match error:
         case InvalidInput():
             return [f"{fault.pointer or '/'}: {fault.message}" for fault in error.faults]
-        case DBAPIError():
-            return [f"the database refused: {told(error)}"]
+        case _ if DRIVER in [(kind.__module__, kind.__name__) for kind in type(error).__mro__]:
+            return [f"the database refused: {import_module('service.database.connections').told(error)}"]
         case httpx2.ConnectError():
             url = error.request.url
             address = f"{url.scheme}://{url.netloc.decode()}"
@@ -41,4 +41,5 @@ def told_of(error: Exception) -> list[str] | None:
             return [f"{error.filename or 'error'}: {error.strerror or error}"]
         case ValueError() | OverflowError():
             return [str(error)]
-    return [str(error)] if isinstance(error, EXPECTED) else None
+    is_expected = isinstance(error, EXPECTED) or type(error).__module__.startswith(DATABASE)
+    return [str(error)] if is_expected else None

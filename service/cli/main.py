@@ -20,7 +20,6 @@ from service import __version__, respawn
 
 PROGRAM = "substructures"
 FAILURES = "service.cli.failures"
-WRONGLY_CALLED = 2
 
 
 @dataclass(frozen=True)

@@ -1,20 +1,47 @@
-"""The parts of a tree document: inline definitions, files beside it, or entries of the shipped catalogue."""
+"""Trees out of files, coupled here; parts are inline definitions, files beside them, or of the shipped catalogue."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from pathlib import Path
 
+from service.analyses.source import Source
 from service.cli.documents import DOCUMENTS, definition_of, named, read_document
+from service.cli.output import tell_warnings
+from service.settings import Limits
 from substructures import catalogue
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
+from substructures.quantities.sources import Sources, of_parts
+from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.model import couple
 
 
 def parts_beside(spec: TreeSpec, folder: Path) -> dict[str, Part]:
     """The part of every instance. Raises InvalidDocument for one that is nowhere."""
     return {i.name: _part(k, i, folder) for k, i in enumerate(spec.instances)}
+
+
+def local_source(path: Path) -> Source:
+    """A tree document coupled here. Its parts are inline definitions, files ``<name>.yaml`` or ``.json`` beside the
+    document, or entries of the shipped catalogue. Raises InvalidDocument.
+    """
+    document = read_document(path)
+    with named(path):
+        spec = TreeSpec.read(document)
+        return coupled_source(spec, parts_beside(spec, path.parent))
+
+
+def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
+    """A tree of parts coupled here; its warnings are told. Raises InvalidDocument."""
+    limits = Limits()
+    model = couple(spec, parts, limits.program_nodes)
+    # the others come with the result
+    tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
+    sources = Sources(model, of_parts=of_parts(spec, parts, limits.program_nodes))
+    return Source(sources, spec.digest, limits, parts=lambda: (spec, parts))
 
 
 def _part(index: int, instance: Instance, folder: Path) -> Part:

@@ -133,7 +133,8 @@ def _engine(url: URL, key: bytes, *, writer: bool) -> Engine:
         try:
             return _postgres(url)
         except ImportError:
-            raise DatabaseError("PostgreSQL needs the extra: pip install 'substructures[postgres]'") from None
+            how = "pip install 'substructures[postgres]' (in a clone: pip install -e '.[postgres]')"
+            raise DatabaseError(f"PostgreSQL needs the extra: {how}") from None
     engine = create_engine(
         url,
         pool_size=1 if writer else READERS,

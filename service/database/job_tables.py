@@ -110,6 +110,7 @@ results = Table(
     Column("principal", Text, nullable=False, server_default=""),  # whose job computed it
     Column("size", BigInteger, nullable=False, server_default="0"),  # bytes of summary and files
     Column("is_good", Boolean, nullable=False, server_default=true()),  # whether its items have succeeded
+    Column("digest", Text, nullable=False, server_default=""),  # sha256 of the summary; empty in older stores
     Index(None, "principal", "size"),
 )
 
@@ -120,6 +121,7 @@ result_files = Table(
     Column("name", Text, primary_key=True),
     Column("size", Integer, nullable=False),
     Column("content", LargeBinary, nullable=False),
+    Column("digest", Text, nullable=False, server_default=""),  # sha256 of the content; empty in older stores
 )
 
 job_events = Table(

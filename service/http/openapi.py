@@ -19,9 +19,9 @@ from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.publishing import PublishRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
 from service.schemas.velocity_constraints import VelocityConstraints
+from substructures.loads.kinds import AnyTreeLoad
 from substructures.part.definition import Definition
 from substructures.tree.document import Instance
-from substructures.tree.load_document import AnyTreeLoad
 
 TEMPLATE = "#/components/schemas/{model}"
 PROBLEM: dict[int | str, dict[str, Any]] = {

@@ -26,7 +26,7 @@ from service.http.request_id import current_request_id
 from service.queries.common import is_conflict, is_full, is_outage
 from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from substructures.documents import message_of, pointer_step
-from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
+from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed, among
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
@@ -85,6 +85,24 @@ def response(error: Exception, instance: str) -> Response:
     return Response(body, refused.status, headers, MEDIA_TYPE)
 
 
+def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRoute]) -> Refused | None:
+    """404 where a word that is free for one method is one of a list for another, as POST .../linearisations."""
+    parents = {route.path.rpartition("/")[0] for route in found if route.path.endswith("}")}
+    ends = [route.path.rpartition("/") for route in routes if request.method in (route.methods or ())]
+    words = sorted({word for parent, _, word in ends if parent in parents and not word.startswith("{")})
+    if not words:
+        return None
+    word = request.url.path.rpartition("/")[2]
+    detail = f"{request.method} knows no '{word[:80]}' at this path{among(word, words)}"
+    return not_found(detail, "unknown-analysis")
+
+
+def _other_method(request: Request, found: Sequence[APIRoute]) -> Refused:
+    methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
+    detail = f"{request.method[:40]} is not possible at this path, but {methods}"
+    return Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
+
+
 def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
     """Let the app answer with problem documents; ``service.http.middleware`` catches what no handler is for."""
 
@@ -96,9 +114,7 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
             # .../evaluations is no quantity that could be read
             free = min((len(route.param_convertors) for route in found), default=0)
             found = [route for route in found if len(route.param_convertors) == free]
-            methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
-            detail = f"{request.method[:40]} is not possible at this path, but {methods}"
-            error = Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
+            error = _unknown(request, found, routes) or _other_method(request, found)
         return response(error, request.url.path)
 
     for kind in (

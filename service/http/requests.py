@@ -140,7 +140,10 @@ async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
 
 
 def _too_long(limit: int) -> Refused:
-    detail = f"the request body is larger than {limit:,} bytes, the limit for its media type"
+    detail = (
+        f"the request body is larger than {limit:,} bytes, the limit for its media type; states take fewer bytes as "
+        f"npz ({arrays.MEDIA_TYPE}), any number goes as Arrow ({arrow.MEDIA_TYPE}) or as a job (POST {SUBMISSIONS})"
+    )
     return Refused(413, "body-too-large", detail, limit=limit)
 
 

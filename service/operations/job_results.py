@@ -8,7 +8,9 @@ from typing import Any
 
 from service.addresses import tree_path, version_path
 from service.database.connections import Connection
+from service.database.packed import unpack
 from service.improvement import Improvement
+from service.integrity import checked
 from service.jobs.engine import Outcome
 from service.jobs.kinds.kind import ENTRY
 from service.operations import catalogue, trees
@@ -19,7 +21,7 @@ from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
 from service.schemas.entries import Entry, PartEntry
-from service.summaries import PartContent
+from service.summaries import UNKNOWN, PartContent
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
@@ -83,7 +85,9 @@ def _upgraded(connection: Connection, viewer: Viewer, item: Mapping[str, Any], o
     files, told = outcome.files, outcome.summary
     found = Improvement(told["before"], told["after"], told["outcome"])
     if found.is_one and "tree" in item:
-        made = TreeProgram(files["program"], told["program"], told["nodes"], told["dof"], files["summary"])
+        checked("the program of a tree", told["program"], unpack(files["program"]))
+        figures = told["program"], told["nodes"], told["dof"]
+        made = TreeProgram(files["program"], *figures, files["summary"], told.get("software", UNKNOWN))
         put_tree(connection, viewer, told["name"], told["digest"], item["program"], made, found)
     elif found.is_one:
         put_part(connection, viewer, item["substructure"], item["program"], PartContent.of_files(files), found)

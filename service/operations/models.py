@@ -2,48 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import orjson
 
-from service.analyses.binding import bound
-from service.analyses.printing import (
-    Style,
-    check_quantity,
-    described,
-    names_of_steps,
-    options_of_quantity,
-    source_glossary,
-    text_of,
-    with_numbers,
-    with_options,
-)
-from service.answers import Answer
-from service.negotiation import MEDIA_TYPES
 from service.queries.formulas import FormulaRow
 from service.refusals import unprocessable
-from substructures.export import Interface
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
 from substructures.quantities.quantity import outputs_of
-
-__all__ = [
-    "Style",
-    "Wanted",
-    "bound",
-    "check_quantity",
-    "described",
-    "names_of_steps",
-    "options_of_quantity",
-    "part_formulas",
-    "printed",
-    "source_glossary",
-    "with_numbers",
-    "with_options",
-]
 
 
 @dataclass(frozen=True, slots=True)
@@ -81,7 +50,7 @@ def part_formulas(part: Part, rows: Sequence[FormulaRow], wanted: Wanted, first:
 def _entries(program: Program, rows: Sequence[FormulaRow], component: str | None, first: int) -> Program:
     """The program of stored formulas, or of one component of each. Raises Refused 422."""
     outputs: dict[str, Output] = {}
-    operations = list(program.operations)
+    operations, not_judged = list(program.operations), set[str]()
 
     def negated(entry: int) -> int:
         """The number of an operation that negates another."""
@@ -93,8 +62,9 @@ def _entries(program: Program, rows: Sequence[FormulaRow], component: str | None
         whole = program.outputs[row.output]
         if component is not None:
             lead = lead + _component(component, shape) if shape else _component(component, whole.shape)
-        outputs[_called(row.output, lead, first)] = _slice(whole, lead, negated)
-    return Program(program.symbols, tuple(operations), outputs).select(list(outputs))
+        outputs[called := _called(row.output, lead, first)] = _slice(whole, lead, negated)
+        not_judged |= {called} if row.output in program.not_judged else set()
+    return Program(program.symbols, tuple(operations), outputs, frozenset(not_judged)).select(list(outputs))
 
 
 def _zeros(part: Part, names: Sequence[str], wanted: Wanted, first: int) -> Program | None:
@@ -115,7 +85,7 @@ def _zeros(part: Part, names: Sequence[str], wanted: Wanted, first: int) -> Prog
                 single = len(LEADING.get(name, ())) == len(shape)  # elements are stored one by one
                 index = _component(wanted.component, shape if single else rest)
                 outputs[_called(name, index if single else lead + index, first)] = Output((), (), ())
-    return Program((), (), outputs) if outputs else None
+    return Program((), (), outputs).marked(outputs if part.program.not_judged & set(names) else ()) if outputs else None
 
 
 def _places(labels: Sequence[str], label: str | None) -> list[int]:
@@ -145,18 +115,3 @@ def _slice(whole: Output, lead: tuple[int, ...], negated: Callable[[int], int]) 
         if index[: len(lead)] == lead
     }
     return Output(whole.shape[len(lead) :], tuple(sorted(kept)), tuple(kept[index] for index in sorted(kept)))
-
-
-def printed(
-    program: Program,
-    style: Style,
-    quantity: str,
-    interface: Interface,
-    members: Mapping[str, Any] | None = None,
-    glossary: Program | None = None,
-) -> Answer:
-    """The program in the format chosen; ``members`` are put before it in JSON; ``glossary``: names of steps. Raises
-    TooLarge.
-    """
-    text = text_of(program, style, quantity, interface, members, glossary=glossary)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})

@@ -40,13 +40,16 @@ class Upgraded:
 
 @dataclass(frozen=True, slots=True)
 class TreeProgram:
-    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary."""
+    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary, and by
+    which software.
+    """
 
     program: bytes
     digest: str
     nodes: int
     dof: int
     summary: bytes
+    software: str
 
 
 def upgrade(
@@ -126,6 +129,6 @@ def put_tree(
     for tree in trees.with_program(connection, name, digest, before):
         summary = made.summary.decode()
         coupled = replace(tree, program=made.digest, dof=made.dof, summary=summary)
-        trees.replace_model(connection, replace(coupled, summary_digest=digest_of(made.summary)))
+        trees.replace_model(connection, replace(coupled, summary_digest=digest_of(made.summary)), made.software)
         figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
         audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

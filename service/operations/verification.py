@@ -16,7 +16,7 @@ from service.database.connections import Connection, Database
 from service.derivation import software
 from service.integrity import checked
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
-from service.queries import catalogue, content, trees
+from service.queries import catalogue, content, results, trees
 from service.queries.formulas import FormulaRow, read_index
 from service.refusals import Refused
 from service.viewer import ANYBODY
@@ -50,17 +50,27 @@ MENDED = "derived anew"
 
 
 def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
-    """Every part, then every revision of every tree. With ``repair`` what is wrong is derived anew, if its own document
-    is sound."""
+    """Every part, every revision of every tree, and every result of a job, which is compared with its digest. With
+    ``repair`` what is wrong of parts and trees is derived anew, if its own document is sound.
+    """
     with database.read() as connection:
         contents = catalogue.all_contents(connection)
-        revisions = trees.all_revisions(connection, ANYBODY)
+        revisions, kept = trees.all_revisions(connection, ANYBODY), results.all_keys(connection)
     for digest, name in contents.items():
         what = f"substructure {name}" if name else "definition of a tree"
         yield _verified(database, what, digest, _check_part, partial(renew_part, database) if repair else None)
     for tree, number in revisions:
         name = f"{tree}@{number}"
         yield _verified(database, f"tree {name}", name, _check_tree, partial(_renew_tree, database) if repair else None)
+    for key in kept:
+        if fault := _fault(database, key, _check_result):
+            yield Finding(f"result {key}", key, fault)
+
+
+def _check_result(connection: Connection, key: str) -> None:
+    results.get_summary(connection, key)
+    for file in results.list_files(connection, [key]).get(key, ()):
+        results.get_file(connection, key, file.name)
 
 
 def _renew_tree(database: Database, reference: str) -> None:

@@ -16,6 +16,7 @@ from service.queries.trees import Tree
 from service.views.resources import part_warnings
 from substructures.documents import read_json
 from substructures.expr.program import Program
+from substructures.loads.kinds import acts_on
 from substructures.part.part import Part
 from substructures.tree.model import Model
 
@@ -119,7 +120,8 @@ def _owner(shown: Version | Tree) -> str:
 
 def _loads(loads: Sequence[Mapping[str, Any]]) -> list[Html]:
     """The loads of a tree: what acts between what."""
-    rows = [(x["name"], x["type"], x.get("from", ""), x.get("to", x.get("coordinate", ""))) for x in loads]
+    pairs = [(x, acts_on(x)) for x in loads]
+    rows = [(x["name"], x["type"], " - ".join(places[:-1]), "".join(places[-1:])) for x, places in pairs]
     return [tag("h2", "Loads"), table(("name", "type", "from", "on"), rows)] if rows else []
 
 

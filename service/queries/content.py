@@ -23,6 +23,8 @@ SEALED = (
     *("bodies", "ports", "parameters", "operations", "certificate", "index_digest"),
 )
 
+AT_A_TIME = 500  # rows that are looked at
+
 
 @dataclass(frozen=True, slots=True)
 class StoredPart:
@@ -104,11 +106,6 @@ def program_of(connection: Connection, digest: str) -> tuple[str | None, str]:
     return (None, "") if found is None else (found.program, found.software)
 
 
-def has_part(connection: Connection, digest: str) -> bool:
-    """Whether a part is stored."""
-    return connection.execute(select(parts.c.digest).where(parts.c.digest == digest)).first() is not None
-
-
 def get_part(connection: Connection, digest: str) -> StoredPart | None:
     """A part, ready to be decoded. Raises Refused (``damaged-content``, ``missing-content``)."""
     row = connection.execute(_STORED, {"of_digest": digest}).mappings().first()
@@ -134,13 +131,14 @@ def get_recipe(connection: Connection, digest: str) -> str | None:
 
 def stale_parts(connection: Connection) -> list[str]:
     """The digests of all parts that other software has derived, or that are not as this server stored them."""
-    rows = connection.execute(select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest))
-    ours = software()
-    return [
-        row["digest"]
-        for row in rows.mappings()
-        if row["software"] != ours or row["seal"] != seal_of_part(connection, row)
-    ]
+    columns = select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest).limit(AT_A_TIME)
+    ours, last, found = software(), "", list[str]()
+    while rows := connection.execute(columns.where(parts.c.digest > last)).mappings().all():
+        last = rows[-1]["digest"]
+        found += [
+            row["digest"] for row in rows if row["software"] != ours or row["seal"] != seal_of_part(connection, row)
+        ]
+    return found
 
 
 def count_parts(connection: Connection) -> tuple[int, int]:

@@ -80,7 +80,7 @@ def list_formulas(
 
 
 def read_index(outputs: str, formulas: str) -> list[FormulaRow]:
-    """The formulas out of both columns. Raises ValueError, TypeError, IndexError for what :func:`packed` does not make."""
+    """The formulas out of both columns. Raises ValueError, TypeError, IndexError for what is none."""
     common = [(quantity, output, _json(shape), symmetry) for quantity, output, shape, symmetry in orjson.loads(outputs)]
     rows = []
     for position, (number, body, coordinate, entry, operations) in enumerate(orjson.loads(formulas)):

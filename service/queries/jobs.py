@@ -15,6 +15,7 @@ from service.clock import time_now
 from service.database.job_tables import job_items, jobs, results
 from service.queries.common import now
 from service.queries.job_events import add_event
+from service.queries.results import as_kept
 from service.queries.states import OPEN, QUEUED, RUNNING
 from service.viewer import Viewer
 
@@ -210,12 +211,21 @@ def page_items(connection: Connection, job: str, state: str | None, after: int, 
     is_its = results.c.is_good == (job_items.c.state == "succeeded")
     summary = case((job_items.c.state.in_(("succeeded", "failed")) & is_its, results.c.summary))
     item = case((job_items.c.state == "failed", job_items.c.item))
-    columns: list[Any] = [*(job_items.c[name] for name in names), item, summary]
+    columns: list[Any] = [*(job_items.c[name] for name in names), item, summary, results.c.digest]
     query = select(*columns).select_from(job_items.outerjoin(results, results.c.key == job_items.c.key))
     query = query.where(job_items.c.job == job, job_items.c.position > after)
     if state is not None:
         query = query.where(job_items.c.state == state)
-    return [JobItem(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
+    return [_item(*row) for row in connection.execute(query.order_by(job_items.c.position).limit(size)).all()]
+
+
+def _item(*columns: Any) -> JobItem:
+    """Raises Refused (``damaged-content``) for a summary that is not the one that was kept."""
+    found, digest = columns[:-1], columns[-1]
+    item = JobItem(*found)
+    if item.summary is not None:
+        as_kept("a result", digest, item.summary.encode())
+    return item
 
 
 def unsuccessful(connection: Connection, job: str) -> list[NewItem]:

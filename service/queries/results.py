@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, delete, select
 
 from service.database.job_tables import result_files, results
+from service.integrity import checked, digest_of
 from service.queries.common import now, put_all
 
 
@@ -46,7 +47,7 @@ def put_results(connection: Connection, found: Sequence[Result]) -> None:
             connection.execute(delete(table).where(table.c.key.in_(keys)))
     put_all(connection, results, [{**_row(each), "created": created} for each in found])
     files = [
-        {"key": each.key, "name": name, "size": len(data), "content": data}
+        {"key": each.key, "name": name, "size": len(data), "content": data, "digest": digest_of(data)}
         for each in found
         for name, data in each.files.items()
     ]
@@ -55,7 +56,8 @@ def put_results(connection: Connection, found: Sequence[Result]) -> None:
 
 def _row(result: Result) -> dict[str, str | int]:
     told: dict[str, str | int] = {"key": result.key, "kind": result.kind, "summary": result.summary}
-    return told | {"principal": result.principal, "size": result.size, "is_good": result.is_good}
+    told |= {"principal": result.principal, "size": result.size, "is_good": result.is_good}
+    return told | {"digest": digest_of(result.summary.encode())}
 
 
 def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]:
@@ -70,6 +72,23 @@ def list_files(connection: Connection, keys: list[str]) -> dict[str, list[File]]
 
 
 def get_file(connection: Connection, key: str, name: str) -> bytes | None:
-    """The content of one file."""
+    """The content of one file. Raises Refused (``damaged-content``)."""
     chosen = (result_files.c.key == key) & (result_files.c.name == name)
-    return connection.execute(select(result_files.c.content).where(chosen)).scalar()
+    row = connection.execute(select(result_files.c.content, result_files.c.digest).where(chosen)).first()
+    return None if row is None else as_kept(f"the file {name} of a result", row.digest, row.content)
+
+
+def get_summary(connection: Connection, key: str) -> str | None:
+    """The summary of a result. Raises Refused (``damaged-content``)."""
+    row = connection.execute(select(results.c.summary, results.c.digest).where(results.c.key == key)).first()
+    return None if row is None else as_kept("a result", row.digest, row.summary.encode()).decode()
+
+
+def as_kept(what: str, digest: str, content: bytes) -> bytes:
+    """The content, which has its digest unless it is of an older store. Raises Refused (``damaged-content``)."""
+    return checked(what, digest, content) if digest else content
+
+
+def all_keys(connection: Connection) -> list[str]:
+    """The keys of all results."""
+    return list(connection.execute(select(results.c.key).order_by(results.c.key)).scalars())

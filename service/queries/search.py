@@ -87,18 +87,23 @@ def places(
     name = table.c.name if first is None else first.c[0]
     place = _place(search, name)
     tie = table.c.number if search.is_by_words else name
+    descending = search.sort.startswith("-")
     # SQLite looks at conditions as they come: few rows are left for what everybody sees
     query: Select[Any] = select(name, place.label("place"), tie.label("tie"))
     query = _chosen(query.where(*conditions, *_beside(connection, search)), connection, search, first)
-    descending = search.sort.startswith("-")
     if after is not None:
-        value, last = after
-        beyond = place < value if descending else place > value
-        query = query.where(beyond if place is tie else or_(beyond, and_(place == value, tie > last)))
+        query = query.where(_beyond(place, tie, after, descending))
     # by name alone where that is the order: SQLite knows no index for a column and itself
     ordered = place.desc() if descending else place
     query = query.order_by(*((ordered,) if place is tie else (ordered, tie))).limit(size)
     return [(row[0], (row.place, row.tie)) for row in connection.execute(query, seen_by(viewer))]
+
+
+def _beyond(place: ColumnElement[Any], tie: ColumnElement[Any], after: Position, descending: bool) -> Condition:
+    """What comes behind a position in the order of ``place``, and of ``tie`` where that is equal."""
+    value, last = after
+    beyond = place < value if descending else place > value
+    return beyond if place is tie else or_(beyond, and_(place == value, tie > last))
 
 
 def _by_rank(

@@ -158,11 +158,14 @@ def get_damaged(connection: Connection, name: str, revision: int) -> Tree | None
     return None if row is None else Tree.of(connection, row)
 
 
-def replace_model(connection: Connection, tree: Tree) -> None:
-    """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays."""
+def replace_model(connection: Connection, tree: Tree, made_by: str = "") -> None:
+    """Put a tree that was coupled anew in the place of what is stored of the revision; its document stays.
+
+    ``made_by``: the software that did, if not that of this process.
+    """
     chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
     names = ("program", "dof", "joints", "mass", "summary", "summary_digest", "software", "seal")
-    row = _sealed(connection, {**asdict(tree), "software": ""})
+    row = _sealed(connection, {**asdict(tree), "software": made_by})
     connection.execute(update(trees).where(chosen).values({name: row[name] for name in names}))
     shown = {name: getattr(tree, name) for name in _NARROW}
     is_latest = (tree_names.c.name == tree.name) & (tree_names.c.latest == tree.revision)

@@ -58,7 +58,9 @@ def _dask(address: str) -> Callable[[], Engine]:
     try:
         module = import_module("service.jobs.dask")  # an extra; it takes long to load
     except ImportError:
-        raise SettingsError("the engine dask needs the extra: pip install 'substructures[dask]'") from None
+        raise SettingsError(
+            "the engine dask needs the extra: pip install 'substructures[dask]' (in a clone: pip install -e '.[dask]')"
+        ) from None
     return lambda: module.DaskEngine(address)
 
 

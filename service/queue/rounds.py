@@ -159,18 +159,25 @@ def _end(connection: Connection, round_: Round, touched: set[str], changes: Chan
         if each.outcome is None:
             lost = held[each.attempt.id]
             _again(connection, lost, (*lost.deaths, each.death), changes)
-    outcomes = [(each.attempt, each.outcome) for each in valid if each.outcome is not None]
-    kept = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None or outcome.files]
-    problems = {attempt.id: outcome.problem for attempt, outcome in outcomes if outcome.problem is not None}
-    problems |= _keep(connection, kept, round_.take)
-    finished = [(a, _dump(problems[a.id]) if a.id in problems else None) for a, _ in outcomes]
-    queue.finish(connection, finished)
+    finished = _finish(connection, round_, [(e.attempt, e.outcome) for e in valid if e.outcome is not None])
     for attempt, problem_text in finished:
         changes.add(attempt.job, "succeeded" if problem_text is None else "failed", [attempt.position])
     keys = [attempt.key for attempt, problem_text in finished if problem_text is None]
     if keys:
         for job, positions in jobs.succeed_equal(connection, touched, keys).items():
             changes.add(job, "succeeded", positions)
+
+
+def _finish(
+    connection: Connection, round_: Round, outcomes: Sequence[tuple[Attempt, Outcome]]
+) -> list[tuple[Attempt, str | None]]:
+    """Keep outcomes and finish their items: the problem of each, or None."""
+    kept = [(attempt, outcome) for attempt, outcome in outcomes if outcome.problem is None or outcome.files]
+    problems = {attempt.id: outcome.problem for attempt, outcome in outcomes if outcome.problem is not None}
+    problems |= _keep(connection, kept, round_.take)
+    finished = [(a, _dump(problems[a.id]) if a.id in problems else None) for a, _ in outcomes]
+    queue.finish(connection, finished)
+    return finished
 
 
 def _keep(

@@ -7,6 +7,7 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
+from service.analyses import printing
 from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -103,7 +104,7 @@ def _formula(
     request: Request,
     store: Store,
     viewer: Viewer,
-    style: models.Style,
+    style: printing.Style,
     chosen: Chosen,
     worker: Worker,
 ) -> Response:

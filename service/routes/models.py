@@ -7,10 +7,10 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.analyses import printing
 from service.analyses.exporting import ExportRequest
 from service.analyses.formulas import QUANTITIES, Options, check_options
 from service.analyses.grouping import check_group
-from service.analyses.printing import has_parts
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.one_state import OneStateRoute
@@ -18,7 +18,7 @@ from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
 from service.negotiation import MEDIA_TYPES
-from service.operations import at_hand, exports, models, trees, uploads
+from service.operations import at_hand, exports, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
@@ -132,7 +132,7 @@ def _export(
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
     """The digests of the programs that quantities are printed from."""
-    return [tree.program, *(part_programs(store, tree) if any(map(has_parts, quantities)) else ())]
+    return [tree.program, *(part_programs(store, tree) if any(map(printing.has_parts, quantities)) else ())]
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
@@ -156,7 +156,7 @@ def _quantity(
     quantity: str,
     request: Request,
     store: Store,
-    style: models.Style,
+    style: printing.Style,
     options: Options,
     group: bool,
     worker: Worker,
@@ -167,7 +167,7 @@ def _quantity(
         model = store.model(connection, tree)
     style = style.of(f"{tree.name}, revision {tree.revision}", quantity)
     if quantity not in QUANTITIES:
-        models.check_quantity(model, quantity)
+        printing.check_quantity(model, quantity)
     programs = _programs(store, tree, [quantity])
     chosen = [str(sorted(options.items()))]
     if group:
@@ -175,7 +175,7 @@ def _quantity(
         check_group(quantity, style)
         programs, chosen = [tree.program, *part_programs(store, tree)], ["grouped"]
     elif quantity not in QUANTITIES:
-        check_options(quantity, options, models.options_of_quantity(quantity))
+        check_options(quantity, options, printing.options_of_quantity(quantity))
         chosen = [f"{name}={x}" for name, x in options.items()]
     tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
     lasting = is_pinned(ref) and tree.is_public

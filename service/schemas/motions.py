@@ -58,7 +58,7 @@ _Column = Annotated[Reals, Field(min_length=2, max_length=100_000)]
 
 
 class Table(RequestPart):
-    """Values over time [s], piecewise constant (hold) or linear, or splines. Where ``interpolation`` is not given inputs
+    """Values over time [s], piecewise constant (hold), linear, or splines. Where ``interpolation`` is not given inputs
     are linear and prescribed motions quintic; these must have no kink.
     """
 

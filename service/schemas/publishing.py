@@ -10,8 +10,8 @@ from service.schemas.entries import DERIVED_FROM, NOTE, VISIBILITY, Visibility
 from service.schemas.resources import VersionView
 from service.schemas.shapes import Shape
 from substructures.documents.fields import LibraryName, Name, Number, TagName, Words
+from substructures.loads.ends import FrameOfTree
 from substructures.tree.document import REFERENCE
-from substructures.tree.load_document import FrameOfTree
 
 ParameterOfTree = Annotated[str, Field(max_length=129)]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import orjson
@@ -17,6 +17,7 @@ from service.queries.trees import Tree
 from service.queries.uses import Withdrawn
 from substructures.expr.unit_check import Notice
 from substructures.part.parameters import uncounted
+from substructures.quantities.warnings import no_coordinates
 
 _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
 
@@ -28,10 +29,10 @@ def part_warnings(version: Version) -> list[Notice]:
     return [*certificate.get("warnings", ()), *old]
 
 
-def tree_warnings(tree: Tree) -> list[Notice]:
+def tree_warnings(tree: Tree) -> Sequence[Mapping[str, str]]:
     """Warnings about a tree."""
-    found: list[Notice] = orjson.loads(tree.summary)["certificate"].get("warnings", [])
-    return found
+    stored: list[Notice] = orjson.loads(tree.summary)["certificate"].get("warnings", [])
+    return [*stored, *no_coordinates(tree.dof)]
 
 
 def version_view(

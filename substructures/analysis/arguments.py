@@ -13,7 +13,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 
 #: a number or an expression (substructures.expr.parse); floats stand for their shortest decimal text
 NumberOrExpression = int | float | Decimal | str

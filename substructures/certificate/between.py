@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, fmpq
@@ -52,6 +53,15 @@ class Between(ABC):
     def ends(self, load: Plain) -> tuple[Frame, Frame]:
         """The frames between which a load acts."""
 
+    @abstractmethod
+    def stretch(self, load: Plain, length: Ball, changes: Slopes) -> None:
+        """Q_a = -(k (l - l0) + c l') dl/dq^a of a spring and damper along a length l,   V = k (l - l0)^2 / 2."""
+
+    def law(self, load: Plain) -> tuple[Ball, Ball, Ball]:
+        """Its stiffness, damping and rest length."""
+        k, c, l0 = (self.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
+        return k, c, l0
+
     def turns(self, frame: Frame) -> dict[int, Matrix]:
         """w_a of all joints that carry a frame."""
         return {a: self.bodies.joints[a].w for a in self.bodies.path(frame.carrier)}
@@ -69,9 +79,7 @@ class Between(ABC):
         kind, start, end = measured(name) or ("", "", "")
         A, B = self.frame(start), self.frame(end)
         if kind == "distance":
-            d, changes = B.p - A.p, difference(self.moves(B, B.p), self.moves(A, A.p))
-            length = dot(d, d).sqrt()
-            return length, {a: dot(d, u) / length for a, u in changes.items()}
+            return distance(self, A, A.p, B, B.p)
         # tan(angle) = y / x of the first axis of B
         axis, turn, other = column(B.A, 0), self.turns(B), self.turns(A)
         x, y = (dot(axis, column(A.A, i)) for i in range(2))
@@ -105,6 +113,13 @@ class MeasuredNames(Mapping[str, Ball]):
         return name in self.names or (isinstance(name, str) and measured(name) is not None)
 
 
+def distance(found: Between, A: Frame, x: Matrix, B: Frame, y: Matrix) -> tuple[Ball, Slopes]:
+    """Of two points of frames, with its changes: e . (u_B - u_A)."""
+    d = y - x
+    length = dot(d, d).sqrt()
+    return length, {a: dot(d, u) / length for a, u in difference(found.moves(B, y), found.moves(A, x)).items()}
+
+
 def difference(x: Mapping[int, Matrix], y: Mapping[int, Matrix]) -> dict[int, Matrix]:
     """What two bodies move against each other."""
     return {a: x.get(a, _STILL) - y.get(a, _STILL) for a in {**x, **y}}
@@ -132,6 +147,21 @@ def bushing(found: Between, load: Plain) -> None:
             found.keep(k[i] * d_i * d_i * HALF, -k[i] * d_i, along)
         if found.is_steady(*load.get("angular_stiffness", NONE)):
             found.keep(h * (1 - dot(axis, other)), h, parallel)
+
+
+def cable(found: Between, load: Plain) -> None:
+    """A spring and damper along the sum of the distances of consecutive points."""
+    given = [{"frame": x} if isinstance(x, str) else x for x in load["along"]]
+    frames = [found.frame(x["frame"]) for x in given]
+    points = [F.p + F.A * found.numbers.vector(x.get("at", NONE)) for F, x in zip(frames, given, strict=True)]
+    total, changes = arb(0), dict[int, Ball]()
+    for (A, x), (B, y) in pairwise(zip(frames, points, strict=True)):
+        length, of_leg = distance(found, A, x, B, y)
+        total += length
+        changes = {a: changes.get(a, arb(0)) + of_leg.get(a, arb(0)) for a in {**changes, **of_leg}}
+    if load.get("slack"):
+        total = total.max(found.numbers.read(load.get("length", 0)))
+    found.stretch(load, total, changes)
 
 
 def in_world(found: Between, load: Plain) -> Matrix:

@@ -44,6 +44,11 @@ class Compared(NamedTuple):
     errors: dict[str, float | None]
     left_out: list[str]
 
+    @property
+    def not_judged(self) -> list[str]:
+        """The outputs of which it cannot be told whether they are right."""
+        return [name for name, error in self.errors.items() if error is None]
+
 
 def compare(
     program: Stored, kinds: Mapping[str, str], expected: Expected, defaults: Mapping[str, Any], states: int

@@ -128,11 +128,7 @@ def _reduced(cyclic: Sequence[str], rest: Sequence[str], m: ModelAt) -> Outputs:
     h = arb_mat(len(r), len(r), [_bilinear(g, pushed[a], pushed[b]) for a in n for b in n])
     result = Outputs()
     symmetric_of(result, "metric", h)
-    christoffel, gyroscopic = result.array("christoffel", (len(r),) * 3), result.array("gyroscopic", (len(r),) * 2)
-    for a in n:
-        for b in n:
-            gyroscopic[a, b] = 2 * _trilinear(gamma, pushed[a], pushed[b], w)
-            christoffel |= {(a, b, k): _trilinear(gamma, pushed[a], pushed[b], pushed[k]) for k in n}
+    _velocity_terms(result, gamma, pushed, w)
     vector_of(result, "forces", [Q[r[a]] - _trilinear(gamma, pushed[a], w, w) for a in n])
     amended = m.scalar("potential_energy") + dot(p, [w[i] for i in c]) / 2
     result.scalar("amended_potential", amended)
@@ -141,6 +137,18 @@ def _reduced(cyclic: Sequence[str], rest: Sequence[str], m: ModelAt) -> Outputs:
     result.scalar("routhian", kinetic + coupling - amended)
     vector_of(result, "cyclic_velocities", [w[i] + total(pushed[a][i] * v[a] for a in n) for i in c])
     return result
+
+
+def _velocity_terms(
+    result: Outputs, gamma: Mapping[Index, Ball], pushed: Sequence[Mapping[int, Ball]], w: Mapping[int, Ball]
+) -> None:
+    """Gamma of the coordinates that are left, and what is linear in their rates: 2 Gamma(P_a, P_b, w)."""
+    n = range(len(pushed))
+    christoffel, gyroscopic = result.array("christoffel", (len(n),) * 3), result.array("gyroscopic", (len(n),) * 2)
+    for a in n:
+        for b in n:
+            gyroscopic[a, b] = 2 * _trilinear(gamma, pushed[a], pushed[b], w)
+            christoffel |= {(a, b, k): _trilinear(gamma, pushed[a], pushed[b], pushed[k]) for k in n}
 
 
 def _bilinear(g: Any, x: Mapping[int, Ball], y: Mapping[int, Ball]) -> Ball:

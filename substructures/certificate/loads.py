@@ -15,6 +15,8 @@ from substructures.certificate.between import (
     MeasuredNames,
     Slopes,
     bushing,
+    cable,
+    distance,
     force_changes,
     in_world,
     torque_changes,
@@ -123,6 +125,23 @@ class _OwnFrames(Between):
         """To the potential."""
         self.forces.potential += energy
         _add(self.forces.slopes, {a: law * x for a, x in changes.items() if a in self.forces.joints})
+
+    def stretch(self, load: Plain, length: Ball, changes: Slopes) -> None:
+        """A host moves all frames like one body, so that a is a joint of the definition itself."""
+        found, (k, c, l0) = self.forces, self.law(load)
+        reach = {a: changes.get(a, arb(0)) for a in found.joints}
+        # l' = dl/dq^a q'^a
+        tension = k * (length - l0) + c * self.rate(reach)
+        _add(found.applied, {a: -tension * w for a, w in reach.items()})
+        pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
+        if _measures(load.get("stiffness", 0), load.get("length", 0)):
+            return
+        if found.depends(load.get("stiffness", 0), load.get("length", 0)):
+            if _is_gradient(found, load, (k, length - l0), reach):
+                found.bent.append(pulls)
+        else:
+            found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
+            _add(found.slopes, pulls)
 
     def is_steady(self, *given: Any) -> bool:
         """Whether numbers name no measures, coordinates and velocities."""
@@ -312,30 +331,9 @@ def _keep(found: Forces, frame: Frame, x: Matrix | None, load: Plain, given: Mat
 
 
 def _spring(found: Forces, load: Plain) -> None:
-    """Q_a = -(k (l - l0) + c l') dl/dq^a,   V = k (l - l0)^2 / 2,   dl/dq^a = e . (u_to,a - u_from,a).
-
-    A host moves both ends like one body, so that a is a joint of the definition itself.
-    """
-    (_, start, u_start), (_, end, u_end) = found.point(load["from"]), found.point(load["to"])
-    k, c, l0 = (found.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
-    x = end - start
-    length = dot(x, x).sqrt()
-    e, reach = x / length, dict.fromkeys(found.joints, arb(0))
-    _add(reach, {a: dot(e, u) for a, u in u_end.items() if a in reach})
-    _add(reach, {a: -dot(e, u) for a, u in u_start.items() if a in reach})
-    # l' = dl/dq^a q'^a
-    speed = sum((w * found.rate(a) for a, w in reach.items()), arb(0))
-    tension = k * (length - l0) + c * speed
-    _add(found.applied, {a: -tension * w for a, w in reach.items()})
-    pulls = {a: -k * (length - l0) * w for a, w in reach.items()}
-    if _measures(load.get("stiffness", 0), load.get("length", 0)):
-        return
-    if found.depends(load.get("stiffness", 0), load.get("length", 0)):
-        if _is_gradient(found, load, (k, length - l0), reach):
-            found.bent.append(pulls)
-    else:
-        found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
-        _add(found.slopes, pulls)
+    """Between two points of bodies."""
+    (A, x, _), (B, y, _) = found.point(load["from"]), found.point(load["to"])
+    found.between.stretch(load, *distance(found.between, A, x, B, y))
 
 
 def _is_gradient(found: Forces, load: Plain, law: tuple[Ball, Ball], reach: Mapping[int, Ball]) -> bool:
@@ -362,6 +360,7 @@ LOADS: dict[str, Callable[[Forces, Plain], None]] = {
     "torque": _torque,
     "spring": _spring,
     "bushing": lambda found, load: bushing(found.between, load),
+    "cable": lambda found, load: cable(found.between, load),
     "potential": _potential,
     "friction": _friction_load,
 }

@@ -19,8 +19,9 @@ from substructures.certificate.served import (
     symmetric_of,
     vector_of,
 )
-from substructures.certificate.stored import operations_in_balls
+from substructures.certificate.stored import Pruned, operations_in_balls, pruned
 from substructures.certificate.texts import slope
+from substructures.expr.operations import Output
 
 
 def perturbed(inputs: Sequence[str], multipliers: Sequence[str]) -> Expectation:
@@ -59,12 +60,22 @@ def _closed(result: Outputs, m: ModelAt, multipliers: Sequence[Ball]) -> None:
     series |= {
         name: arb_series([q, v, w / 2]) for name, q, v, w in zip(m.coordinates, m.q, m.rates, m.second, strict=True)
     }
-    found = operations_in_balls(m.program, series)
-    output = m.program.outputs[names[1]]
+    found, output = _along(pruned(m.program, names[1:]), series)
     for name, order, factor in (("closure.jacobian_rate", 1, 1), ("closure.jacobian_second", 2, 2)):
         entries = result.array(name, shape)
         for index, entry in zip(output.index, output.entries, strict=True):
             entries[index] = _coefficient(found[entry], order) * factor
+
+
+def _along(program: Pruned, series: Mapping[str, Any]) -> tuple[list[Any], Output]:
+    """G as power series of the time, operations and all; nowhere else than in G is a root or a quotient looked at. Not
+    numbers where one of them has no series.
+    """
+    (output,) = program.outputs.values()
+    try:
+        return operations_in_balls(program, series), output
+    except ValueError:  # a divisor whose enclosure has 0 in it
+        return [arb_series([arb("nan")] * 3)] * len(program.operations), output
 
 
 def _coefficient(x: Any, order: int) -> Ball:

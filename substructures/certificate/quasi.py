@@ -43,11 +43,7 @@ class Quasi:
         B = [self._row(label, m) for label in self.rows]
         # Y q' = (v, 0), Y^-1 = [T S]
         Y = arb_mat(n, n, [x for row in (*own, *B) for x in row])
-        try:
-            inverse = Y.inv()
-        except ZeroDivisionError:
-            inverse = arb_mat(n, n, [arb("nan")] * n * n)
-        T, S = _columns(inverse, range(p)), _columns(inverse, range(p, n))
+        T, S = _inverse(Y, p)
         rates, result = times(T, v), Outputs()
         here = m.at({f"{q}'": x for q, x in zip(m.coordinates, rates, strict=True)})
         # the stored T is compared with this one, so that its changes are those of T
@@ -71,19 +67,9 @@ class Quasi:
         # both forms are those of g* v' + bias = forces
         vector_of(result, "hamel_bias", bias)
         vector_of(result, "forces", times(T.transpose(), Q))
-        # [X_i, X_j] = c^k_ij X_k
-        along = [turned([T[a, i] for a in range(n)]) for i in range(p)]
-        structure = result.array("structure", (n, p, p))
-        for i in range(p):
-            for j in range(p):
-                bracket = [along[i][a, j] - along[j][a, i] for a in range(n)]
-                structure |= {(k, i, j): x for k, x in enumerate(times(Y, bracket))}
+        _structure(result, Y, [turned([T[a, i] for a in range(n)]) for i in range(p)])
         vector_of(result, "multipliers", times(S.transpose(), missing))
-        result.scalar("kinetic_energy", here.kinetic_energy())
-        result.scalar("potential_energy", here.scalar("potential_energy"))
-        moved = here.along({"t": arb(1)} | dict(zip(m.coordinates, rates, strict=True)))
-        power = total(f * x for f, x in zip(Q, rates, strict=True))
-        result.scalar("lost_power", power + moved.scalar("potential_energy"))
+        _energies(result, here, rates)
         if self.gaps:
             vector_of(result, "gaps", [self._gap(label, m) for label in self.gaps])
         return result
@@ -139,6 +125,35 @@ class Quasi:
             down = down - unit(2) * down[2, 0]
             down = down / dot(down, down).sqrt()
         return plane, down * -radius
+
+
+def _inverse(Y: Matrix, p: int) -> tuple[Matrix, Matrix]:
+    """The first p columns of Y^-1 and the others, which are nothing where Y is singular."""
+    n: Any = Y.nrows()
+    try:
+        inverse = Y.inv()
+    except ZeroDivisionError:
+        inverse = arb_mat(n, n, [arb("nan")] * n * n)
+    return _columns(inverse, range(p)), _columns(inverse, range(p, n))
+
+
+def _structure(result: Outputs, Y: Matrix, along: Sequence[Matrix]) -> None:
+    """[X_i, X_j] = c^k_ij X_k; ``along``: dT in the direction of every X."""
+    n, p = int(Y.nrows()), len(along)
+    structure = result.array("structure", (n, p, p))
+    for i in range(p):
+        for j in range(p):
+            bracket = [along[i][a, j] - along[j][a, i] for a in range(n)]
+            structure |= {(k, i, j): x for k, x in enumerate(times(Y, bracket))}
+
+
+def _energies(result: Outputs, here: ModelAt, rates: Sequence[Ball]) -> None:
+    """T, V, and the power that is lost: Q.q' + V'."""
+    result.scalar("kinetic_energy", here.kinetic_energy())
+    result.scalar("potential_energy", here.scalar("potential_energy"))
+    moved = here.along({"t": arb(1)} | dict(zip(here.coordinates, rates, strict=True)))
+    power = total(f * x for f, x in zip(here.vector("forces"), rates, strict=True))
+    result.scalar("lost_power", power + moved.scalar("potential_energy"))
 
 
 def _columns(matrix: Matrix, some: Sequence[int]) -> Matrix:

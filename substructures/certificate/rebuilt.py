@@ -19,9 +19,9 @@ from substructures.errors import VerificationFailed
 TENSOR = ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2))
 
 
-def require_same(result: Stored, source: Stored, bound: Mapping[str, Any], what: str) -> None:
+def require_same(result: Stored, source: Stored, bound: Mapping[str, Any], what: str) -> list[str]:
     """Raise VerificationFailed unless the outputs of ``result`` are those of ``source`` with the values ``bound`` for
-    some of its symbols: numbers, or expressions in the others.
+    some of its symbols: numbers, or expressions in the others. Returns the outputs that cannot be judged.
     """
 
     def expected(values: Mapping[str, Ball]) -> Outputs:
@@ -30,7 +30,7 @@ def require_same(result: Stored, source: Stored, bound: Mapping[str, Any], what:
 
     kinds = {symbol.name: symbol.kind for symbol in source.symbols if symbol.name not in bound}
     try:
-        compare(result, kinds, expected, {}, states_between(result.operations, source.operations))
+        return compare(result, kinds, expected, {}, states_between(result.operations, source.operations)).not_judged
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
 

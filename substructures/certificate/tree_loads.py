@@ -16,7 +16,8 @@ from substructures.certificate.between import (
     MeasuredNames,
     Slopes,
     bushing,
-    difference,
+    cable,
+    distance,
     force_changes,
     in_world,
     torque_changes,
@@ -79,17 +80,18 @@ class TreeForces(Between):
             for name in names_of(steps_of(x))
         )
 
+    def stretch(self, load: Plain, length: Ball, changes: Slopes) -> None:
+        """With a potential if neither stiffness nor rest length moves."""
+        k, c, l0 = self.law(load)
+        self.add(-k * (length - l0) - c * self.rate(changes), changes)
+        if self.is_steady(load.get("stiffness", 0), load.get("length", 0)):
+            self.keep(k * (length - l0) * (length - l0) * HALF, -k * (length - l0), changes)
+
 
 def _spring(found: TreeForces, load: Plain) -> None:
-    """Q_a = -(k (l - l0) + c l') dl/dq^a,   V = k (l - l0)^2 / 2."""
     A, B = found.ends(load)
     x, y = (F.p + F.A * found.parameters.vector(load.get(f, NONE)) for F, f in ((A, "from_at"), (B, "to_at")))
-    k, c, l0 = (found.numbers.read(load.get(name, 0)) for name in ("stiffness", "damping", "length"))
-    length = dot(y - x, y - x).sqrt()
-    changes = {a: dot(y - x, u) / length for a, u in difference(found.moves(B, y), found.moves(A, x)).items()}
-    found.add(-k * (length - l0) - c * found.rate(changes), changes)
-    if found.is_steady(load.get("stiffness", 0), load.get("length", 0)):
-        found.keep(k * (length - l0) * (length - l0) * HALF, -k * (length - l0), changes)
+    found.stretch(load, *distance(found, A, x, B, y))
 
 
 def _force(found: TreeForces, load: Plain) -> None:
@@ -134,6 +136,7 @@ def _potential(found: TreeForces, load: Plain) -> None:
 LOADS: dict[str, Callable[[TreeForces, Plain], None]] = {
     "spring": _spring,
     "bushing": bushing,
+    "cable": cable,
     "force": _force,
     "torque": _torque,
     "joint": _joint_load,

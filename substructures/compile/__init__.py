@@ -2,50 +2,20 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Sequence
-from pathlib import Path
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
-from substructures.compile import cache, target
-from substructures.compile.angles import by_addition_theorem
-from substructures.compile.emission import assembly
-from substructures.compile.engine import shared_runtime
-from substructures.compile.kernel import InterpretedKernel, Kernel
-from substructures.compile.lowering import lower
-from substructures.compile.machine import MachineKernel
-from substructures.compile.recipe import Recipe
-from substructures.expr.program import Program
+if TYPE_CHECKING:  # what is imported when it is first asked for
+    from substructures.compile.compiled import compile_program
+    from substructures.compile.kernel import Kernel
 
 __all__ = ["Kernel", "compile_program"]
 
-
-def compile_program(
-    program: Program, outputs: Sequence[str], folder: Path | None = None, width: int | None = None
-) -> Kernel:
-    """A kernel for the named outputs; the reference interpreter where llvmlite is missing.
-
-    ``folder``: a cache of compiled kernels, found by program, outputs, CPU and compiler (see
-    :mod:`substructures.compile.cache`). ``width``: states in a vector, 2, 4 or 8; default: the host's.
-    Raises KeyError for an unknown output.
-    """
-    names = tuple(dict.fromkeys(outputs))
-    if not target.available():
-        return InterpretedKernel(program, names)
-    source = by_addition_theorem(program, names)
-    runtime = shared_runtime(width or target.host().width, folder)
-    if folder is None:
-        return MachineKernel(source, names, *_compiled(source, names, runtime.width), runtime)
-    wanted = cache.key(program.digest, names, f"{target.host().identity} {runtime.width}")
-    found = cache.read(folder, wanted)
-    # whatever else is wrong with an entry: it is made anew
-    with contextlib.suppress(KeyError, TypeError, ValueError, RuntimeError):
-        if found is not None:
-            return MachineKernel(source, names, Recipe.read(found[0]), found[1], runtime)
-    recipe, code = _compiled(source, names, runtime.width)
-    cache.write(folder, wanted, recipe.plain(), code)
-    return MachineKernel(source, names, recipe, code, runtime)
+_WHERE = {"Kernel": "kernel", "compile_program": "compiled"}
 
 
-def _compiled(program: Program, names: Sequence[str], width: int) -> tuple[Recipe, bytes]:
-    lowered = lower(program, names, fused=target.host().fused)
-    return Recipe.of(lowered, program), target.assemble(assembly(lowered, program.operations, width))
+def __getattr__(name: str) -> Any:
+    """A public name, imported when it is first asked for: who reads settings compiles nothing."""
+    if name not in _WHERE:
+        raise AttributeError(f"module 'substructures.compile' has no attribute '{name}'")
+    return getattr(import_module(f"substructures.compile.{_WHERE[name]}"), name)

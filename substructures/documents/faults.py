@@ -39,7 +39,13 @@ def faults_of(error: ValidationError, data: Any, model: type[BaseModel]) -> list
             message_of(e, model),
         )
         for e in _likely(error.errors(include_url=False), data)
+        if not _is_long_enough(e)
     ]
+
+
+def _is_long_enough(error: Error) -> bool:
+    """Pydantic calls a list too short that would be long enough, were all its entries right."""
+    return error["type"] == "too_short" and len(error["input"]) >= error["ctx"]["min_length"]
 
 
 def _likely(errors: Sequence[Any], data: Any) -> Iterator[Any]:

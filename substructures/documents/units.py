@@ -132,7 +132,8 @@ def _read_by_pint(text: str) -> Unit:
         one, none = (pint.Quantity(Fraction(n), pint.parse_units(words)).to_root_units() for n in (1, 0))
         factor, roots = Fraction(one.magnitude), {str(name): Fraction(n) for name, n in one.unit_items()}
     except Exception:  # whatever pint raises: undefined names, logarithmic units, unbalanced parentheses
-        raise UnknownUnitError(f"the unit '{text}' is not known{meant(text, [*_SI, *_USUAL])}") from None
+        like = meant(text, [*_SI, *_USUAL]) or "; there are for example mm, deg, N m/rad and kg*m^2"
+        raise UnknownUnitError(f"the unit '{text}' is not known{like}") from None
     if none.magnitude != 0:
         raise UnknownUnitError(f"the unit '{text}' counts from a zero of its own and has no factor to SI")
     exponents, radians = [Fraction(0)] * len(BASE), roots.pop("radian", Fraction(0))

@@ -18,6 +18,7 @@ from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
+from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
 from substructures.tree.model import require_stored
@@ -119,13 +120,16 @@ class Function:
 
 @dataclass(frozen=True)
 class Exported:
-    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single."""
+    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``warnings``
+    (pointer, code, message): what those who use them must know.
+    """
 
     name: str
     interface: Interface
     functions: tuple[Function, ...]
     form: str = "compact"
     precision: str = "double"
+    warnings: tuple[Mapping[str, str], ...] = ()
 
     @property
     def real(self) -> str:
@@ -158,6 +162,7 @@ class Exported:
             },
             "frames": list(self.interface.frames),
             "functions": [each.document(self.called(each)) for each in self.functions],
+            "warnings": [dict(warning) for warning in self.warnings],
         }
 
 
@@ -212,7 +217,8 @@ def _exported(
     functions = tuple(Function(q, each, interface, packed=table) for q, (each, table) in outputs.items())
     for each in functions:
         each.require_signature()
-    return Exported(name, interface, functions)
+    warnings = not_judged_warnings(q for q, each in bound.items() if each.not_judged)
+    return Exported(name, interface, functions, warnings=tuple(warnings))
 
 
 def quantity_program(sources: Sources, quantity: str) -> Program:
@@ -220,7 +226,7 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
     model, wanted = sources.model, list(outputs_of(quantity))
     if made_of(quantity) is not None:
         found = sources.program(TABLE[quantity].source)
-        return found if {*wanted} == {*found.outputs} else found.select(wanted)
+        return found.select([name for name in found.outputs if name in wanted])
     if quantity == "christoffel":
         require_stored(model.program, wanted)
     if any(name not in model.program.outputs for name in wanted):

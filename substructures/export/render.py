@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import prod
 
 from substructures.display import shown
@@ -75,12 +75,14 @@ def render(
     quantity: str = "",
     definitions: Definitions | None = None,
     glossary: Program | None = None,
+    warnings: Sequence[Mapping[str, str]] = (),
 ) -> str:
     """A program in one of FORMATS, ``form`` compact or expanded; notebooks show text and LaTeX as mathematics.
 
     In a language it is the function ``name_quantity`` on the calling convention of the ``interface`` that it needs
     (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output. ``definitions``: of
-    symbols, ``glossary``: names of intermediate quantities, both for formats for people.
+    symbols, ``glossary``: names of intermediate quantities, both for formats for people; ``warnings``
+    (pointer, code, message): what readers must know, in formats for people and in comments of code.
     Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name, without an interface,
     and for a quantity that depends on what its signature does not have.
     """
@@ -88,16 +90,17 @@ def render(
         message = f"{format[:40]!r} is not one of {', '.join(FORMATS)}{meant(format, FORMATS)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
     if format not in LANGUAGES:
-        text = write(program, format, form, name, limit, definitions, glossary)
-        return shown(text, format, lambda: write(program, "latex", form, name, limit, definitions, glossary))
+        notes = [f"Warning: {each['message']}" for each in warnings]
+        text = write(program, format, form, name, limit, definitions, glossary, notes)
+        return shown(text, format, lambda: write(program, "latex", form, name, limit, definitions, glossary, notes))
     if interface is None:
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)
     if made_of(quantity) is not None:  # without what tells whether it could be computed
-        program = program.select([name for name in outputs_of(quantity) if name in program.outputs])
+        program = program.select([name for name in program.outputs if name in outputs_of(quantity)])
     function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
     function.require_signature()
-    exported = Exported(check_name(name), interface, (function,), form)
+    exported = Exported(check_name(name), interface, (function,), form, warnings=tuple(warnings))
     return text_of(exported, LANGUAGES[format], limit)
 
 

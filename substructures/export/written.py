@@ -4,6 +4,7 @@ stands in comments at their beginning."""
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 
 from substructures.export.exported import Exported
 from substructures.export.languages.code import head
@@ -22,7 +23,7 @@ def written(format_: str, suffix: str, exported: Exported, limit: int, commented
     found = {}
     for function in exported.functions:
         called = exported.called(function)
-        alone = Exported(exported.name, exported.interface, (function,), exported.form)
+        alone = replace(exported, functions=(function,))
         about = "\n".join(map(commented, head(alone, 1, SOFTWARE)))
         first, line, rest = render(function.program, format_, FORMS[0], called, limit).partition("\n")
         declared = first + line if first.startswith("<?xml") else ""

@@ -110,21 +110,39 @@ def folded_product(graph: Nodes[T], a: T, b: T, fp: int) -> T:
     if found is not None and (not found.args or graph.serves(found, "mul", a, b)):
         return -found
     if a.is_number or b.is_number:
-        if a is graph.one or b is graph.one:
-            return b if a is graph.one else a
-        if a.is_number and b.is_number:
-            return graph.number(a.value * b.value)
+        known = _product_with_number(graph, a, b)
+        if known is not None:
+            return known
     if a.negative or b.negative:
-        positive = (-a if a.negative else a) * (-b if b.negative else b)
+        positive = _without_sign(a) * _without_sign(b)
         return positive if a.negative == b.negative else -positive
     if b.is_number:
         a, b = b, a
+    folded = _number_outside(a, b) if a.op == "mul" or b.op == "mul" else None
+    if folded is None and (a.op == "sqrt" or b.op == "sqrt"):
+        folded = square_of_root(a, b)
+    return graph.node("mul", (a, b), fp) if folded is None else folded
+
+
+def _product_with_number(graph: Nodes[T], a: T, b: T) -> T | None:
+    """1 x = x, and the product of two numbers."""
+    if a is graph.one or b is graph.one:
+        return b if a is graph.one else a
+    return graph.number(a.value * b.value) if a.is_number and b.is_number else None
+
+
+def _without_sign(x: T) -> T:
+    found: T = -x if x.negative else x
+    return found
+
+
+def _number_outside(a: T, b: T) -> T | None:
+    """a (2 x) = 2 (a x), the number of products in front; numbers of both as one."""
     if b.op == "mul" and b.args[0].is_number:
         return (a * b.args[0]) * b.args[1] if a.is_number else b.args[0] * (a * b.args[1])
     if a.op == "mul" and a.args[0].is_number:
         return a.args[0] * (a.args[1] * b)
-    square = square_of_root(a, b) if a.op == "sqrt" or b.op == "sqrt" else None
-    return square or graph.node("mul", (a, b), fp)
+    return None
 
 
 def folded_quotient(graph: Nodes[T], a: T, b: T) -> T:
@@ -138,6 +156,6 @@ def folded_quotient(graph: Nodes[T], a: T, b: T) -> T:
     if found is not None and (not found.args or graph.serves(found, "div", a, b)):
         return found
     if a.negative or b.negative:
-        positive = (-a if a.negative else a) / (-b if b.negative else b)
+        positive = _without_sign(a) / _without_sign(b)
         return positive if a.negative == b.negative else -positive
     return graph.node("div", (a, b), fp)

@@ -55,7 +55,7 @@ def hoisted(source: Program) -> Program:
         name: Output(o.shape, o.index, tuple(map(write.place, o.entries)), o.symmetry)
         for name, o in source.outputs.items()
     }
-    return Program(source.symbols, tuple(write.made), outputs)
+    return Program(source.symbols, tuple(write.made), outputs, source.not_judged)
 
 
 class _Writer:

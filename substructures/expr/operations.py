@@ -164,24 +164,32 @@ def _check_elements(name: str, output: Output) -> None:
 def _check(i: int, operation: Operation, symbols: int) -> None:
     op = operation[0] if operation and isinstance(operation[0], str) else None
     if op in ("int", "rat"):
-        numbers = operation[1:]
-        if len(numbers) != (1 if op == "int" else 2) or not all(_is_integer(n) for n in numbers):
-            raise InvalidProgram(f"bad number {str(operation)[:80]}", i)
-        if op == "rat" and int(numbers[1]) <= 0:
-            raise InvalidProgram("denominator is not positive", i)
+        _check_number(i, operation)
     elif op == "sym":
         if len(operation) != 2 or not _in_range(operation[1], symbols):
             raise InvalidProgram("unknown symbol", i)
     elif op in ARITY or op == "powi":
-        arity = ARITY.get(op, 1)
-        if len(operation) != 1 + arity + (op == "powi"):
-            raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
-        if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
-            raise InvalidProgram("an operand does not refer to an earlier entry", i)
-        if op == "powi" and not (_is_index(operation[2], signed=True) and abs(operation[2]) <= MAX_EXPONENT):
-            raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
+        _check_operands(i, op, operation)
     else:
         raise InvalidProgram(f"unknown operation {str(op)[:80]!r}", i)
+
+
+def _check_number(i: int, operation: Operation) -> None:
+    op, *numbers = operation
+    if len(numbers) != (1 if op == "int" else 2) or not all(_is_integer(n) for n in numbers):
+        raise InvalidProgram(f"bad number {str(operation)[:80]}", i)
+    if op == "rat" and int(numbers[1]) <= 0:
+        raise InvalidProgram("denominator is not positive", i)
+
+
+def _check_operands(i: int, op: str, operation: Operation) -> None:
+    arity = ARITY.get(op, 1)
+    if len(operation) != 1 + arity + (op == "powi"):
+        raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
+    if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
+        raise InvalidProgram("an operand does not refer to an earlier entry", i)
+    if op == "powi" and not (_is_index(operation[2], signed=True) and abs(operation[2]) <= MAX_EXPONENT):
+        raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
 
 
 def _in_range(x: Any, n: int) -> bool:

@@ -10,7 +10,7 @@ from __future__ import annotations
 import hashlib
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -60,11 +60,16 @@ __all__ = [
 
 @dataclass(frozen=True)
 class Program:
-    """Symbols, operations and named outputs. Build with :func:`program`, read with :meth:`from_bytes`."""
+    """Symbols, operations and named outputs. Build with :func:`program`, read with :meth:`from_bytes`.
+
+    ``not_judged``: outputs of which a certificate could not tell whether they are right, as what they have to be has
+    no finite value at any state that was tried; not part of what is stored.
+    """
 
     symbols: tuple[Symbol, ...]
     operations: tuple[Operation, ...]
     outputs: Mapping[str, Output] = field(hash=False)
+    not_judged: frozenset[str] = field(default=frozenset(), compare=False)
 
     def __len__(self) -> int:
         return len(self.operations)
@@ -142,7 +147,13 @@ class Program:
             tuple(self.symbols[i] for i in used),
             tuple(renumbered(self.operations[i], new, symbol) for i in keep),
             {n: _moved(self.outputs[n], new) for n in names},
+            self.not_judged & frozenset(names),
         )
+
+    def marked(self, not_judged: Iterable[str]) -> Program:
+        """The program with more of its outputs not judged."""
+        more = (self.outputs.keys() & not_judged) - self.not_judged
+        return replace(self, not_judged=self.not_judged | more) if more else self
 
     def count(self, names: Iterable[str] | None = None, per_state: bool = False) -> dict[str, int]:
         """Operations by name; ``total`` = additions, subtractions, multiplications and divisions.

@@ -39,7 +39,7 @@ MAX_DEPTH = 64
 MAX_DIGITS = 400
 
 _TOKEN = re.compile(
-    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*)"
+    r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*'*)"
     r"|(?P<op>\*\*|[-+*/^(),;:]))",
     re.ASCII,
 )
@@ -49,7 +49,7 @@ RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
 CURVES = ("monotone", "smooth")
 #: measures of two frames
 MEASURES = ("distance", "angle")
-_MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.-]+), ([A-Za-z0-9_.-]+)\)", re.ASCII)
+_MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.]+), ([A-Za-z0-9_.]+)\)", re.ASCII)
 #: further functions and how many arguments they have; only names before a parenthesis, so that names stay free
 LAWS = {
     **dict.fromkeys(("abs", "sign", "exp", "log", "tanh", "asin", "acos", "atan"), 1),

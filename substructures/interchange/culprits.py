@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -125,15 +126,9 @@ def _bodies(
     """The bodies whose differences are seen in Y: those that are not, alone or in pairs, are left out."""
     nothing = _Carried("", 0.0, np.zeros(3), np.zeros((3, 3)))
     pairs = {k: (masses[0].get(k, nothing), masses[1].get(k, nothing)) for k in {*masses[0], *masses[1]} if k >= 0}
-    seen = _effects(a, own, {k: x.ten() - y.ten() for k, (x, y) in pairs.items()}, values)
-    scale = max((float(np.abs(x).max(initial=0)) for x in _effects(
-        a, own, {k: x.ten() for k, (x, _) in pairs.items()}, values).values()), default=0.0)  # fmt: skip
-    left = {k for k, x in seen.items() if np.abs(x).max(initial=0) > SAME * scale}
-    for k in sorted(left):
-        for j in sorted(left):
-            if k < j and {k, j} <= left and np.abs(seen[k] + seen[j]).max() <= SAME * scale:
-                left -= {k, j}
-    for k in sorted(left):
+    whole = _effects(a, own, {k: x.ten() for k, (x, _) in pairs.items()}, values)
+    scale = max((float(np.abs(x).max(initial=0)) for x in whole.values()), default=0.0)
+    for k in _seen(_effects(a, own, {k: x.ten() - y.ten() for k, (x, y) in pairs.items()}, values), SAME * scale):
         x, y = (side.described() for side in pairs[k])
         largest = {
             kind: max(abs(v) for side in (x, y) for n, v in side.items() if n.startswith(kind)) or 1.0
@@ -142,6 +137,15 @@ def _bodies(
         for name, value in x.items():
             if abs(value - y[name]) > 1e-8 * largest[name.partition(".")[0]]:
                 yield Culprit(pairs[k][0].name or pairs[k][1].name, name, value, y[name])
+
+
+def _seen(effects: Mapping[int, Array], least: float) -> list[int]:
+    """What has an effect of its own, which no other one takes back."""
+    left = {k for k, x in effects.items() if np.abs(x).max(initial=0) > least}
+    for j, k in combinations(sorted(left), 2):
+        if {j, k} <= left and np.abs(effects[j] + effects[k]).max() <= least:
+            left -= {j, k}
+    return sorted(left)
 
 
 def _effects(a: Side, own: Carriers, numbers: Mapping[int, Array], values: Mapping[str, float]) -> dict[int, Array]:

@@ -18,6 +18,7 @@ from substructures.interchange.urdf.reader import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
 _CELLS = re.compile(rb"[,;\t]")
+#: a row of a table without its head
 #: what reads a root element, with the contents of included files by name
 Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 #: by the root element of XML formats

@@ -10,7 +10,7 @@ with anchors and axes in the axes of the link. A link without motions is fixed.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.errors import among
@@ -143,10 +143,6 @@ class Robot:
     loops: tuple[Loop, ...] = ()
     gravity: Triple | None = None
     gravity_place: Place | None = None
-
-    def with_links(self, links: Mapping[str, Link]) -> Robot:
-        """With some links in place of those of the same name."""
-        return replace(self, links=tuple(links.get(link.name, link) for link in self.links))
 
 
 def tell_of_missing_masses(robot: Robot) -> None:

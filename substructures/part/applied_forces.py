@@ -5,14 +5,14 @@ from __future__ import annotations
 from fractions import Fraction
 
 from substructures.expr.graph import Expr
-from substructures.mechanics.linear3 import ZERO, dot, sub
-from substructures.part.kinematics import Kinematics, own_place, point_kinematics
+from substructures.loads.document import LoadFormulas
+from substructures.loads.pairs import Reach
+from substructures.part.kinematics import Kinematics
 from substructures.part.load_names import depends_on_state, load_names
-from substructures.part.loads import Between, Loads, PairVector, Spring
+from substructures.part.loads import Loads
 from substructures.part.mechanism import Mechanism, Stops
-from substructures.part.pair_laws import bushing_forces, kept
-from substructures.part.pairs import Pair, Reach, axes_in_world
-from substructures.part.potentials import found_potential, gradient_forces, spring_potential
+from substructures.part.own_names import OwnNames
+from substructures.part.potentials import found_potential
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
@@ -27,28 +27,24 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
 
     The potential energy is that of as much of these forces as has one: -d_a V is a part of Q_a, exactly.
     """
-    zero = m.graph.zero
-    forces = [loads.joint_forces.get(a, zero) for a in range(len(m.joints))]
+    zero, names = m.graph.zero, OwnNames(m, k)
+    forces = [zero for _ in m.joints]
     #: terms of those that are given as formulas: whether they have a potential is to be found out
-    given = [list(loads.joint_terms.get(a, ())) for a in range(len(m.joints))]
+    given: list[list[Expr]] = [[] for _ in m.joints]
     potential = zero
+    for load in loads.joints:
+        forces[load.a] = forces[load.a] + load.force
+        given[load.a] += load.terms
     for a, entry in enumerate(m.topology.joints):
         stretch = m.graph.symbol(entry.coordinate) - m.laws[a].rest
         tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
         forces[a] = forces[a] + tau
         potential = potential + _joint_law(m, a, stretch, forces, given)
-    for energy in loads.potentials:
-        # Q_a = -d_a V
-        forces = [x + y for x, y in zip(forces, gradient_forces(m, energy), strict=True)]
-        potential = potential + energy
-    for spring in loads.springs:
-        potential = potential + _spring_force(m, spring, k, forces)
-    for reach, energy in (*loads.measured, *(_between(m, each, k) for each in loads.between)):
-        for a, Q in reach.items():
-            forces[a] = forces[a] + Q
-        potential = potential + energy
+    found = LoadFormulas(Reach(dict(enumerate(forces))), potential)
+    for law in loads.laws:
+        law.acts(names, found)
     m.scope.finish()
-    return forces, potential + found_potential(m, given)
+    return list(found.forces.values()), found.potential + found_potential(m, given)
 
 
 def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[list[Expr]]) -> Expr:
@@ -88,50 +84,3 @@ def _stop_force(m: Mechanism, a: int, stops: Stops, forces: list[Expr]) -> Expr:
             push = push + stops.damping * (velocity(m, a) * sign) * p
         forces[a] = forces[a] - push * sign
     return potential
-
-
-def _between(m: Mechanism, load: Between, k: Kinematics) -> tuple[Reach, Expr]:
-    """What a bushing, a force or a moment between two frames does, and its potential."""
-    pair = Pair(m.graph, own_place(k, load.start), own_place(k, load.end, load.at))
-    law = load.law
-    if isinstance(law, PairVector):
-        vector = axes_in_world(pair.A if law.of_start else pair.B, law.vector)
-        return pair.reach(N=vector) if law.moment else pair.reach(F=vector), m.graph.zero
-    forces, along, about = bushing_forces(pair, law, [velocity(m, a) for a in range(len(m.joints))])
-    energy = kept(along, load.steady[0], m.scope, f"{load.pointer}/stiffness")
-    return forces, energy + kept(about, load.steady[1], m.scope, f"{load.pointer}/angular_stiffness")
-
-
-def _spring_force(m: Mechanism, spring: Spring, k: Kinematics, forces: list[Expr]) -> Expr:
-    """Adds Q_a = -(k (1 - l0/l) + c l'/l) x . dx_a, x from end to end; returns V = k (l - l0)^2 / 2, or where k or l0
-    depend on the state what is found.
-    """
-    start, end = (point_kinematics(k, *e) for e in spring.ends)
-    # x = r_to - r_from,   w_a = x . (u_to,a - u_from,a),   l l' = w_a q'^a
-    x = sub(end.position, start.position)
-    reach = {a: m.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in {**start.u, **end.u}}
-    length2 = m.graph.lift(dot(x, x))
-    if length2.is_zero:
-        m.scope.fault(spring.pointer, "coincident-ends", "the ends of the spring are one and the same point")
-        return m.graph.zero
-    # of a spring without rest length: k, and V = k l^2 / 2
-    factor: Expr = spring.stiffness
-    energy: Expr = spring.stiffness * length2
-    if not spring.length.is_zero:
-        # k (1 - l0/l) in place of k, and V = k (l - l0)^2 / 2
-        length = m.graph.sqrt(length2)
-        factor = factor - spring.stiffness * spring.length / length
-        energy = spring.stiffness * (length - spring.length) ** 2
-    if spring.measured:
-        energy = kept(energy, False, m.scope, spring.pointer)
-    elif depends_on_state(m.topology, spring.stiffness, spring.length):
-        # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
-        energy = 2 * spring_potential(m, {a: -(factor * w) for a, w in reach.items()}, spring.pointer)
-    if not spring.damping.is_zero:
-        speed = m.graph.sum(velocity(m, a) * w for a, w in reach.items() if w is not m.graph.zero)
-        # c l'/l = c (l l') / l^2
-        factor = factor + spring.damping * speed / length2
-    # Q_a = -(k (1 - l0/l) + c l'/l) w_a
-    for a, w in reach.items():
-        forces[a] = forces[a] - factor * w
-    return energy * Fraction(1, 2)

@@ -90,6 +90,12 @@ def told(found: Compared) -> dict[str, Any]:
     return {"max_relative_error": found.errors, **left_out}
 
 
+def not_judged(certificate: Mapping[str, Any]) -> list[str]:
+    """The outputs of which a certificate cannot tell whether they are right."""
+    errors: Mapping[str, Any] = certificate.get("direct_form", {}).get("max_relative_error", {})
+    return [name for name, error in errors.items() if error is None]
+
+
 def require_no_less(before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
     """Raise VerificationFailed where a certificate made anew vouches for less than the one that is stored."""
     given = {name: before.get(name) for name in HOW}

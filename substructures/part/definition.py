@@ -1,20 +1,19 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
 Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.part.topology`,
-:mod:`substructures.part.scope` and :mod:`substructures.part.loads`, physics by :mod:`substructures.part.physics`.
+:mod:`substructures.part.loads`, physics by :mod:`substructures.part.physics`.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Annotated, Any, Literal
+from typing import Any, Literal
 
-from pydantic import ConfigDict, Discriminator, Field, Tag, ValidationInfo, field_validator, model_validator
+from pydantic import Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
 from substructures.documents.fields import (
-    BY_TYPE,
     LibraryName,
     Name,
     Number,
@@ -27,6 +26,8 @@ from substructures.documents.fields import (
 from substructures.documents.tables import with_points
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import InvalidDocument
+from substructures.loads.friction import FrictionLaw
+from substructures.loads.kinds import LoadOfPart
 
 MAX_BODIES = 500
 
@@ -113,18 +114,6 @@ class BearingFriction(DocumentPart):
     axial_radius: Number | None = Field(None, description="r_a of its thrust bearing; m")
 
 
-class FrictionLaw(DocumentPart):
-    """Dry friction of a coordinate, against its rate v: (F_c + (F_s - F_c) exp(-(v/v_s)^2)) tanh(v/v_0).
-
-    Without ``stribeck`` it is F_c tanh(v/v_0), and ``static`` is that of rest alone, in simulations that stick exactly.
-    """
-
-    coulomb: Number = Field(description="F_c; N m or N")
-    static: Number | None = Field(None, description="F_s, at rest, default as coulomb; N m or N")
-    stribeck: Number | None = Field(None, description="v_s, over which it falls from static to coulomb; rad/s or m/s")
-    velocity: Number = Field(description="v_0, over which the direction changes; rad/s or m/s")
-
-
 class JointFriction(FrictionLaw):
     """Dry friction as a field of a joint."""
 
@@ -183,135 +172,6 @@ class Port(DocumentPart):
     body: Name
     position: NumberVector = Field((0, 0, 0), description="m")
     rotation: PortRotation = PortRotation()
-
-
-class Point(DocumentPart):
-    """A point fixed in a body."""
-
-    body: Name
-    at: NumberVector = Field((0, 0, 0), description="m")
-
-
-class ForceLoad(DocumentPart):
-    """A force at a point of a body."""
-
-    type: Literal["force"]
-    body: Name
-    at: NumberVector = Field((0, 0, 0), description="m")
-    vector: NumberVector = Field(description="N")
-    frame: Literal["body", "world"] = "body"
-
-
-class TorqueLoad(DocumentPart):
-    """A free moment on a body."""
-
-    type: Literal["torque"]
-    body: Name
-    vector: NumberVector = Field(description="N m")
-    frame: Literal["body", "world"] = "body"
-
-
-class SpringLoad(DocumentPart):
-    """A spring and damper between two points; its stiffness may depend on the state: force k (l - length) + c l'."""
-
-    type: Literal["spring"]
-    from_: Point = Field(alias="from")
-    to: Point
-    stiffness: Number = Field(0, description="N/m")
-    damping: Number = Field(0, description="N s/m")
-    length: Number = Field(0, description="m; unstretched")
-
-    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
-
-
-class JointLoad(DocumentPart):
-    """A generalised force on a coordinate."""
-
-    type: Literal["joint"]
-    coordinate: Name
-    force: Number = Field(description="N m or N")
-
-
-class PotentialLoad(DocumentPart):
-    """Forces by their potential V in coordinates, parameters, inputs and t: Q_a = -dV/dq^a."""
-
-    type: Literal["potential"]
-    potential: Number = Field(description="J")
-
-
-class FrictionLoad(FrictionLaw):
-    """Dry friction of a coordinate, as the field ``friction`` of its joint; a coordinate has one."""
-
-    type: Literal["friction"]
-    coordinate: Name
-
-
-class _Between(DocumentPart):
-    """``from`` and ``to``: bodies (``base`` among them) or ports."""
-
-    from_: Name = Field("base", alias="from", description="body or port")
-    to: Name = Field(description="body or port")
-
-    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
-
-
-class BushingLoad(_Between):
-    """Springs and dampers along and about the three axes of the frame ``from``, between the origins of both frames.
-
-    d: from the origin of ``from`` to that of ``to``, forces -k_i d_i - c_i d_i' on ``to`` along the axes of ``from``.
-    The angular springs have the potential sum_j h_j (1 - e_j . m_j) of the axes e_j of ``from`` and m_j of ``to``, with
-    h_j = (k_1 + k_2 + k_3)/2 - k_j: moments -k_i theta_i for small angles.
-    """
-
-    type: Literal["bushing"]
-    stiffness: NumberVector = Field((0, 0, 0), description="N/m; along the three axes")
-    damping: NumberVector = Field((0, 0, 0), description="N s/m; along the three axes")
-    angular_stiffness: NumberVector = Field((0, 0, 0), description="N m/rad; about the three axes")
-    angular_damping: NumberVector = Field((0, 0, 0), description="N m s/rad; about the three axes")
-
-
-class ForceBetween(_Between):
-    """A force on the frame ``to`` at a point; the opposite force acts on ``from`` at the same place."""
-
-    type: Literal["force"]
-    at: NumberVector = Field((0, 0, 0), description="m; the point in the frame 'to'")
-    vector: NumberVector = Field(description="N")
-    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
-
-
-class TorqueBetween(_Between):
-    """A free moment on the frame ``to``; the opposite one acts on ``from``."""
-
-    type: Literal["torque"]
-    vector: NumberVector = Field(description="N m")
-    axes: Literal["to", "from", "world"] = Field("to", description="in whose axes the vector is")
-
-
-def _one_or_two(data: Any) -> str:
-    """Whether a force or torque acts on one body, or between two frames."""
-    named = data if isinstance(data, Mapping) else type(data).model_fields
-    return "between" if {"from", "from_", "to"} & set(named) else "on"
-
-
-#: a force or torque on a body, or between two frames
-_Force = Annotated[
-    Annotated[ForceLoad, Tag("on")] | Annotated[ForceBetween, Tag("between")], Discriminator(_one_or_two)
-]
-_Torque = Annotated[
-    Annotated[TorqueLoad, Tag("on")] | Annotated[TorqueBetween, Tag("between")], Discriminator(_one_or_two)
-]
-
-
-def _without_mapping(schema: dict[str, Any]) -> None:
-    """OpenAPI has no discriminator that maps a word to two schemas."""
-    schema.pop("discriminator", None)
-
-
-Load = Annotated[
-    _Force | _Torque | SpringLoad | BushingLoad | JointLoad | PotentialLoad | FrictionLoad,
-    Field(discriminator="type", json_schema_extra=_without_mapping),
-    BY_TYPE,
-]
 
 
 class Input(Measured):
@@ -377,7 +237,7 @@ class Definition(WithTables):
     inputs: dict[Name, Input] = Field({}, max_length=500)
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
     ports: tuple[Port, ...] = Field((), max_length=500)
-    loads: tuple[Load, ...] = Field((), max_length=1000)
+    loads: tuple[LoadOfPart, ...] = Field((), max_length=1000)
     left_out: tuple[LeftOut, ...] = Field((), max_length=1000, description="what the source says beside the equations")
 
     def __repr__(self) -> str:

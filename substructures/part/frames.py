@@ -8,6 +8,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import array, program
 from substructures.expr.trigonometry import of_sum
+from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.linear3 import (
     IDENTITY,
     Matrix,
@@ -21,7 +22,6 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.parallel_axes import one_after_the_other
-from substructures.part.scope import Scope, no_names
 
 #: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
 AXES: tuple[Matrix, Matrix, Matrix] = (

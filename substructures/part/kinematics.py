@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+from substructures.loads.pairs import Place
 from substructures.mechanics.kinematics import (
     INTERFACE,
     Columns,
@@ -19,7 +20,6 @@ from substructures.mechanics.kinematics import (
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Rotation, Turn, Vector, add, apply, cross, transpose
 from substructures.part.frames import Frame
 from substructures.part.mechanism import Mechanism
-from substructures.part.pairs import Place
 
 
 @dataclass(frozen=True)
@@ -78,7 +78,7 @@ def point_kinematics(k: Kinematics, carrier: int, at: Vector) -> PointKinematics
     return PointKinematics(add(k.poses[carrier].r, apply(back, z)), u)
 
 
-def own_place(k: Kinematics, frame: Frame, at: Vector = ZERO) -> Place:
-    """A point of a frame of the part."""
-    link = frame_link(k, frame.placed(IDENTITY, at))
+def own_place(k: Kinematics, frame: Frame) -> Place:
+    """The origin of a frame of the part."""
+    link = frame_link(k, frame)
     return Place(k, link.parent, from_body(k.links, link), k.pose(link.parent).beyond(link))

@@ -8,8 +8,8 @@ from substructures.errors import among
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
 from substructures.expr.unit_check import Notice
+from substructures.loads.scope import Scope, no_names
 from substructures.part.definition import Definition
-from substructures.part.scope import Scope, no_names
 
 _WEIGHTLESS = "no mass, moment of inertia or armature moves with '{}': forces do not determine its acceleration"
 

@@ -3,19 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from typing import Any
 
-from substructures.documents.fields import in_si
 from substructures.expr.graph import Expr
 from substructures.expr.integrate import symbols_of
 from substructures.expr.operations import Symbol
-from substructures.expr.syntax import ExpressionError, read
+from substructures.loads.scope import Lookup, Scope
 from substructures.part.definition import Definition
 from substructures.part.parameters import si_unit
-from substructures.part.scope import Lookup, Scope
 from substructures.part.topology import Topology
-
-NONE: frozenset[str] = frozenset()
 
 
 def load_names(scope: Scope, definition: Definition, topology: Topology) -> Lookup:
@@ -49,28 +44,14 @@ def load_names(scope: Scope, definition: Definition, topology: Topology) -> Look
     return lookup
 
 
-def names_in(value: Any) -> frozenset[str]:
-    """The names in a number or expression; none in one that cannot be read, which is told where it is evaluated."""
-    text = in_si(value)
-    try:
-        return frozenset(str(step.value) for step in read(text) if step.op == "name") if isinstance(text, str) else NONE
-    except ExpressionError:
-        return NONE
-
-
 def velocities(topology: Topology) -> frozenset[str]:
     """The names of all velocities q'^a."""
     return frozenset(f"{name}'" for name in topology.coordinates)
 
 
-def state(topology: Topology) -> frozenset[str]:
-    """The names of all coordinates and velocities."""
-    return velocities(topology) | frozenset(topology.coordinates)
-
-
 def depends_on_state(topology: Topology, *exprs: Expr) -> bool:
     """Whether one of the expressions contains a coordinate or a velocity."""
-    return not symbols_of(exprs).isdisjoint(state(topology))
+    return any(name.removesuffix("'") in topology.coordinates for name in symbols_of(exprs))
 
 
 def velocity_in(topology: Topology, exprs: Iterable[Expr]) -> str | None:

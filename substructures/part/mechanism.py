@@ -8,9 +8,10 @@ from typing import Any
 from substructures.documents.fields import in_si
 from substructures.errors import among
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.laws import tanh
 from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
+from substructures.loads.friction import Friction, FrictionLaw, FrictionLoad, read_friction
+from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.composite_form import Inertia, binet
 from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation
 from substructures.mechanics.linear3 import (
@@ -25,18 +26,10 @@ from substructures.mechanics.linear3 import (
     scale,
     transpose,
 )
-from substructures.part.definition import (
-    BearingFriction,
-    Body,
-    Definition,
-    FrictionLaw,
-    FrictionLoad,
-    JointFriction,
-)
+from substructures.part.definition import BearingFriction, Body, Definition, JointFriction
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
 from substructures.part.parameters import si_unit
-from substructures.part.scope import Lookup, Scope, no_names
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
@@ -50,30 +43,6 @@ class Stops:
     high: Expr
     stiffness: Expr
     damping: Expr
-
-
-@dataclass(frozen=True)
-class Friction:
-    """Dry friction of a coordinate; expressions in parameters. ``stribeck``: None where it does not fall with speed."""
-
-    coulomb: Expr
-    static: Expr
-    stribeck: Expr | None
-    velocity: Expr
-
-    def force(self, rate: Expr) -> Expr:
-        """(F_c + (F_s - F_c) exp(-(q'/v_s)^2)) tanh(q'/v_0), which changes its direction over some v_0.
-
-        The first factor: B. Armstrong-Helouvry, P. Dupont, C. Canudas de Wit, Automatica 30, 1994.
-        """
-        size = self.coulomb
-        if self.stribeck is not None:
-            size = size + (self.static - self.coulomb) * rate.graph.function("exp", -((rate / self.stribeck) ** 2))
-        return size * tanh(rate / self.velocity)
-
-    def row(self) -> tuple[Expr, Expr, Expr, Expr]:
-        """F_c, F_s, v_s (0 where there is none) and v_0."""
-        return self.coulomb, self.static, self.stribeck or self.coulomb.graph.zero, self.velocity
 
 
 @dataclass(frozen=True)
@@ -170,24 +139,6 @@ def friction_of(definition: Definition, entry: JointEntry) -> FrictionLaw | None
         given = given[entry.step]
     loads = (x for x in definition.loads if isinstance(x, FrictionLoad) and x.coordinate == entry.coordinate)
     return given or next(loads, None)
-
-
-def read_friction(scope: Scope, given: FrictionLaw, place: str, lookup: Lookup | None = None) -> Friction | None:
-    """The numbers of dry friction; None after a fault."""
-    read = {
-        name: scope.read(value, f"{place}/{name}", lookup)
-        for name in ("coulomb", "static", "stribeck", "velocity")
-        if (value := getattr(given, name)) is not None
-    }
-    for name, x in read.items():
-        is_speed = name in ("stribeck", "velocity")
-        if x.is_number and (x.negative or (is_speed and x.is_zero)) and not scope.faults:
-            what = "positive" if is_speed else "not negative"
-            scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is {what}")
-            return None
-    if scope.faults:
-        return None
-    return Friction(read["coulomb"], read.get("static", read["coulomb"]), read.get("stribeck"), read["velocity"])
 
 
 class _Builder:

@@ -105,18 +105,20 @@ def with_own_inertia(part: Part, program: Program) -> Program:
     known = {symbol.name: symbol for symbol in part.program.symbols}
     lifted = {name: graph.lift(x) for name, x in bindings.items()}
     result = collect(graph, replay(program, graph, lifted), known)
-    _require_own(part, program, result)
-    return result
+    return result.marked(program.not_judged.union(_require_own(part, program, result)))
 
 
-def _require_own(part: Part, program: Program, result: Program) -> None:
-    """Raise VerificationFailed unless the outputs are those of the program with the part's own inertia."""
+def _require_own(part: Part, program: Program, result: Program) -> list[str]:
+    """Raise VerificationFailed unless the outputs are those of the program with the part's own inertia; returns those
+    that cannot be judged.
+    """
     kinds = {symbol.name: symbol.kind for symbol in part.program.symbols if symbol.kind != "inertia"}
     own, symbols = part.program, part.inertia_symbols
-    compare(
+    found = compare(
         result,
         kinds,
         lambda values: own_outputs(program, own, symbols, values),
         defaults_of(plain(part.definition)),
         states_between(result.operations, own.operations, program.operations),
     )
+    return found.not_judged

@@ -1,61 +1,93 @@
-"""What expressions of the loads of a part may name: what those of joints may, and measures of its own frames."""
+"""The names of a part where its loads are read and act: its own coordinates, bodies and ports."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from substructures.errors import meant
+from substructures.errors import among, meant
 from substructures.expr.graph import Expr
-from substructures.expr.syntax import measured
+from substructures.loads.names import LEFT_OUT, Elastic, End, Names
+from substructures.loads.pairs import Place, Reach
+from substructures.mechanics.linear3 import IDENTITY, ZERO, Vector, dot, sub
 from substructures.part.frames import Frame
-from substructures.part.kinematics import Kinematics, own_kinematics, own_place
-from substructures.part.load_names import load_names, names_in, state
+from substructures.part.kinematics import Kinematics, own_kinematics, own_place, point_kinematics
+from substructures.part.load_names import depends_on_state, load_names
 from substructures.part.mechanism import Mechanism
-from substructures.part.pair_laws import Measures
-from substructures.part.pairs import Place
-from substructures.part.scope import Lookup
+from substructures.part.potentials import spring_potential
 
 
-class OwnNames:
-    """The names of a part at their places; its kinematics are formed where a measure needs them."""
+class OwnNames(Names):
+    """Of a part; its kinematics ``k`` are formed where a measure needs them, if they are not given."""
 
-    def __init__(self, m: Mechanism) -> None:
-        self.m = m
-        self.plain = load_names(m.scope, m.definition, m.topology)
-        self.measures = Measures(m.scope, self._place, self.plain, self._rates)
+    def __init__(self, m: Mechanism, k: Kinematics | None = None) -> None:
+        self.m, self._k = m, k
+        self._plain = load_names(m.scope, m.definition, m.topology)
+        self.coordinates = {name: a for a, name in enumerate(m.topology.coordinates)}
+        super().__init__(m.scope)
 
     @cached_property
     def kinematics(self) -> Kinematics:
         """Poses and columns."""
-        return own_kinematics(self.m)
+        return own_kinematics(self.m) if self._k is None else self._k
 
-    def at(self, pointer: str) -> Lookup:
-        """The lookup of names of the expression at a pointer."""
-        return self.measures.at(pointer)
+    @property
+    def rates(self) -> Sequence[Expr]:
+        """q'^a."""
+        return [rate for name in self.coordinates if (rate := self._plain(f"{name}'")) is not None]
 
-    def is_steady(self, *values: Any) -> bool:
-        """Whether numbers or expressions name parameters, inputs and the time alone, nothing that moves."""
-        moving = state(self.m.topology)
-        return not self.measures_in(*values) and all(names_in(value).isdisjoint(moving) for value in values)
+    def plain(self, name: str) -> Expr | None:
+        """Parameters, the time, inputs, coordinates and velocities."""
+        return self._plain(name)
 
-    def measures_in(self, *values: Any) -> bool:
-        """Whether they name measures of frames."""
-        return any(measured(name) is not None for value in values for name in names_in(value))
+    def constant(self, name: str) -> Expr | None:
+        """A parameter."""
+        return self.scope.names.get(name)
 
-    def frame(self, name: str, pointer: str) -> Frame | None:
-        """A body or port; a fault, and None, where there is none."""
-        frames = {**self.m.bodies, **self.m.ports}
-        if name not in frames:
-            message = f"no body or port '{name}'; there are {', '.join(frames)}{meant(name, frames)}"
-            self.m.scope.fault(pointer, "unknown-frame", message)
-        return frames.get(name)
+    def is_world(self, frame: str) -> bool:
+        """A part has frames of its own alone."""
+        del frame
+        return False
 
-    def _place(self, name: str, pointer: str) -> Place | None:
-        frame = self.frame(name, pointer)
-        return None if frame is None else own_place(self.kinematics, frame)
+    def anchor(self, end: End, point: Vector) -> Frame | None:
+        """A point of a body or port."""
+        frames = self.m.bodies if end.is_body else {**self.m.bodies, **self.m.ports}
+        if end.frame in frames:
+            return frames[end.frame].placed(IDENTITY, point)
+        if end.is_body:
+            like = among(end.frame, frames, len(self.scope.faults))
+            self.scope.fault(end.pointer, "unknown-body", f"unknown body '{end.frame}'{like}")
+        else:
+            message = f"no body or port '{end.frame}'; there are {', '.join(frames)}{meant(end.frame, frames)}"
+            self.scope.fault(end.pointer, "unknown-frame", message)
+        return None
 
-    def _rates(self) -> Sequence[Expr]:
-        rates = (self.plain(f"{name}'") for name in self.m.topology.coordinates)
-        return [rate for rate in rates if rate is not None]
+    def place(self, anchor: Frame) -> Place:
+        """In the interface frame."""
+        return own_place(self.kinematics, anchor)
+
+    def stretch(self, ends: Sequence[Frame]) -> tuple[Reach, Expr]:
+        """By the velocities of the points, which take the fewest operations in the interface frame."""
+        start, end = (point_kinematics(self.kinematics, frame.carrier, frame.position) for frame in ends)
+        x, both = sub(end.position, start.position), {**start.u, **end.u}
+        reach = {a: self.graph.lift(dot(x, sub(end.u.get(a, ZERO), start.u.get(a, ZERO)))) for a in both}
+        return Reach(reach), self.graph.lift(dot(x, x))
+
+    def elastic(self, spring: Elastic, energy: Expr, pulls: Callable[[], Mapping[int, Expr]]) -> Expr:
+        """Where the spring depends on the state, 2 V of what is found of its force."""
+        if self.measures_in(*spring.given):
+            return self.kept(energy, False, spring.pointer)
+        if not depends_on_state(self.m.topology, spring.stiffness, spring.length):
+            return energy
+        # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
+        return 2 * spring_potential(self.m, pulls(), spring.pointer)
+
+    def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:
+        """What measures frames is a force without potential."""
+        lookup = self.lookup(pointer)
+        force = self.scope.read(value, pointer, lookup)
+        if not self.measures_in(value):
+            return force, self.scope.terms(value, pointer, lookup)
+        self.without_potential(f"this force measures frames, and no potential of it is looked for: {LEFT_OUT}", pointer)
+        return force, []

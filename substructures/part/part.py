@@ -13,7 +13,7 @@ from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.unit_check import UnitCheck
-from substructures.part.certificate import certify_part, require_no_less, told_agreement
+from substructures.part.certificate import certify_part, not_judged, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
@@ -65,7 +65,7 @@ class Part:
     @classmethod
     def load(cls, definition: Definition, program_bytes: bytes, certificate: Mapping[str, Any]) -> Part:
         """A stored part. Raises InvalidProgram when the bytes are damaged."""
-        return cls(definition, Program.from_bytes(program_bytes), certificate)
+        return cls(definition, Program.from_bytes(program_bytes).marked(not_judged(certificate)), certificate)
 
     @cached_property
     def topology(self) -> Topology:
@@ -223,7 +223,8 @@ def derive(
     """
     start = perf_counter()
     m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
-    return Part(definition, result, _certificate(m, result, units, perf_counter() - start))
+    certificate = _certificate(m, result, units, perf_counter() - start)
+    return Part(definition, result.marked(not_judged(certificate)), certificate)
 
 
 @without_collections

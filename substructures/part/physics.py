@@ -12,9 +12,9 @@ from substructures.array import Array
 from substructures.expr.exact import nearest_float
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
+from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.linear3 import dense
 from substructures.part.mechanism import Mechanism
-from substructures.part.scope import Scope, no_names
 
 PhysicsFault = tuple[str, str]  #: code, message
 

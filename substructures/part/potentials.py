@@ -11,19 +11,14 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from substructures.errors import TooLarge
-from substructures.expr.differentiate import derivative, gradient
+from substructures.expr.differentiate import derivative
 from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr
 from substructures.expr.integrate import LIMIT, filtered, from_zero, needed, potential, symbols_of
 from substructures.expr.walk import transfer
+from substructures.loads.names import LEFT_OUT
 from substructures.part.load_names import velocity_in
 from substructures.part.mechanism import Mechanism
-from substructures.part.pair_laws import LEFT_OUT
-
-
-def gradient_forces(m: Mechanism, energy: Expr) -> list[Expr]:
-    """Q_a = -dV/dq^a for every coordinate."""
-    return [-x for x in gradient([energy], m.topology.coordinates)[0]]
 
 
 def spring_potential(m: Mechanism, forces: Mapping[int, Expr], pointer: str) -> Expr:

@@ -1,6 +1,6 @@
 """Units in definitions: every number has the dimension of its place, as far as the expressions tell.
 
-Numbers are converted to SI where they are read (:meth:`substructures.part.scope.Scope.read`); here it is checked that
+Numbers are converted to SI where they are read (:meth:`substructures.loads.scope.Scope.read`); here it is checked that
 they may stand where they stand, and noted what was converted.
 """
 
@@ -10,51 +10,37 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from substructures.documents import DocumentPart
-from substructures.documents.units import NUMBER, Dimension, read_unit
+from substructures.documents.units import NUMBER, Dimension
 from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.syntax import measured
 from substructures.expr.unit_check import Place, UnitCheck, dimension_of
-from substructures.part.angles import angle_warnings
-from substructures.part.definition import (
-    Definition,
-    FrictionLaw,
-    FrictionLoad,
-    InertiaTensor,
-    Input,
-    Joint,
-    JointLoad,
-    Load,
-    Parameter,
-    Placement,
-    SpringLoad,
+from substructures.loads.friction import FRICTION
+from substructures.loads.units import (
+    ANGLE,
+    ANGULAR_DAMPING,
+    ANGULAR_STIFFNESS,
+    COORDINATE,
+    DAMPING,
+    LENGTH,
+    RATE,
+    STIFFNESS,
+    dimension,
+    fields_of,
+    of_kind,
+    vector,
 )
+from substructures.part.angles import angle_warnings
+from substructures.part.definition import Definition, InertiaTensor, Input, Joint, Parameter, Placement
 from substructures.part.topology import Topology
 
-
-def _dimension(text: str) -> Dimension:
-    return read_unit(text).dimension
-
-
-ANGLE = NUMBER
-LENGTH, MASS, INERTIA = _dimension("m"), _dimension("kg"), _dimension("kg m^2")
-FORCE, TORQUE, ACCELERATION = _dimension("N"), _dimension("N m"), _dimension("m/s^2")
-#: of a revolute and of a prismatic coordinate
-COORDINATE = (ANGLE, LENGTH)
-RATE = (_dimension("rad/s"), _dimension("m/s"))
-EFFORT = (TORQUE, FORCE)
+MASS, INERTIA, ACCELERATION = dimension("kg"), dimension("kg m^2"), dimension("m/s^2")
 #: fields of joints by coordinate
 JOINT: dict[str, tuple[Dimension, Dimension]] = {
-    "stiffness": (_dimension("N m/rad"), _dimension("N/m")),
-    "damping": (_dimension("N m s/rad"), _dimension("N s/m")),
+    "stiffness": (ANGULAR_STIFFNESS, STIFFNESS),
+    "damping": (ANGULAR_DAMPING, DAMPING),
     "armature": (INERTIA, MASS),
     "rest": COORDINATE,
     "limits": COORDINATE,
-}
-#: of dry friction
-FRICTION: dict[str, tuple[Dimension, Dimension]] = {
-    **dict.fromkeys(("coulomb", "static"), EFFORT),
-    **dict.fromkeys(("stribeck", "velocity"), RATE),
 }
 #: of what reactions add to it
 FRICTION_LOAD: dict[str, tuple[Dimension, Dimension]] = {
@@ -64,33 +50,16 @@ FRICTION_LOAD: dict[str, tuple[Dimension, Dimension]] = {
 #: of end stops: stiffness, and damping of a rate for a depth
 STOP: dict[str, tuple[Dimension, Dimension]] = {
     "stiffness": JOINT["stiffness"],
-    "damping": (_dimension("N m s/rad^2"), _dimension("N s/m^2")),
+    "damping": (dimension("N m s/rad^2"), dimension("N s/m^2")),
 }
-ENERGY = _dimension("J")
 ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH, "tau": LENGTH}
-SPRING = {"stiffness": _dimension("N/m"), "damping": _dimension("N s/m"), "length": LENGTH}
-#: dimensions of the numbers of a load by its type; those of a joint load and of friction depend on the coordinate
-LOADS: dict[str, dict[str, Dimension]] = {
-    "spring": SPRING,
-    "bushing": {
-        "stiffness": SPRING["stiffness"],
-        "damping": SPRING["damping"],
-        "angular_stiffness": _dimension("N m/rad"),
-        "angular_damping": _dimension("N m s/rad"),
-    },
-    "force": {"at": LENGTH, "vector": FORCE},
-    "torque": {"vector": TORQUE},
-    "joint": {},
-    "friction": {},
-    "potential": {"potential": ENERGY},
-}
 
 
 def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     """The units of a definition against their places."""
     names = {name: dimension_of(each.unit) for name, each in (definition.parameters | definition.inputs).items()}
     places = _Places(definition, topology)
-    moving: dict[str, Inferred] = {"t": Dimensioned(_dimension("s"), sure=False)}
+    moving: dict[str, Inferred] = {"t": Dimensioned(dimension("s"), sure=False)}
     for joint in topology.joints:
         moving[joint.coordinate] = Dimensioned(COORDINATE[joint.s], sure=False)
         moving[f"{joint.coordinate}'"] = Dimensioned(RATE[joint.s], sure=False)
@@ -147,13 +116,7 @@ class _Places:
         """Forces, torques, springs, bushings, joint loads, friction and potentials."""
         kinds = {entry.coordinate: entry.s for entry in self.topology.joints}
         for i, load in enumerate(self.definition.loads):
-            yield from _load(f"/loads/{i}", load, kinds)
-
-
-def vector(pointer: str, values: Sequence[Any], dimension: Dimension | None) -> Iterator[Place]:
-    """The elements of a vector."""
-    for i, value in enumerate(values):
-        yield f"{pointer}/{i}", value, dimension
+            yield from load.places(f"/loads/{i}", kinds)
 
 
 def placement_places(pointer: str, placement: Placement) -> Iterator[Place]:
@@ -164,8 +127,8 @@ def placement_places(pointer: str, placement: Placement) -> Iterator[Place]:
 
 def _joint(pointer: str, joint: Joint, kinds: Sequence[int]) -> Iterator[Place]:
     """A joint with one coordinate or more; ``kinds``: 1 of prismatic ones."""
-    for name, dimension in ROW.items():
-        yield f"{pointer}/{name}", getattr(joint, name), dimension
+    for name, expected in ROW.items():
+        yield f"{pointer}/{name}", getattr(joint, name), expected
     if joint.placement is not None:
         yield from placement_places(f"{pointer}/placement", joint.placement)
     yield from vector(f"{pointer}/axis", joint.axis or (), None)
@@ -184,15 +147,9 @@ def _laws(
         if isinstance(given, tuple):
             law, place = (given[step], f"{pointer}/{step}") if step < len(given) else (None, pointer)
         if law is not None:
-            yield from _fields(place, law, fields, s)
+            yield from fields_of(place, law, of_kind(fields, s))
             if getattr(law, "load", None) is not None:
-                yield from _fields(f"{place}/load", law.load, FRICTION_LOAD, s)
-
-
-def _fields(pointer: str, law: Any, fields: Mapping[str, tuple[Dimension, Dimension]], s: int) -> Iterator[Place]:
-    for name, dimensions in fields.items():
-        if getattr(law, name) is not None:
-            yield f"{pointer}/{name}", getattr(law, name), dimensions[s]
+                yield from fields_of(f"{place}/load", law.load, of_kind(FRICTION_LOAD, s))
 
 
 def _by_coordinate(
@@ -208,34 +165,6 @@ def _by_coordinate(
             yield from vector(place, value, dimensions[s])
         else:
             yield place, value, dimensions[s]
-
-
-def _load(pointer: str, load: Load, kinds: Mapping[str, int]) -> Iterator[Place]:
-    if isinstance(load, SpringLoad):
-        for key, end in (("from", load.from_), ("to", load.to)):
-            yield from vector(f"{pointer}/{key}/at", end.at, LENGTH)
-    elif isinstance(load, JointLoad) and load.coordinate in kinds:
-        yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
-    elif isinstance(load, FrictionLoad) and load.coordinate in kinds:
-        yield from friction_places(pointer, load, kinds[load.coordinate])
-    yield from fields_of(pointer, load, LOADS[load.type])
-
-
-def fields_of(pointer: str, load: DocumentPart, fields: Mapping[str, Dimension]) -> Iterator[Place]:
-    """The numbers and vectors of a load that have one dimension each."""
-    for name, dimension in fields.items():
-        value = getattr(load, name, None)
-        if isinstance(value, tuple):
-            yield from vector(f"{pointer}/{name}", value, dimension)
-        elif value is not None:
-            yield f"{pointer}/{name}", value, dimension
-
-
-def friction_places(pointer: str, load: FrictionLaw, kind: int) -> Iterator[Place]:
-    """The numbers of friction on a revolute (0) or prismatic (1) coordinate."""
-    for name, dimensions in FRICTION.items():
-        if getattr(load, name) is not None:
-            yield f"{pointer}/{name}", getattr(load, name), dimensions[kind]
 
 
 def dimension_of_measure(name: str) -> Inferred:

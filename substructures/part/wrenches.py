@@ -8,13 +8,17 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass
+from typing import TypeGuard
 
+from substructures.loads.names import Names, names_in
+from substructures.loads.vectors import ForceBetween, ForceLoad, TorqueBetween, TorqueLoad
 from substructures.mechanics.kinematics import carrier_link
-from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, sub
+from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.definition import Definition, ForceBetween, ForceLoad, TorqueBetween, TorqueLoad
+from substructures.part.definition import Definition
 from substructures.part.kinematics import Kinematics, point_kinematics
-from substructures.part.load_names import names_in
+
+WrenchLoad = ForceLoad | TorqueLoad | ForceBetween | TorqueBetween
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class AppliedWrench:
 class WrenchRow:
     """``frame``: a body or port; ``alone``: whether nothing acts against it within the part."""
 
-    load: ForceLoad | TorqueLoad | ForceBetween | TorqueBetween
+    load: WrenchLoad
     frame: str
     world: bool
     alone: bool
@@ -47,14 +51,37 @@ class WrenchRow:
         return self.load.type == "torque"
 
 
+def acts_on_host(load: object) -> TypeGuard[WrenchLoad]:
+    """Whether it is kept as wrenches: on a body, or between two frames with a vector in the axes of the world."""
+    between = isinstance(load, ForceBetween | TorqueBetween) and load.axes == "world"
+    return between or isinstance(load, ForceLoad | TorqueLoad)
+
+
 def wrench_rows(definition: Definition) -> Iterator[WrenchRow]:
     """All rows, in the order of the loads."""
     for load in definition.loads:
         if isinstance(load, ForceLoad | TorqueLoad):
             yield WrenchRow(load, load.body, load.frame == "world", True)
-        elif isinstance(load, ForceBetween | TorqueBetween) and load.axes == "world":
-            yield WrenchRow(load, load.to, True, False)
-            yield WrenchRow(load, load.from_, True, False)
+        elif acts_on_host(load):
+            yield from (WrenchRow(load, end.frame, True, False) for end in reversed(load.ends("")))
+
+
+def read_wrenches(names: Names, load: WrenchLoad, pointer: str) -> list[AppliedWrench]:
+    """The wrenches of a load; none after a fault."""
+    vector: Vector = names.vector(load.vector, f"{pointer}/vector")
+    ends = [names.end(end) for end in load.ends(pointer)]
+    if None in ends:
+        return []
+    moment, last = load.type == "torque", ends[-1]
+    at = ZERO if moment else last.position
+    if isinstance(load, ForceLoad | TorqueLoad):
+        is_world = load.frame == "world"
+        # from the axes of the body to those of its carrier: E^T v
+        own = vector if is_world else apply(transpose(last.E), vector)
+        return [AppliedWrench(last.carrier, moment, is_world, at, own)]
+    point_of = None if moment or ends[0].carrier == last.carrier else last.carrier
+    on = AppliedWrench(last.carrier, moment, True, at, vector)
+    return [on, AppliedWrench(ends[0].carrier, moment, True, at, sub(ZERO, vector), point_of)]
 
 
 def wrench_places(definition: Definition, carrier: Mapping[str, int]) -> tuple[tuple[int, bool, bool], ...]:

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass
+from itertools import pairwise
 from math import cos, pi, sin
 from typing import Any
 from xml.sax.saxutils import escape
@@ -13,12 +14,10 @@ import numpy as np
 from substructures.array import Array
 from substructures.display import Picture
 from substructures.documents.fields import in_si
-from substructures.part.definition import BushingLoad, SpringLoad
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.quantities.evaluation import evaluate
 from substructures.tree.document import TreeSpec
-from substructures.tree.load_document import Bushing, TreeSpring
 from substructures.tree.model import Model
 
 WIDTH, HEIGHT, MARGIN = 320.0, 240.0, 28.0
@@ -91,9 +90,11 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> S
     index = {name: i for i, name in enumerate(model.frames)}
     position = {name: np.nan_to_num(kinematics["position"][i]) for name, i in index.items()}
     rotation = {name: np.nan_to_num(kinematics["rotation"][i]) for name, i in index.items()}
-    springs = [(load.from_, load.to) for load in spec.loads if isinstance(load, (TreeSpring, Bushing))]
-    for instance in spec.instances:
-        springs += _springs_within(parts[instance.name], instance.name)
+    lines = [load.line() for load in spec.loads]
+    for each in spec.instances:
+        within = parts[each.name].definition.loads
+        lines += [tuple(f"{each.name}.{frame}" for frame in load.line()) for load in within]
+    springs = [ends for line in lines for ends in pairwise(line)]
     if any("world" in ends for ends in springs):
         position["world"] = np.zeros(3)
     scene = Scene(position, rotation, [], [], [], springs)
@@ -112,15 +113,6 @@ def _scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any) -> S
             column = kinematics["U" if joint.s else "Omega"][index[frame], a]
             scene.joints.append((frame, bool(joint.s), rotation[frame] @ np.nan_to_num(column), colour))
     return scene
-
-
-def _springs_within(part: Part, instance: str) -> Iterator[tuple[str, str]]:
-    """The frames between which springs and bushings of a part are."""
-    for load in part.definition.loads:
-        if isinstance(load, SpringLoad):
-            yield f"{instance}.{load.from_.body}", f"{instance}.{load.to.body}"
-        elif isinstance(load, BushingLoad):
-            yield f"{instance}.{load.from_}", f"{instance}.{load.to}"
 
 
 def projection(scene: Scene) -> Any:

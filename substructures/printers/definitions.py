@@ -11,7 +11,7 @@ from substructures.expr.operations import Operation, Symbol
 from substructures.expr.program import Program
 from substructures.printers.language import Language
 from substructures.printers.listing import inlined
-from substructures.printers.textbook import textbook_inlined
+from substructures.printers.textbook import at_once, textbook_inlined
 
 
 @dataclass(frozen=True)
@@ -48,7 +48,7 @@ def defined(definitions: Program, names: Mapping[str, str], language: Language, 
     """
     number = {s.name: n for n, s in enumerate(language.program.symbols)}
     try:
-        found = textbook_inlined(definitions, language, limit)
+        found = textbook_inlined(definitions, language, limit, at_once(definitions))
     except (TooLarge, ZeroDivisionError):
         found = inlined(definitions, language, limit)
     zero = language.number(Fraction(0)).text

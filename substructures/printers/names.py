@@ -10,7 +10,7 @@ from substructures.expr.syntax import RESERVED
 from substructures.quantities.quantity import OUTPUTS
 
 _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")
-_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_-]+)*'*", re.ASCII)
+_NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*'*", re.ASCII)
 _IDENTIFIER = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,63}", re.ASCII)
 _PIECE = re.compile(r"([A-Za-z]+)([0-9]*)((?:_[A-Za-z0-9]+)*)", re.ASCII)
 _INDEX = re.compile(r"[a-zA-Z]{0,2}[0-9]*", re.ASCII)

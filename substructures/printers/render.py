@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from math import prod
 from typing import Any, NamedTuple
@@ -60,6 +60,7 @@ def render(
     limit: int = LIMIT,
     definitions: Definitions | None = None,
     glossary: Program | None = None,
+    notes: Sequence[str] = (),
 ) -> str:
     """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
 
@@ -69,7 +70,7 @@ def render(
     where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it;
     ``definitions``: of symbols that stand for formulas, which are printed first (not in JSON); ``glossary``: what
     intermediate quantities are called in the compact form of formats for people
-    (:mod:`substructures.printers.meanings`).
+    (:mod:`substructures.printers.meanings`); ``notes``: what readers must know, put first in formats for people.
     Raises InvalidDocument for an unknown format or form, TooLarge (size,
     limit) when more than ``limit`` nodes would be printed, ZeroDivisionError when there is no expanded form.
     """
@@ -77,7 +78,7 @@ def render(
         raise InvalidDocument.at("/format", "unknown-format", f"{format[:40]!r} is not one of {', '.join(FORMATS)}")
     check_form(form)
     if form == "readable":
-        return _readable(program, format, name, limit, definitions, glossary)
+        return _readable(program, format, name, limit, definitions, glossary, notes)
     if format == "json":
         return _json(program, form, limit)
     for output in program.outputs.values():
@@ -87,6 +88,7 @@ def render(
     spoken, language = _spoken(said.program, format)
     if form == "compact":
         name_steps(language, _in_names_of(glossary, said.program, spoken))
+    language.legend = [*notes, *language.legend]
     return language.render(said.with_definitions(_LISTINGS[form](spoken, language, limit), language), name)
 
 
@@ -127,18 +129,18 @@ def _readable(
     limit: int,
     definitions: Definitions | None,
     glossary: Program | None,
+    notes: Sequence[str],
 ) -> str:
     """The textbook form where it fits, otherwise the compact one with the reason."""
     if format == "json" or not LANGUAGES[format].is_for_people:
-        return render(program, format, "compact", name, limit, definitions, glossary)
+        return render(program, format, "compact", name, limit, definitions, glossary, notes)
     said = _Said(program, definitions, limit)
     found = readable(
         lambda: _spoken(said.program, format)[1],
         limit,
         _in_names_of(glossary, said.program, _spoken(said.program, format)[0]),
     )
-    if found.reason:
-        found.language.legend = [found.reason, *found.language.legend]
+    found.language.legend = [*notes, *([found.reason] if found.reason else []), *found.language.legend]
     return found.language.render(said.with_definitions(found.listing, found.language), name)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
-from substructures.expr.operations import operands
+from substructures.expr.operations import Operation, operands
 from substructures.expr.program import Program
 from substructures.printers.language import ATOM, Language, Piece
 
@@ -41,7 +41,12 @@ def signed(program: Program, i: int, written: Mapping[int, Signed], language: La
     if not any(a.is_negative for a in args):
         inner = operands(program.operations[operation[1]]) if op == "neg" else ()
         return Signed(args[0].piece, True) if any(written[x].is_negative for x in inner) else None
-    pieces, signs = [a.piece for a in args], [a.is_negative for a in args]
+    return _of_negatives(operation, args, language)
+
+
+def _of_negatives(operation: Operation, args: Sequence[Signed], language: Language) -> Signed:
+    """The operation of pieces, the signs of which are taken into it, or become its own."""
+    op, pieces, signs = operation[0], [a.piece for a in args], [a.is_negative for a in args]
     if op in ("add", "sub"):
         return _sum(op == "sub", pieces, signs, language)
     if op == "neg":

@@ -80,9 +80,9 @@ def at_once(program: Program) -> Limits:
     return Limits(AT_ONCE.terms, WORK_OF_FEW if is_small else WORK_OF_MANY)
 
 
-def textbook_inlined(program: Program, language: Language, limit: int) -> Listing:
+def textbook_inlined(program: Program, language: Language, limit: int, limits: Limits = LIMITS) -> Listing:
     """Every element in its textbook form, which stands alone. Raises TooLarge, and ZeroDivisionError."""
-    return TextbookTerms(program, language, limit, LIMITS, False).listing
+    return TextbookTerms(program, language, limit, limits, False).listing
 
 
 def _abbreviations(program: Program, reading: Reading, language: Language) -> dict[Trig, str]:

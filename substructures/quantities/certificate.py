@@ -32,7 +32,8 @@ def certified(
     zero: Iterable[str] = (),
     more: Mapping[str, str] | None = None,
 ) -> Program:
-    """The program, once every element was found to be what ``expectation`` makes of the certified one of the model.
+    """The program, once every element was found to be what ``expectation`` makes of the certified one of the model;
+    marked are outputs that have no finite value to be compared with, and all where the model has outputs that are.
 
     ``needs``: outputs of the model that it is made of; ``zero``: symbols of the model that were put to 0; ``more``:
     kinds of symbols beside those of the model and their variations ``d.*``. Raises VerificationFailed, which says
@@ -49,10 +50,10 @@ def certified(
     given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
     defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
     try:
-        compare(program, kinds, expected, defaults, states_between(program.operations, source.operations))
+        found = compare(program, kinds, expected, defaults, states_between(program.operations, source.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
-    return program
+    return program.marked(program.outputs if model.program.not_judged & set(needs) else found.not_judged)
 
 
 def kinds_of(model: Model) -> dict[str, str]:

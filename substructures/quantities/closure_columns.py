@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Output, Program
 from substructures.mechanics.closure_rows import RowBounds

@@ -26,6 +26,7 @@ from substructures.quantities.canonical import momentum
 from substructures.quantities.conditioning import Look, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.doubtful import advice, result_of, state_warnings, told_of
+from substructures.quantities.judged import doubted, not_judged_warnings
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
@@ -252,7 +253,8 @@ def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[E
 def _told_of_values(asked: _Asked, q: Array, values: Mapping[str, Any], first: int) -> list[Notice]:
     sources, chosen = asked.sources, {name: values[name] for name in asked.chosen}
     others = {symbol.name for each in sources.derived(asked.names) for symbol in each.program.symbols}
-    return value_warnings(sources, chosen, asked.inputs, q, others, first)
+    told = value_warnings(sources, chosen, asked.inputs, q, others, first)
+    return [*told, *not_judged_warnings(doubted(sources, asked.names))]
 
 
 def _answered(

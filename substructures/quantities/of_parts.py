@@ -55,5 +55,5 @@ def formed(
         raise TooLarge(f"the {what} (in operations)", len(result), max_nodes)
     multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
     definitions = {name: part.definition for name, part in parts.items()}
-    certify_rows(what, spec, definitions, result, rows, expected, multipliers)
+    result = certify_rows(what, spec, definitions, result, rows, expected, multipliers)
     return result, tuple(rows), assembly.parameters

@@ -13,6 +13,7 @@ from substructures.array import Array
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
+from substructures.quantities.judged import doubted, not_judged_warnings
 from substructures.quantities.quantity import CONDITION, FORWARD, REACTIONS, TABLE
 from substructures.quantities.result import Evaluation, without_axis
 from substructures.quantities.sources import PARTS, Sources, read_quantities, steps
@@ -53,7 +54,10 @@ class OneState:
             model.program.digest,
             labels=sources.labels(self._names),
             single=True,
-            warnings=tuple(value_warnings(sources, {}, (), None, others)),
+            warnings=(
+                *value_warnings(sources, {}, (), None, others),
+                *not_judged_warnings(doubted(sources, self._names)),
+            ),
         )
 
     def at(self, given: Mapping[str, Any]) -> Evaluation | None:

@@ -14,9 +14,9 @@ from substructures.certificate.powers import OUTPUT, power_outputs
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
 from substructures.expr.replay import replay
+from substructures.loads.pairs import wrench_forces
 from substructures.part.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
-from substructures.part.pairs import wrench_forces
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.of_parts import OfParts, formed
 from substructures.tree.applied_wrenches import part_symbols

@@ -185,14 +185,14 @@ _ROWS = (
     _derivative("inverse_dynamics_derivative", "t q qd qdd u p", "coordinates", requires=("qdd", "along")),
     _derivative(FORWARD, "t q qd u p", "coordinates", symbol=r"\ddot{q}", pivots=_PIVOTS),
     _derivative("forward_dynamics_derivative", "t q qd u p", "coordinates", requires=("along",), pivots=_PIVOTS),
-    _formula("kinetic_energy", "q qd p", unit="J", symbol="T"),
+    _formula("kinetic_energy", "q qd p", unit="J", symbol="T", needs="metric"),
     _formula("lagrangian", "t q qd p", unit="J", symbol="L", needs="metric potential_energy"),
-    _formula("generalised_momenta", "q qd p", "coordinates"),
-    _formula("power", "t q qd u p", "coordinates", "W", "P"),
+    _formula("generalised_momenta", "q qd p", "coordinates", needs="metric"),
+    _formula("power", "t q qd u p", "coordinates", "W", "P", needs="forces"),
     # in numbers that of the motion, as formulas those of unit velocities
     _row("momentum", "q p", source="total_momentum", arrays=_MOMENTUM, written=_OF_UNIT),
     _formula("total_momentum", "q qd p", arrays=_MOMENTUM, is_number=False, needs=" ".join(_OF_UNIT)),
-    _canonical("inverse_metric", "q p", "coordinates coordinates", symbol="g", raised=2),
+    _canonical("inverse_metric", "q p", "coordinates coordinates", symbol="g", raised=2, needs="metric"),
     _canonical(_SECOND, "q p", "coordinates coordinates coordinates", rule=_SYMMETRIC, needs="metric christoffel"),
     _canonical("hamiltonian", "t q p", unit="J", symbol="H", of_momenta=True, needs="metric potential_energy"),
     _canonical("canonical_equations", "t q u p", arrays=_RATES, of_momenta=True),
@@ -226,7 +226,7 @@ _ROWS = (
         of_parts=True,
     ),
     _row("centroidal_momentum_matrix", "q p", "momenta coordinates", source="centroidal", symbol="A"),
-    # groups of formulas, outputs of parts, and what analyses make
+    # groups of formulas, outputs of parts, and what analyses make, or exports in two stages
     _stored("closures", "q qd p", arrays=(), written=_CLOSURES, is_number=False),
     _row("interface", "q p", source=PART, arrays=(), written=_INTERFACE, is_number=False),
     *(_row(name, "q p", source=PART, is_number=False) for name in ("R", "r", "E", "Z", "tau", *_INTERFACE)),
@@ -235,6 +235,7 @@ _ROWS = (
     _made("christoffel_second", "q p", symbol=r"\Gamma", raised=1),
     _made("base_regressor", "q qd qdd p"),
     _made("base_parameters", "p"),
+    _made("prepare", "p"),
     _made("energy", " ".join(EVERYTHING), symbol="E"),
     _made("routhian", " ".join(EVERYTHING), symbol="R"),
 )

@@ -97,8 +97,8 @@ class Sources:
             whole = self.model.program
             return hoisted(whole.select([name for name in whole.outputs if name in wanted]))
         found = self.program(TABLE[quantity].source)
-        is_all = not made.of_parts or {*wanted} == {*found.outputs}
-        return found if is_all else found.select(list(wanted))
+        own = [name for name in found.outputs if name in wanted or not made.of_parts]
+        return found if len(own) == len(found.outputs) else found.select(own)
 
     def derived(self, quantities: Sequence[str]) -> list[Any]:
         """All that is derived of the parts for these quantities."""

@@ -24,7 +24,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
 from substructures.expr.syntax import ExpressionError
-from substructures.part.scope import no_names
+from substructures.loads.scope import no_names
 from substructures.quantities.measured import PlaceUnits, numeric, si_values
 from substructures.tree.model import Model
 
@@ -62,8 +62,11 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
     # one q stands for as many states as anything else has
     count = longest(given) if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
-        why = f", since {_count_of(model.coordinates)}" if limit == model.dof == 1 else ""
-        raise InvalidArgument.at("/q", "too-many-states", f"{count:,} states; the limit is {limit:,}{why}")
+        told = f"{count:,} states; the limit is {limit:,}"
+        if limit == 1:
+            why = f", as {_count_of(model.coordinates)}" if model.dof == 1 else ""
+            told = f"{count:,} states{why}; one is needed here, several are a job with an item for each"
+        raise InvalidArgument.at("/q", "too-many-states", told)
     if limit == 1 and not count:
         raise InvalidArgument.at("/q", "missing", "a state is needed")
     others = []

@@ -33,7 +33,7 @@ def value_warnings(
     """
     model, judge = sources.model, sources.judge
     tree: list[Notice] = list(model.certificate.get("warnings", ()))
-    notices = [each for each in tree if each["code"] in TOLD]
+    notices = [each for each in tree if each["code"] in TOLD] + no_coordinates(model.dof)
     if judge is None:  # what the tree was stored with
         notices += [each for each in tree if each["code"] in BY_VALUE]
     elif parameters:
@@ -48,6 +48,12 @@ def value_warnings(
         notices += judge.left(model.coordinates, q, parameters, first)
         notices += judge.apart(model.coordinates, q, first)
     return notices
+
+
+def no_coordinates(dof: int) -> list[Notice]:
+    """Of a tree in which nothing moves."""
+    message = "the tree has no coordinates: nothing moves, and metric and forces are empty"
+    return [] if dof else [{"pointer": "", "code": "no-coordinates", "message": message}]
 
 
 def _without_effect(kind: str, name: str) -> Notice:

@@ -15,7 +15,7 @@ from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 from substructures.tree.model import Model, require_stored
 from substructures.tree.model_outputs import KINEMATICS
 

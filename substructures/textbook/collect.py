@@ -7,10 +7,11 @@ geometry or by masses, whichever is shorter, and equal sums that result are gath
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from fractions import Fraction
 from functools import partial
 from math import gcd, lcm
+from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
@@ -23,6 +24,8 @@ from substructures.textbook.work import Work
 FACTORED = 60
 #: terms of a sum that may be a product but for one term, the fewest and the most
 FEWEST, MOST = 4, 13
+#: steps for every term of a sum in all ways in which it is gathered
+WAYS = 32
 #: terms, and the monomial where they belong
 Placed = tuple[Monomial, list[Term]]
 
@@ -86,6 +89,7 @@ class Collector:
         plain = self.plain(polynomial)
         if len(polynomial) < 2:
             return plain
+        self.work.steps(WAYS * len(polynomial))
         number, parts = factored(polynomial, Fraction(1), self.work)
         if sum(n for part, n in parts if len(part) > 1) > 1:
             factors: list[tuple[Factor, int]] = [(self(part), n) for part, n in parts]
@@ -299,11 +303,16 @@ def factored(polynomial: Polynomial, number: Fraction, work: Work) -> tuple[Frac
     number *= Fraction(int(c.p), int(c.q))
     found: list[tuple[Polynomial, int]] = []
     for part, n in parts:
-        inner = {
-            tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): Fraction(int(x.p), int(x.q))
-            for k, x in part.to_dict().items()
-        }
+        inner = _read_polynomial(part, used)
         sign = -1 if inner[min(inner, key=monomial_key)] < 0 else 1
-        number *= Fraction(sign) ** int(n)
-        found.append(({m: x * sign for m, x in inner.items()}, int(n)))
+        number *= sign**n
+        found.append(({m: x * sign for m, x in inner.items()}, n))
     return number, sorted(found, key=lambda item: sorted(map(monomial_key, item[0])))
+
+
+def _read_polynomial(poly: Any, used: Sequence[int]) -> Polynomial:
+    """A polynomial of FLINT, whose variables are the atoms ``used``."""
+    return {
+        tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): Fraction(int(x.p), int(x.q))
+        for k, x in poly.to_dict().items()
+    }

@@ -19,7 +19,6 @@ from substructures.textbook.forms import Factor, Sum, Term, Trig
 Constant = tuple[Fraction, Fraction]
 #: what the names of the symbols begin with, behind all others in any order
 _FIRST = "\uffff"
-_NONE: Constant = Fraction(0), Fraction(0)
 
 
 def named(exprs: Sequence[Expr]) -> tuple[list[Expr], dict[str, Constant]]:

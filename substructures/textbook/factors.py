@@ -34,25 +34,43 @@ def factors(waves: Waves, work: Work) -> Factors:
     number, parts = work.factor(_polynomial(waves, angles, degrees))
     if sum(int(n) for part, n in parts if not _is_unit(part)) < 2:
         return whole
-    value, found = Fraction(int(number.p), int(number.q)), []
+    found = _trigonometric(parts, angles, degrees, work)
+    if found is not None:
+        found = Fraction(int(number.p), int(number.q)) * found[0], found[1]
+        if not all(is_fraction(c / waves[0][0]) for c, _ in waves):
+            found = _number_inside(found)
+    if found is None or sum(3 + cost(form) for form, _ in found[1]) >= 3 + cost(waves):
+        return whole
+    return found[0], tuple(sorted(found[1], key=lambda item: (cost(item[0]), item)))
+
+
+def _trigonometric(
+    parts: Sequence[tuple[Any, int]], angles: Sequence[Mode], degrees: Sequence[int], work: Work
+) -> Factors | None:
+    """Factors in tangents over powers ``degrees`` of 1 + t^2 as polynomials in cosines and sines, and the number that
+    is taken out of these; None where one has no such form.
+    """
+    value, found, left = Fraction(1), list[tuple[Waves, int]](), list(degrees)
     for part, n in parts:
         form, halves = _read(part, angles, work)
         if form is None:
-            return whole
-        degrees = [d - int(n) * h for d, h in zip(degrees, halves, strict=True)]
+            return None
+        left = [d - n * h for d, h in zip(left, halves, strict=True)]
         if any(halves) and form != ((Fraction(1), ()),):
             scale = form[0][0] if len({abs(c) for c, _ in form}) == 1 else Fraction(-1 if form[0][0] < 0 else 1)
-            value *= scale ** int(n)
-            found.append((tuple((c / scale, some) for c, some in form), int(n)))
-    if not all(is_fraction(c / waves[0][0]) for c, _ in waves):
-        # numbers as given: 0.2*cos(q) + 0.1*sin(q), not a tenth of 2*cos(q) + sin(q)
-        root = _root(value, found[0][1]) if len(found) == 1 else None
-        if root is None:
-            return whole
-        value, found = Fraction(1), [(tuple((c * root, some) for c, some in found[0][0]), found[0][1])]
-    if any(degrees) or sum(3 + cost(form) for form, _ in found) >= 3 + cost(waves):
-        return whole
-    return value, tuple(sorted(found, key=lambda item: (cost(item[0]), item)))
+            value *= scale**n
+            found.append((tuple((c / scale, some) for c, some in form), n))
+    return None if any(left) else (value, tuple(found))
+
+
+def _number_inside(found: Factors) -> Factors | None:
+    """Numbers as given: 0.2*cos(q) + 0.1*sin(q), not a tenth of 2*cos(q) + sin(q); None where that cannot be."""
+    value, forms = found
+    root = _root(value, forms[0][1]) if len(forms) == 1 else None
+    if root is None:
+        return None
+    ((form, n),) = forms
+    return Fraction(1), ((tuple((c * root, some) for c, some in form), n),)
 
 
 def _root(value: Fraction, n: int) -> Fraction | None:

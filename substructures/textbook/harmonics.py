@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from itertools import permutations
 from math import comb, prod
 
 from substructures.textbook.work import Work
@@ -75,24 +76,31 @@ def _reduced(modes: list[Mode], work: Work) -> tuple[list[Mode], list[Mode]]:
         return basis, modes
     while True:
         work.steps(2 * size * size * len(modes))
-        best, gain = None, (0, 0)
-        for i in range(size):
-            for j in range(size):
-                for sign in (1, -1) if i != j else ():
-                    pairs = [(abs(k[j]), abs(k[j] - sign * k[i])) for k in modes]
-                    change = sum(a - b for a, b in pairs), sum(a * a - b * b for a, b in pairs)
-                    if change > gain:
-                        best, gain = (i, j, sign), change
+        best = _best_exchange(modes, size)
         if best is None:
-            break
+            return _forwards(basis, modes)
         i, j, sign = best
         basis[i] = tuple(a + sign * b for a, b in zip(basis[i], basis[j], strict=True))
         modes = [tuple(n - sign * k[i] if m == j else n for m, n in enumerate(k)) for k in modes]
-    for i, angle in enumerate(basis):
-        if next(n for n in angle if n) < 0:
-            basis[i] = tuple(-n for n in angle)
-            modes = [tuple(-n if m == i else n for m, n in enumerate(k)) for k in modes]
-    return basis, modes
+
+
+def _best_exchange(modes: Sequence[Mode], size: int) -> tuple[int, int, int] | None:
+    """(i, j, sign): q_i + sign q_j in place of q_i makes the multiples of q_j smallest; None where none does."""
+    best, gain = None, (0, 0)
+    for i, j in permutations(range(size), 2):
+        for sign in (1, -1):
+            pairs = [(abs(k[j]), abs(k[j] - sign * k[i])) for k in modes]
+            change = sum(a - b for a, b in pairs), sum(a * a - b * b for a, b in pairs)
+            if change > gain:
+                best, gain = (i, j, sign), change
+    return best
+
+
+def _forwards(basis: Sequence[Mode], modes: list[Mode]) -> tuple[list[Mode], list[Mode]]:
+    """Angles whose first multiple is positive, and the harmonics in them."""
+    signs = [-1 if next(n for n in angle if n) < 0 else 1 for angle in basis]
+    angles = [tuple(sign * n for n in angle) for sign, angle in zip(signs, basis, strict=True)]
+    return angles, [tuple(sign * n for sign, n in zip(signs, k, strict=True)) for k in modes]
 
 
 @lru_cache(maxsize=1000)
@@ -104,7 +112,8 @@ def _multiple(k: int) -> tuple[tuple[tuple[int, int], int, int], ...]:
 
 def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction, work: Work) -> None:
     """Add a cos(k.q) + b sin(k.q): real and imaginary part of the product of (c_i + i s_i)^k_i."""
-    work.steps(prod(abs(k) + 1 for k in mode))
+    # binomial coefficients of k have about k digits
+    work.steps(prod(abs(k) + 1 + k * k // 64 for k in mode))
     terms: list[tuple[Powers, int, int]] = [((), 1, 0)]
     for k in mode:
         terms = [((*powers, p), c * d, (m + n) % 4) for powers, c, m in terms for p, d, n in _multiple(k)]

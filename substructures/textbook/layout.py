@@ -14,7 +14,7 @@ from typing import Any
 
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
-from substructures.textbook.collect import Collector, common_number, content, factored, is_fraction, length
+from substructures.textbook.collect import WAYS, Collector, common_number, content, factored, is_fraction, length
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, Wave, Waves, angle_key, normal, shortest, wave_key
@@ -67,20 +67,12 @@ class Layout:
     def _with_squares(self, functions: Functions) -> Sum:
         """The shortest form of functions, with squares of what has cosines and sines: m*(r + l*sin(q))^2."""
         form = self._best(functions)
-        waves = {w[:2]: None for f in functions.values() for _, some in f for w in some if w[2] == 2}
-        if not waves or sum(map(len, functions.values())) > SQUARED:
+        waves = [w for function in functions.values() for _, some in function for w in some]
+        if all(n != 2 for _, _, n in waves) or sum(map(len, functions.values())) > SQUARED:
             return form
-        used = {w[:2] for f in functions.values() for _, some in f for w in some}
-        trigs = sorted(used, key=lambda trig: (angle_key(trig[1]), trig[0]))
-        below = len(self.atoms.exprs)
-        place = {trig: below + n for n, trig in enumerate(trigs)}
-        plain = {
-            times(times(constant, moving), tuple((place[op, k], n) for op, k, n in some)): c
-            for constant, function in functions.items()
-            for (moving, some), c in function.items()
-        }
-        places = {(x, times(m, ((x, -2),))) for m in plain for x, n in m if n == 2 and x >= below}
-        found, left = completed(plain, {p for p in places if self._is_geometry(p[1])}, {})
+        trigs = sorted({(op, k) for op, k, _ in waves}, key=lambda trig: (angle_key(trig[1]), trig[0]))
+        plain = self._with_atoms(functions, trigs)
+        found, left = completed(plain, self._squared(plain), {})
         if not found:
             return form
         rest: Functions = {}
@@ -90,6 +82,21 @@ class Layout:
         written = [Trig(op, self._angle(k)) for op, k in trigs]
         other = Sum((*(self._best(rest).terms if rest else ()), *self._squares(found, written)))
         return min(form, other, key=length)
+
+    def _with_atoms(self, functions: Functions, trigs: Sequence[tuple[str, Mode]]) -> Polynomial:
+        """Functions as a polynomial, in which cosines and sines are atoms behind the others."""
+        place = {trig: n for n, trig in enumerate(trigs, len(self.atoms.exprs))}
+        return {
+            times(times(constant, moving), tuple((place[op, k], n) for op, k, n in some)): c
+            for constant, function in functions.items()
+            for (moving, some), c in function.items()
+        }
+
+    def _squared(self, polynomial: Polynomial) -> set[tuple[int, Monomial]]:
+        """Squares of cosines and sines, with the geometry that they are multiplied by."""
+        below = len(self.atoms.exprs)
+        found = {(x, times(m, ((x, -2),))) for m in polynomial for x, n in m if n == 2 and x >= below}
+        return {(x, factor) for x, factor in found if self._is_geometry(factor)}
 
     def _is_geometry(self, monomial: Monomial) -> bool:
         """Whether nothing moves, and no mass is squared."""
@@ -139,6 +146,7 @@ class Layout:
 
     def _best(self, functions: Functions) -> Sum:
         """The shortest of gathered by motion, by functions, by cosines and sines, and by rates."""
+        self.work.steps(WAYS * sum(map(len, functions.values())))
         moving = {i for function in functions.values() for places, _ in function for i, _ in places}
         # of equal lengths C*(p' + cos(q)*r') with rates, else term by term
         key = length if any(self.atoms.is_rate(self.atoms.exprs[i]) for i in moving) else len

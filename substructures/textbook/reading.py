@@ -27,7 +27,7 @@ from substructures.textbook.tidy import Tidy
 from substructures.textbook.work import Work
 
 #: of work for every term before it is collected
-UNITS = 250
+UNITS = 125
 
 
 @dataclass(frozen=True)

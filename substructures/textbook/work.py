@@ -37,11 +37,12 @@ class Work:
 
     def spend(self, products: int) -> None:
         """Before so many products of terms are formed."""
-        self.spent += products
         if products > min(MOST, self.limit):
             raise TooLarge("a product in the textbook form (products of terms)", products, min(MOST, self.limit))
-        if self.spent > self.limit:
-            raise TooLarge("all steps of a textbook form together (products of terms)", self.spent, self.limit)
+        if self.spent + products > self.limit:
+            together = "all steps of a textbook form together (products of terms)"
+            raise TooLarge(together, self.spent + products, self.limit)
+        self.spent += products
 
     def steps(self, count: int) -> None:
         """Before so many small steps."""

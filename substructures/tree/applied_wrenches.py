@@ -10,9 +10,9 @@ from collections.abc import Iterator, Sequence
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
+from substructures.loads.pairs import Acting, Pair, Place, axes_in_world
 from substructures.mechanics.linear3 import ZERO, Vector, scale
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.pairs import Acting, Pair, Place, axes_in_world
 from substructures.tree.assembly import Assembly, tree_name
 from substructures.tree.closures import PLACE, ClosureEnd, Cut, closure_formulas
 from substructures.tree.loads import load_formulas

@@ -9,18 +9,18 @@ from substructures.errors import InvalidDocument, among
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.syntax import RESERVED
+from substructures.loads.friction import TreeFriction, read_friction
+from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
 from substructures.part.definition import Placement
 from substructures.part.frames import axis_rotation
-from substructures.part.mechanism import friction_of, read_friction
+from substructures.part.mechanism import friction_of
 from substructures.part.outputs import over_formulas
 from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
-from substructures.part.scope import Scope, no_names
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
-from substructures.tree.load_document import TreeFriction
 from substructures.tree.mounted_part import WORLD, MountedPart
 
 

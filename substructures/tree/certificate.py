@@ -62,17 +62,19 @@ def certify_rows(
     rows: Sequence[str],
     outputs: RowsExpected,
     more: Mapping[str, str] | None = None,
-) -> None:
+) -> Program:
     """Compare formulas with named rows, which are derived beside those of a model, with what ``outputs`` makes of the
     documents of the tree and of its parts at a state.
 
-    ``more``: kinds of symbols beside those of the tree. Raises VerificationFailed, which says ``what`` is wrong.
+    ``more``: kinds of symbols beside those of the tree. Returns the program, in which what cannot be judged is marked.
+    Raises VerificationFailed, which says ``what`` is wrong.
     """
     tree, parts = plain(spec), {name: plain(definition) for name, definition in definitions.items()}
     try:
-        _compared(tree, parts, result, lambda values: outputs(tree, parts, rows, values), more)
+        _, found = _compared(tree, parts, result, lambda values: outputs(tree, parts, rows, values), more)
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
+    return result.marked(found.not_judged)
 
 
 def _compared(

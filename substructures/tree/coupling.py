@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
+from substructures.loads.pairs import wrench_forces
 from substructures.mechanics.composite_form import Inertia, joint_momentum, with_moments_about_axes
 from substructures.mechanics.kinematics import (
     INTERFACE,
@@ -28,7 +29,6 @@ from substructures.mechanics.linear3 import ZERO, Rotation, Scalar, Vector, add,
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
 from substructures.part.frames import joined_turns
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
-from substructures.part.pairs import wrench_forces
 from substructures.part.part import Part
 from substructures.tree.grouping import Admitted, Inertias, as_they_are, fixed_inertia, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, Plan, inertial_entries, planned

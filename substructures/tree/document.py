@@ -13,8 +13,9 @@ from substructures.documents import DocumentPart, read_model
 from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
 from substructures.errors import among, listed, meant
+from substructures.loads.ends import AT
+from substructures.loads.kinds import LoadOfTree
 from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
-from substructures.tree.load_document import AT, TreeLoad
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -26,7 +27,7 @@ MOUNT = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 
 PATTERNS[AT] = lambda text: f"{PLACE}{_example(text)}"
 PATTERNS[MOUNT] = PATTERNS[AT]
-#: the same text as COORDINATE
+#: the same text as that of coordinates of loads
 PATTERNS[FRAME] = lambda text: f"a name with its instance is needed, as 'instance.name'{_example(text)}"
 PATTERNS[REFERENCE] = lambda _: "a reference is a name with its version, as in arm@2, or a name alone"
 
@@ -118,7 +119,7 @@ class TreeSpec(WithTables):
     instances: tuple[Instance, ...] = Field((), max_length=MAX_INSTANCES)
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
     inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree")
-    loads: tuple[TreeLoad, ...] = Field((), max_length=1000)
+    loads: tuple[LoadOfTree, ...] = Field((), max_length=1000)
 
     def __repr__(self) -> str:
         """Two lines: its name, and what hangs on what."""

@@ -1,22 +1,17 @@
-"""What expressions of the loads of a tree may name: parameters, coordinates, velocities, inputs, the time, and measures
-of two frames (the HTTP contract, section 3; :mod:`substructures.part.pair_laws`).
+"""The names of a tree where its loads are read and act: parameters, coordinates, velocities, inputs, the time, measures
+of two frames (the HTTP contract, section 3), and all frames with their places.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
-from typing import Any
 
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
-from substructures.expr.syntax import measured
+from substructures.loads.names import End, Names
+from substructures.loads.pairs import Place
 from substructures.mechanics.linear3 import Vector
-from substructures.part.load_names import names_in
-from substructures.part.pair_laws import Measures
-from substructures.part.pairs import Place
 from substructures.part.parameters import si_unit
-from substructures.part.scope import Lookup
 from substructures.tree.assembly import Assembly
 from substructures.tree.mounted_part import PlacedPart
 from substructures.tree.places import place
@@ -25,52 +20,40 @@ from substructures.tree.places import place
 UNITS = ("rad", "m")
 
 
-@dataclass
-class LoadNames:
-    """The names of a tree at their places; ``placed``: its parts over formulas; ``rates``: q'^a."""
+class LoadNames(Names):
+    """Of a tree; ``placed``: its parts over formulas; ``rates``: q'^a."""
 
-    assembly: Assembly
-    placed: Sequence[PlacedPart]
-    rates: Sequence[Expr]
-    coordinates: dict[str, int] = field(init=False)
-    measures: Measures = field(init=False)
-
-    def __post_init__(self) -> None:
-        pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
+    def __init__(self, assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> None:
+        self.assembly, self.placed, self._rates = assembly, placed, rates
+        pairs = zip(assembly.instances, assembly.mounted, strict=True)
         names = [f"{i.name}.{joint.coordinate}" for i, m in pairs for joint in m.part.topology.joints]
         self.coordinates = {name: a for a, name in enumerate(names)}
-        self.assembly.scope.more = (*names, *(f"{name}'" for name in names), *self.assembly.inputs)
-        self.measures = Measures(self.assembly.scope, self.place, self.plain, lambda: self.rates)
-        self.units = [UNITS[j.s] for m in self.assembly.mounted for j in m.part.topology.joints]
-
-    def is_steady(self, *values: Any) -> bool:
-        """Whether numbers or expressions name parameters, inputs and the time alone, nothing that moves."""
-        return not any(self.moves(name) for value in values for name in names_in(value))
-
-    def is_constant(self, *values: Any) -> bool:
-        """Whether they name parameters alone."""
-        return all(self.assembly.reading.parameter(name) is not None for value in values for name in names_in(value))
-
-    def moves(self, name: str) -> bool:
-        """Whether it is a coordinate, a velocity or a measure."""
-        return name.removesuffix("'") in self.coordinates or measured(name) is not None
-
-    def place(self, at: str, pointer: str, point: Vector = (0, 0, 0)) -> Place:
-        """A point of a frame of the document; of the world after a fault."""
-        return place(self.placed, *self.assembly.reading.frame(at, pointer), point)
+        self.units = [UNITS[j.s] for m in assembly.mounted for j in m.part.topology.joints]
+        assembly.scope.more = (*names, *(f"{name}'" for name in names), *assembly.inputs)
+        super().__init__(assembly.scope)
 
     @property
-    def graph(self) -> Any:
-        """Where formulas are made."""
-        return self.assembly.scope.graph
+    def rates(self) -> Sequence[Expr]:
+        """q'^a."""
+        return self._rates
 
-    def at(self, pointer: str) -> Lookup:
-        """The lookup of names of the expression at a pointer."""
-        return self.measures.at(pointer)
+    def constant(self, name: str) -> Expr | None:
+        """A parameter of the tree or of an instance."""
+        return self.assembly.reading.parameter(name)
+
+    def anchor(self, end: End, point: Vector) -> Place | None:
+        """A point of a frame of the document."""
+        faults = len(self.scope.faults)
+        frame = self.assembly.reading.frame(end.frame, end.pointer)
+        return None if len(self.scope.faults) > faults else place(self.placed, *frame, point)
+
+    def place(self, anchor: Place) -> Place:
+        """The anchor itself."""
+        return anchor
 
     def plain(self, name: str) -> Expr | None:
         """What a name stands for that is no measure."""
-        found = self.assembly.reading.parameter(name)
+        found = self.constant(name)
         if found is not None:
             return found
         if name == "t":
@@ -83,6 +66,5 @@ class LoadNames:
         return self.rates[a] if name.endswith("'") else self._symbol(name, "coordinate", self.units[a])
 
     def _symbol(self, name: str, kind: str, unit: str) -> Expr:
-        self.assembly.scope.symbols.setdefault(name, Symbol(name, kind, unit))
-        symbol: Expr = self.graph.symbol(name)
-        return symbol
+        self.scope.symbols.setdefault(name, Symbol(name, kind, unit))
+        return self.graph.symbol(name)

@@ -12,8 +12,8 @@ from collections.abc import Iterator, Sequence
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.integrate import from_zero, needed, potential
+from substructures.loads.pairs import wrench_forces
 from substructures.part.outputs import Run
-from substructures.part.pairs import wrench_forces
 from substructures.tree.coupling import place
 from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, links_of
 

@@ -13,7 +13,7 @@ from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program, program
 from substructures.expr.syntax import RESERVED
-from substructures.part.certificate import told_agreement
+from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, recheck, told_operations
 from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_operations
@@ -119,7 +119,8 @@ class Model:
         described = (summary["parameters"], summary["certificate"])
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
         inputs, limited = summary.get("inputs", {}), tuple(summary.get("limited", ()))
-        return cls(Program.from_bytes(program_bytes), *names, *described, closures, inputs, limited)
+        program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
+        return cls(program, *names, *described, closures, inputs, limited)
 
 
 def require_stored(program: Program, names: Iterable[str]) -> None:
@@ -197,7 +198,8 @@ def couple(
         certificate = certify_tree(spec, definitions, model.described(), result, seconds)
     except VerificationFailed as error:
         raise _blamed(parts, error) from None
-    return replace(model, certificate={**certificate, "warnings": warnings, "converted": units.converted})
+    certificate |= {"warnings": warnings, "converted": units.converted}
+    return replace(model, program=result.marked(not_judged(certificate)), certificate=certificate)
 
 
 def _formulas(spec: TreeSpec, assembly: Assembly, names: Sequence[str], christoffel: bool, group: bool) -> Program:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from substructures.loads.pairs import Place
 from substructures.mechanics.kinematics import INTERFACE, Pose, from_body
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Vector
-from substructures.part.pairs import Place
 from substructures.tree.mounted_part import WORLD, PlacedPart
 
 

@@ -7,7 +7,7 @@ are parameters of the part, with their defaults.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Collection, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -18,7 +18,7 @@ from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.published_loads import load_of_part
+from substructures.tree.published_loads import frames_of_part, load_of_part
 from substructures.tree.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
@@ -68,9 +68,10 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
         # parents first, so that the coordinates have the order that they have in the tree
         order = parts[instance.name].topology.order
         document["bodies"] += [_body(names, instance.name, own["bodies"][k], k) for k in order]
+        loads = zip(parts[instance.name].definition.loads, own.get("loads", ()), strict=True)
         document["loads"] += [
-            _moved(names, instance.name, _with_ends(load), f"/instances/{instance.name}/loads/{k}")
-            for k, load in enumerate(own.get("loads", ()))
+            _load(names, instance.name, load.frames, given, f"/instances/{instance.name}/loads/{k}")
+            for k, (load, given) in enumerate(loads)
         ]
         document["left_out"] += [_left_out(names, instance.name, each) for each in own.get("left_out", ())]
     document["ports"] = list(_ports(parts, names, wanted.ports))
@@ -142,9 +143,14 @@ def _left_out(names: PartNames, instance: str, given: Mapping[str, Any]) -> dict
     return moved
 
 
-def _with_ends(load: Mapping[str, Any]) -> Mapping[str, Any]:
-    """A load with the frame that it acts on opposite, also where that is the interface, which is left out."""
-    return {"from": BASE, **load} if "to" in load else load
+def _load(
+    names: PartNames, instance: str, frames: Collection[str], given: Mapping[str, Any], pointer: str
+) -> dict[str, Any]:
+    """A load with its names as those of the part; ``frames``: its fields that name frames."""
+    # with the frame that it acts on opposite, also where that is the interface, which is left out
+    whole = {"from": BASE, **given} if "from" in frames else given
+    moved: dict[str, Any] = _moved(names, instance, {x: whole[x] for x in whole if x not in frames}, pointer)
+    return moved | {x: frames_of_part(whole[x], instance, names, f"{pointer}/{x}") for x in whole if x in frames}
 
 
 def _moved(names: PartNames, instance: str, given: Any, pointer: str) -> Any:
@@ -156,8 +162,6 @@ def _moved(names: PartNames, instance: str, given: Any, pointer: str) -> Any:
                 found[key] = names.body(instance, value)
             elif key == "coordinate" and isinstance(value, str):
                 found[key] = names.symbol(instance, value) if given.get("type") in ("joint", "friction") else value
-            elif key in ("from", "to") and isinstance(value, str):
-                found[key] = names.own(instance, value)
             else:
                 found[key] = value if key in WORDS else _moved(names, instance, value, f"{pointer}/{key}")
         return found

@@ -10,6 +10,7 @@ from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.program import Program
 from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
+from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
 from substructures.part.left_out import left_out_warnings, weightless_warnings
@@ -18,25 +19,14 @@ from substructures.part.part import Part
 from substructures.part.topology import topology
 from substructures.part.units import (
     ACCELERATION,
-    COORDINATE,
-    EFFORT,
-    LENGTH,
-    LOADS,
-    RATE,
     dimension_of_measure,
-    fields_of,
-    friction_places,
     input_places,
     parameter_places,
     placement_places,
-    vector,
 )
 from substructures.tree.document import TreeSpec
-from substructures.tree.load_document import TreeFriction, TreeJointLoad
 
 TIME = read_unit("s").dimension
-#: points of springs of trees
-POINTS = {"from_at": LENGTH, "to_at": LENGTH}
 #: parameters of a definition by name, with their SI units
 DescribedParameters = Mapping[str, Mapping[str, Any]]
 
@@ -93,12 +83,7 @@ def _moving(spec: TreeSpec, definitions: Mapping[str, Definition], kinds: Mappin
 def _loads(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
     """The numbers of loads."""
     for i, load in enumerate(spec.loads):
-        pointer = f"/loads/{i}"
-        yield from fields_of(pointer, load, {**POINTS, **LOADS[load.type]})
-        if isinstance(load, TreeJointLoad) and load.coordinate in kinds:
-            yield f"{pointer}/force", load.force, EFFORT[kinds[load.coordinate]]
-        if isinstance(load, TreeFriction) and load.coordinate in kinds:
-            yield from friction_places(pointer, load, kinds[load.coordinate])
+        yield from load.places(f"/loads/{i}", kinds)
 
 
 def _places(spec: TreeSpec) -> Iterator[Place]:

@@ -9,11 +9,11 @@ from operator import attrgetter
 from substructures.expr.graph import Expr, Graph, GraphState
 from substructures.expr.program import Formulas
 from substructures.expr.tally import Tally
+from substructures.loads.scope import Scope
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Scalar, negate
 from substructures.mechanics.newton_euler import BodyMotion
 from substructures.mechanics.velocity_forces import velocity_forces
-from substructures.part.scope import Scope
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces
 from substructures.tree.mounted_part import PlacedPart

@@ -81,7 +81,7 @@ def own_stop(a: float, w: float) -> tuple[float, float]:
             return t, a
 
 
-@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("method", ["partitioning", *deep("projection")])
 def test_a_slider_crank_comes_to_rest(method: str) -> None:
     """Where and when an own integration of the angle has it stop; all joints stop together and stay, held by forces
     within their limits; the energy of the start is work of friction.
@@ -239,6 +239,7 @@ def test_a_drive_that_waits() -> None:
 
 
 # takes seconds: the forces of joints that stick are a linear program at every step
+@pytest.mark.deep  # 4 s: several loops at once
 def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
     welds = [{"name": f"w{i}", "type": "weld", "from": f"x.b{i}", "to": f"x.b{i + 1}"} for i in (0, 2)]
@@ -257,6 +258,7 @@ def test_loops_beside_each_other_stick_one_by_one() -> None:
     np.testing.assert_allclose(held[late, :2], [[-3, -4]] * late.sum(), rtol=1e-12)
 
 
+@pytest.mark.deep  # 3 s: a mechanism on a carriage
 def test_a_carriage_that_holds_its_mechanism() -> None:
     """Two degrees of freedom, one of which sticks: crank and piston move as on the ground, to and fro."""
     joint: Plain = {"type": "prismatic", "coordinate": "c", "placement": {"position": [0, 0, 0]}, "axis": [1, 0, 0]}
@@ -320,7 +322,7 @@ def test_who_breaks_away_when_not_all_can() -> None:
         assert (np.abs(f) <= most * (1 + 1e-12)).all()
 
 
-@pytest.mark.parametrize("fault", ["EDGE", "lost_power"])
+@pytest.mark.parametrize("fault", ["lost_power", *deep("EDGE")])
 def test_faults_are_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Joints that stick with more than they can, and the work of the smooth law."""
     if fault == "EDGE":
@@ -345,10 +347,8 @@ def test_what_closed_motions_refuse() -> None:
     assert [fault.pointer for fault in error.value.faults] == ["/friction"]
 
 
-@pytest.mark.parametrize("method", METHODS)
-@pytest.mark.parametrize("torque", [0, 1, 4.9, -4.999])
-def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
-    """5 N m hold what is less: no energy is there, and none is the scale of another."""
+def held_bar() -> Model:
+    """A four-bar whose crank is held by 5 N m."""
     joint = {"type": "revolute", "coordinate": "q1", "friction": {"coulomb": 5, "velocity": 0.001}}
     bodies = [
         {"name": "crank", "parent": "base", "joint": joint, "mass": 1, "com": [0.1, 0, 0]},
@@ -373,7 +373,14 @@ def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float,
     ]
     pin = {"name": "pin", "type": "pin", "from": "f.e", "to": "f.r"}
     document = {"gravity": [0, 0, 0], "instances": [{"name": "f", "substructure": "bar"}], "closures": [pin]}
-    model = tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
+    return tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
+
+
+@pytest.mark.parametrize("method", METHODS)
+@pytest.mark.parametrize("torque", [1, *deep(0, 4.9, -4.999)])
+def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
+    """5 N m hold what is less: no energy is there, and none is the scale of another."""
+    model = held_bar()
     inputs = {"tau.f.q1": torque}
     motion = simulate(model, [0.5, 0.09, 1.2], (0, 0.3), count=4, inputs=inputs, friction="exact", reduction=method)
     assert motion.is_right, motion.checks
@@ -381,3 +388,15 @@ def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float,
     energy = next(check for check in motion.checks if check.name == "energy")
     assert energy.relative < 1e-12
     assert energy.scale > 0.1
+
+
+def test_many_steps_near_rest_are_told_to_take_exact_friction() -> None:
+    """0.5 N m let the crank creep by v_0 atanh(0.5/5) = 1e-4 rad/s in steps of some 20 microseconds."""
+    request = {"inputs": {"tau.f.q1": 0.5}, "count": 2}
+    motion = simulate(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), max_steps=1200, **request)
+    assert motion.qd[-1, 0] == pytest.approx(0.001 * np.arctanh(0.1), rel=1e-3)
+    assert "1,200 steps were taken, most of them while 'f.q1' nearly stood still" in motion.message
+    assert motion.message.endswith("'friction': 'exact' needs no such steps")
+    exact = simulate(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), friction="exact", **request)
+    assert (exact.message, exact.is_right) == ("", True)
+    assert exact.steps < 20

@@ -42,7 +42,73 @@ def difference(f: Callable[[float], np.ndarray]) -> np.ndarray:
     return np.asarray(8 * (f(STEP) - f(-STEP)) - (f(2 * STEP) - f(-2 * STEP))) / (12 * STEP)
 
 
-MECHANISMS: list[Callable[[], Model]] = [lambda: four_bar(DOWN), lambda: slider_crank(DOWN), bricard, governor, stewart]
+#: of no effect, but states that a certificate draws depend on which there are
+UNUSED = {
+    "k16": "0.0295^2",
+    "k17": 0.1201,
+    "k18": -0.08825,
+    "k19": -0.0048,
+    "k2": 0.2726,
+    "k20": -0.0453,
+    "k22": 0.51445,
+    "k23": 3.7963,
+    "k24": -0.0462,
+    "k25": 0.0811,
+    "k26": 0.1428,
+    "k27": 0.1292,
+    "k28": 0.1935,
+    "k29": 0.024,
+    "k3": -0.0211,
+    "k30": "0.0156^2",
+    "k31": 0.0319,
+    "k33": -1.5793,
+    "k34": 0.6879,
+    "k35": 0.0651,
+    "k4": -0.238,
+    "k5": 0.0753,
+    "k6": -0.1085,
+    "k7": -0.1425,
+    "k8": 0.1105,
+    "k9": -0.0274,
+}
+
+
+def sprung(mass: float = 1.0) -> Model:
+    """A port kept in a plane of the world, with a damped spring between a body and the base."""
+    inertia = {"mass": mass, "inertia": dict.fromkeys(("xx", "yy", "zz"), 0.1 * mass)} if mass else {}
+    joints: list[Plain] = [
+        {"type": "revolute", "coordinate": "q0", "d": "sqrt(k0)"},
+        {"type": "fixed"},
+        {"type": "cylindrical", "coordinate": ["q1", "q2"]},
+        {"type": "revolute", "coordinate": "q3"},
+    ]
+    bodies = [
+        {"name": f"b{k}", "parent": f"b{k - 1}" if k else "base", "joint": joint} | inertia
+        for k, joint in enumerate(joints)
+    ]
+    spring = {"type": "spring", "stiffness": "k36", "damping": "k37 + 0.01*sin(k14)^2/2", "length": "2*(k38 + 0.1)"}
+    spring |= {
+        "from": {"body": "base", "at": [-0.5251, 1.1, -0.4992]},
+        "to": {"body": "b2", "at": [0.2423, 0, -0.0891]},
+    }
+    values = UNUSED | {"k0": "0.0497^2", "k14": 0.0029, "k32": 0.3845, "k37": 0.8319, "k38": 0.01365}
+    part: Plain = {"name": "sprung", "bodies": bodies, "loads": [spring], "inputs": {"f1": {}}}
+    part["parameters"] = {name: {"value": value} for name, value in sorted(values.items())} | {"k36": {}}
+    part["ports"] = [{"name": "p0", "body": "b3", "position": ["k32", -0.3804, 0]}]
+    instance = {"name": "i0", "substructure": "sprung", "parameters": {"k36": 22.4785}}
+    closures = [{"name": "c0", "type": "planar", "from": "i0.p0"}]
+    document = {"gravity": [0, 0, 0], "instances": [instance], "closures": closures}
+    return tree_model(document, {"sprung": part})
+
+
+MECHANISMS: list[Callable[[], Model]] = [
+    lambda: four_bar(DOWN),
+    lambda: slider_crank(DOWN),
+    bricard,
+    governor,
+    stewart,
+    sprung,
+]
 
 
 @pytest.mark.parametrize("make", MECHANISMS)
@@ -151,3 +217,10 @@ def test_a_double_pendulum_whose_tip_is_bound() -> None:
     at = closed(model, {"q": [0, 0]})
     assert at.modes[0].frequency == pytest.approx(np.sqrt(3 * G), rel=1e-12)
     np.testing.assert_allclose(at.modes[0].shape[1] / at.modes[0].shape[0], -2)
+
+
+def test_a_damped_spring_in_a_closed_tree_without_masses_is_a_failure_with_advice() -> None:
+    """Not an error of its certificate, in which nothing but G is followed along the motion."""
+    found = linearise(sprung(0), [0.8182828909154267, -1.3985267257072653, 0.6119959511984628, 1.259634079907978])
+    assert found.status == "failed"
+    assert "check masses and inertias" in found.message

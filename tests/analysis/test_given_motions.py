@@ -1,4 +1,4 @@
-"""Motions that are given as tables and expressions: how they run between their values, and kinks, which none may have."""
+"""Motions given as tables and expressions: how they run between their values, and kinks, which are refused."""
 
 from __future__ import annotations
 

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from machine_code import NEEDS_MACHINE_CODE
 
-import substructures.compile as package
 from substructures.compile import cache, compile_program, engine, target
+from substructures.compile import compiled as package
 from substructures.compile.lowering import lower
 from substructures.compile.recipe import Recipe
 from substructures.expr.graph import Graph

@@ -79,7 +79,7 @@ def test_whatever_is_kept_as_its_negative(
     monkeypatch.setattr(lowering, "negatives", anything(seed))
     kernels += [compile_program(program, ["x"], width=width) for width in (2, target.host().width)]
     # in functions of three operations, between which negatives are stored
-    monkeypatch.setattr("substructures.compile.lower", lambda p, n, fused: lower(p, n, 3, fused))
+    monkeypatch.setattr("substructures.compile.compiled.lower", lambda p, n, fused: lower(p, n, 3, fused))
     kernels.append(compile_program(program, ["x"]))
     for kernel in kernels:
         found = kernel.evaluate(values)["x"]

@@ -19,7 +19,8 @@ from substructures.expr.trigonometry import cos, sin
 def test_values() -> None:
     g = Graph()
     x, y = g.symbol("x"), g.symbol("arm.q1'")
-    names = {"x": x, "arm.q1'": y, "t": g.symbol("t")}.get
+    known = {name: g.symbol(name) for name in ("t", "a.x", "a.y", "a.y'")}
+    names = {"x": x, "arm.q1'": y, **known}.get
     cases = {
         "1.5e1": g.number(15),
         ".5": g.number(1) / 2,
@@ -38,6 +39,8 @@ def test_values() -> None:
         "sqrt(1/4)": g.number(1) / 2,
         " x\t+\n t ": x + g.symbol("t"),
         "cos ( pi )": g.number(-1),
+        "a.x-a.y-1": g.symbol("a.x") - g.symbol("a.y") - 1,
+        "2*a.x-a.y'": 2 * g.symbol("a.x") - g.symbol("a.y'"),
     }
     for text, expected in cases.items():
         assert parse(g, text, names) is expected, text

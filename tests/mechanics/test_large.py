@@ -27,7 +27,7 @@ from substructures.part import topology
 from substructures.part.part import recheck
 from substructures.quantities.evaluation import Sources, evaluate, steps
 from substructures.quantities.from_parts import NumericTree
-from substructures.tree.recheck import recheck_tree
+from substructures.tree.certificate import certify_tree
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
@@ -185,7 +185,7 @@ def test_what_older_versions_stored_is_certified(monkeypatch: pytest.MonkeyPatch
     model = couple(tree, {"a": old})
     monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
     monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 50)
-    tree_again = partial(recheck_tree, tree, {"a": old.definition}, model.summary())
+    tree_again = partial(certify_tree, tree, {"a": old.definition}, model.summary())
     assert "christoffel" in recheck(old)["direct_form"]["max_relative_error"]
     assert "christoffel" in tree_again(model.program)["direct_form"]["max_relative_error"]
     assert "christoffel" not in couple(tree, {"a": old}).program.outputs

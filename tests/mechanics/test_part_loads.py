@@ -39,6 +39,8 @@ LOADS: list[Plain] = [
     {"type": "joint", "coordinate": "x.q2", "force": "-k*distance'(x.b1, x.tip) - distance(x.tip, x.base)^2"},
     {"type": "potential", "potential": "k*(distance(x.b1, x.tip) - 0.4)^2*(1 + 0.2*sin(x.q1)) + u*x.q2^2"},
     {"type": "friction", "coordinate": "x.q1", "coulomb": "k", "static": 2, "stribeck": 0.3, "velocity": 0.2},
+    {"type": "cable", "along": ["x.b1", {"frame": "x.base", "at": [1.5, "k", 2]}, "x.tip"], "stiffness": "3*k",
+     "damping": "0.2*u", "length": 0.4},
 ]  # fmt: skip
 CONSERVATIVE = [LOADS[0], LOADS[10]]
 
@@ -51,6 +53,8 @@ def own(load: Plain) -> Plain:
 def inside(value: Any) -> Any:
     if isinstance(value, list):
         return [inside(x) for x in value]
+    if isinstance(value, dict):
+        return {key: inside(x) for key, x in value.items()}
     return re.sub(r"\bx\.", "", value) if isinstance(value, str) else value
 
 
@@ -91,6 +95,8 @@ def tree_of(
     def named(value: Any) -> Any:
         if isinstance(value, list):
             return [named(x) for x in value]
+        if isinstance(value, dict):
+            return {key: named(x) for key, x in value.items()}
         return re.sub(r"(?<![\w.])[ku](?![\w.])", lambda m: known[m[0]], value) if isinstance(value, str) else value
 
     instances: list[Plain] = [{"name": "x", "substructure": "part"}]

@@ -14,7 +14,7 @@ from substructures import Definition, Model, couple, derive
 from substructures.certificate.served import SERVED
 from substructures.client.numbers import Evaluation as Answer
 from substructures.errors import InvalidArgument
-from substructures.export import exported_model, interface_of_model
+from substructures.export import exported_model, interface_of_model, render
 from substructures.export.fmu.variables import layout_of
 from substructures.export.interface import Interface, signature
 from substructures.printers.names import LETTERS, RAISED
@@ -71,6 +71,16 @@ def test_every_function_has_what_it_depends_on(seed: int) -> None:
     for function in exported.functions:
         assert set(function.arguments) - {"x"} == set(TABLE[function.quantity].arguments)
         assert not {"pivots", "inertias"} & {*function.program.outputs}
+
+
+def test_outputs_of_functions_have_one_order() -> None:
+    """That of the program, by name, alone and in exports: arguments of functions must not be exchanged."""
+    given = sources(0)
+    order = ["reaction_force", "reaction_force_world", "reaction_moment", "reaction_moment_world"]
+    exported = exported_model(given, interface_of_model(given.model), ["reactions", "total_momentum"], "demo")
+    assert [list(function.program.outputs) for function in exported.functions] == [order, ["angular", "linear"]]
+    text = render(given.formulas("reactions"), "c", interface=interface_of_model(given.model), quantity="reactions")
+    assert ", ".join(f"double *{name}" for name in order) in text
 
 
 def test_every_program_is_made_and_judged() -> None:

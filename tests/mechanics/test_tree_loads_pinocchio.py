@@ -65,6 +65,8 @@ def own_definition(tree: Plain) -> Plain:
     def named(value: Any) -> Any:
         if isinstance(value, list):
             return [named(x) for x in value]
+        if isinstance(value, dict):
+            return {key: named(x) for key, x in value.items()}
         return re.sub(r"\b([ab])\.(\w+)", r"\1_\2", value) if isinstance(value, str) else value
 
     loads = [{key: named(value) for key, value in load.items() if key != "name"} for load in tree["loads"]]
@@ -78,7 +80,8 @@ def test_loads_within_a_part(seed: int) -> None:
     rng = np.random.default_rng(seed)
     definitions = two_definitions(rng)
     tree = random_tree(rng, definitions)
-    inner = [load for load in tree["loads"] if load["type"] != "spring" and load.get("from") != "world"]
+    own = [load for load in tree["loads"] if "world" not in (load.get("from"), *load.get("along", ()))]
+    inner = [load for load in own if load["type"] != "spring"]
     some = tree["loads"] = [load for load in inner if not re.search(r"\(world", str(load))]
     part = derive(Definition.read(own_definition(tree)))
     spec = TreeSpec.read(

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from contextlib import closing
 from pathlib import Path
 
-from sqlalchemy import select, update
+from sqlalchemy import select, true, update
 
 from service.database.connections import Database
 from service.database.tables import parts, trees
@@ -14,15 +15,18 @@ from service.queries.formulas import index_digest
 from service.queries.trees import seal_of_tree
 
 
-def seal_again(path: Path, software: str | None = None) -> None:
-    """Seal what is in an SQLite store as it is now; ``software``: that is said to have derived it."""
+def seal_again(path: Path, software: str | None = None, only: Collection[str] = ()) -> None:
+    """Seal what is in an SQLite store as it is now; ``software``: that is said to have derived it; ``only``: digests of
+    parts.
+    """
     with closing(Database(f"sqlite:///{path}", exclusive=False)) as database, database.write() as connection:
         named = {} if software is None else {"software": software}
-        for row in connection.execute(select(parts)).mappings().all():
+        chosen = parts.c.digest.in_(only) if only else true()
+        for row in connection.execute(select(parts).where(chosen)).mappings().all():
             found = {**row, **named, "index_digest": index_digest(row["outputs"], row["formulas"])}
             values = {**named, "index_digest": found["index_digest"], "seal": seal_of_part(connection, found)}
             connection.execute(update(parts).where(parts.c.digest == row["digest"]).values(values))
         for row in connection.execute(select(trees)).mappings().all():
             found = {**row, **named}
-            chosen = (trees.c.name == row["name"]) & (trees.c.revision == row["revision"])
-            connection.execute(update(trees).where(chosen).values(**named, seal=seal_of_tree(connection, found)))
+            revision = (trees.c.name == row["name"]) & (trees.c.revision == row["revision"])
+            connection.execute(update(trees).where(revision).values(**named, seal=seal_of_tree(connection, found)))

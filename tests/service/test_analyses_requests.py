@@ -61,6 +61,17 @@ def test_equations_of_a_skate_in_every_format(client: TestClient) -> None:
         if name == "json":
             assert answer.json()["velocities"] == ["speed", "turn"]
             assert Program.from_bytes(answer.content).outputs["hamel_bias"].shape == (2,)
+            assert "warnings" not in answer.json()
+        chosen = client.post(
+            "/v1/trees/skate/velocity-equations", params={"format": name}, json={"constraints": [edge]}
+        )
+        if name == "json":
+            (warning,) = chosen.json()["warnings"]
+            assert warning["code"] == "singular-velocities"
+            assert "do not describe the motion where " in warning["message"]
+        else:
+            (line,) = [each for each in chosen.text.splitlines() if "Warning: the velocities s." in each]
+            assert "do not describe the motion where " in line
     wrong = client.post("/v1/trees/skate/velocity-equations", json={"constraints": [{**edge, "frame": "s.nobody"}]})
     assert wrong.status_code == 422
     assert wrong.json()["errors"][0]["pointer"] == "/constraints/0/frame"
@@ -159,3 +170,17 @@ def test_an_idempotency_key_is_accepted(client: TestClient) -> None:
     assert first.json()["q"] == second.json()["q"]
     other = client.post("/v1/trees/cart/simulations", json={**request, "count": 4}, headers=headers)
     assert other.status_code == 422
+
+
+def test_a_field_of_other_simulations_is_named_with_them(client: TestClient) -> None:
+    """Not as unknown with a field that there is not, either."""
+    body = {"q": [0, 0, 0], "span": [0, 1], "constraints": [{"type": "knife_edge", "name": "e", "frame": "s.sled"}]}
+    answer = client.post("/v1/trees/skate/simulations", json=body | {"reactions": True})
+    assert answer.status_code == 422
+    (error,) = answer.json()["errors"]
+    assert (error["pointer"], error["code"]) == ("/reactions", "extra-forbidden")
+    assert "not of those with velocity constraints" in error["message"]
+    assert "'multipliers'" in error["message"]
+    plain = {"q": [0, 0, 0], "span": [0, 1], "v": [1]}
+    (error,) = client.post("/v1/trees/skate/simulations", json=plain).json()["errors"]
+    assert error["message"].startswith("'v' is a field of simulations with velocity constraints")

@@ -8,6 +8,7 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing
 from pathlib import Path
+from time import sleep
 from typing import Any
 
 import pytest
@@ -17,16 +18,22 @@ from service.app import open_store
 from service.cli.main import main
 from service.database.backup import backup, restore
 from service.database.packed import pack, unpack
+from service.derivation import software
+from service.operations.catalogue import PartSubmission, submit
+from service.operations.renewal import OPERATOR
 from service.operations.verification import verify_all
+from service.refusals import Refused
 from service.renewing import Renewal
-from service.settings import Settings
+from service.settings import Limits, Settings
+from service.store import Store
+from service.summaries import PartContent, part_content
 from substructures.documents import write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.part.part import derive, recheck
 
-from .conftest import HAND, PENDULUM, make_client
+from .conftest import HAND, PENDULUM, SLIDER, make_client
 from .seals import seal_again
 from .test_bundles import bump, swapped, wrong_elsewhere
 
@@ -171,3 +178,51 @@ def test_a_published_tree_is_proven_by_what_it_was_coupled_of(filled: TestClient
         connection.exec_driver_sql("UPDATE parts SET seal = '' WHERE recipe IS NOT NULL")
     again = filled.get("/v1/substructures/arm").json()
     assert (again["program"], again["derived_here"]) == (answer.json()["program"], True)
+
+
+def test_what_takes_too_long_is_asked_for_again(template: Path, tmp_path: Path) -> None:
+    """It is derived all the same, for the next request."""
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    limits = Limits(sync_seconds=1e-6)
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, limits=limits)) as store:
+        client = make_client(store)
+        answer = client.get("/v1/trees/cell")
+        assert (answer.status_code, answer.json()["code"]) == (503, "not-derived")
+        assert answer.headers["retry-after"] == "1"
+        with store.runtime.renewing:  # it has ended
+            pass
+        for _ in range(100):
+            if client.get("/v1/trees/cell").status_code == 200:
+                break
+            sleep(0.1)
+        assert client.get("/v1/trees/cell").json()["derived_here"] is True
+
+
+def test_a_worker_of_other_software(client: TestClient, store: Store) -> None:
+    """What it derived is known as such: it is served, and derived anew before anything is coupled of it."""
+    made = part_content(derive(Definition.read(PENDULUM)))
+    files = {**made.files(), "content": made.files()["content"].replace(software().encode(), b"another one")}
+    content = PartContent.of_files(files)
+    assert content.row["software"] == "another one"
+    with store.database.write() as connection:
+        submit(connection, OPERATOR, PartSubmission(content.name, content.digest, content))
+    assert client.get("/v1/substructures/pendulum").json()["derived_here"] is True
+    faults = [each.fault for each in verify_all(store.database)]
+    assert faults == ["it was derived by another version of the software"]
+    tree = {"name": "t", "instances": [{"name": "a", "substructure": "pendulum"}]}
+    assert client.post("/v1/trees", json=tree).status_code == 201
+    assert [each.fault for each in verify_all(store.database)] == ["", ""]
+
+
+@pytest.mark.parametrize("damage", ["program", "definition"])
+def test_a_worker_that_answers_with_something_else(damage: str) -> None:
+    """Contents have to be what they are called."""
+    made, other = (part_content(derive(Definition.read(each))) for each in (PENDULUM, SLIDER))
+    files = made.files()
+    if damage == "program":
+        files["program"] = other.files()["program"]
+    else:
+        files["content"] = files["content"].replace(b"m*l^2/5", b"m*l^2/6")
+    with pytest.raises(Refused, match="its bytes have the digest"):
+        PartContent.of_files(files)

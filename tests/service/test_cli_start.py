@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import os
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
 
@@ -30,6 +32,20 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
     late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
     program = "import sys, service.cli.server; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert not late & set(done.stdout.split())
+
+
+TREE = {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]}
+
+
+@pytest.mark.parametrize("words", [["evaluate", "{}", "metric"], ["export", "{}", "--target", "c", "--out", "{}.zip"]])
+def test_a_file_needs_no_database_and_no_analyses(words: list[str], tmp_path: Path) -> None:
+    path = tmp_path / "t.json"
+    path.write_text(json.dumps(TREE))
+    given = [word.format(path) for word in words]
+    program = f"import sys\nfrom service.cli.main import main\nassert main({given!r}) == 0\nprint(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    late = {"fastapi", "sqlalchemy", "scipy.linalg", "scipy.optimize", "sympy", "service.analyses.numbers"}
     assert not late & set(done.stdout.split())
 
 

@@ -61,7 +61,7 @@ def test_a_state_of_another_length_in_a_request(run: Run) -> None:
     Path("request.json").write_text('{"q": [1, 2, 3], "span": [0, 1]}')
     expected = "/q: 3 numbers found, but there are 2 coordinates: arm.q, fore.q"
     assert expected in run("simulate", "pair.json", "request.json", code=1)
-    assert "3 states; the limit is 1, since there is 1 coordinate: arm.q" in run(
+    assert "3 states, as there is 1 coordinate: arm.q; one is needed here, several are a job" in run(
         "simulate", "cell.json", "request.json", code=1
     )
 

@@ -360,6 +360,26 @@ def test_what_is_served_is_derived_anew(template: Path, tmp_path: Path, damage: 
         assert main(["verify", "--database", f"sqlite:///{tmp_path / 'store.db'}"]) == 0
 
 
+@pytest.mark.parametrize("what", ["summary", "file"])
+def test_a_damaged_result_is_refused_and_named(what: str, template: Path, tmp_path: Path) -> None:
+    with opened(template, tmp_path, lambda _: None) as client:
+        job = submitted(client, {"kind": "verify", "items": [{"tree": "cell"}]})
+        assert finished(client, job)["state"] == "succeeded"
+        (item,) = client.get(f"/v1/jobs/{job}/items").json()["items"]
+        file = item["files"][0]["href"]
+        assert client.get(file).status_code == 200
+        store = client.app.state.store  # type: ignore[attr-defined]
+        with store.database.write() as connection:
+            if what == "summary":
+                connection.exec_driver_sql("UPDATE results SET summary = replace(summary, 'cell', 'call')")
+            else:
+                connection.exec_driver_sql("UPDATE result_files SET content = x'7b7d'")
+        answer = client.get(f"/v1/jobs/{job}/items" if what == "summary" else file)
+        assert (answer.status_code, answer.json()["code"]) == (500, "damaged-content")
+        (fault,) = [finding for finding in verify_all(store.database) if finding.fault]
+        assert fault.what.startswith("result ")
+
+
 @pytest.mark.parametrize("is_asked", [True, False])
 def test_a_tree_whose_row_points_to_the_program_of_another(filled: TestClient, is_asked: bool) -> None:
     """Both programs are valid, of trees of like structure: the numbers are those of the tree, and verify names it."""

@@ -76,8 +76,12 @@ def test_optimise(library: MemoryLibrary) -> None:
         run("optimise", item, library.blobs, lambda _: None) for item in library.items("optimise", {"items": [coarse]})
     )
     assert wrong.problem is not None
-    assert wrong.problem["code"] == "analysis-wrong"
-    assert json.loads(wrong.files["result"])["is_right"] is wrong.summary["is_right"] is False
+    # one voice: what is wrong is not called optimal
+    assert wrong.problem["code"] == "analysis-failed"
+    assert "'error_limit'" in wrong.problem["detail"]
+    result = json.loads(wrong.files["result"])
+    assert result["is_right"] is wrong.summary["is_right"] is False
+    assert result["status"] == wrong.summary["status"] == "failed"
 
 
 def test_any_analysis(library: MemoryLibrary) -> None:

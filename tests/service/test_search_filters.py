@@ -23,6 +23,8 @@ from .conftest import make_client
 from .databases import fresh
 
 KINDS = ("sqlite", "postgresql")
+#: what a migrated store has only when the server that starts has derived it anew
+RENEWED = ("software", "seal", "index_digest", "recipe")
 #: name: mass, ports, source, parameters
 GIVEN: dict[str, tuple[Any, tuple[str, ...], str, dict[str, Any]]] = {
     "anvil": (50, ("top",), "Weighed", {}),
@@ -358,5 +360,5 @@ def terms_of(connection: sa.Connection) -> list[Any]:
 
 
 def rows_of(connection: sa.Connection, table: sa.Table) -> list[Any]:
-    columns = [column for column in table.columns if column.name != "number"]
+    columns = [column for column in table.columns if column.name not in ("number", *RENEWED)]
     return sorted(map(tuple, connection.execute(sa.select(*columns))), key=str)

@@ -11,7 +11,7 @@ import pytest
 
 from service.analyses.formulas import made
 from service.analyses.printing import Style, made_text
-from service.cli.analysis import coupled_source
+from service.cli.tree_files import coupled_source
 from substructures import Definition, TreeSpec, catalogue, derive
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Linear

@@ -20,6 +20,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
+from substructures.quantities.warnings import no_coordinates
 from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.model import couple
 from substructures.tree.plausibility import Plausibility
@@ -150,7 +151,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "mass": Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass,
         "operations": model.operations["total"],
         "parts": {name: part.definition.digest for name, part in parts.items()},
-        "warnings": model.certificate["warnings"],
+        "warnings": [*model.certificate["warnings"], *no_coordinates(model.dof)],
     }
     return Outcome(summary, files)
 

@@ -10,6 +10,7 @@ from service.cache import Cache
 from service.integrity import reading
 from service.jobs.kinds.library import StoredTree
 from substructures.documents import read_json
+from substructures.part.certificate import not_judged
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.tree.model import Model
@@ -45,7 +46,9 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
     kept = ("coordinates", "joints", "frames", "closures", "inputs", "limited")
-    told = {"warnings": summary["certificate"].get("warnings", [])}
+    told: dict[str, Any] = {"warnings": summary["certificate"].get("warnings", [])}
+    if lost := not_judged(summary["certificate"]):
+        told["direct_form"] = {"max_relative_error": dict.fromkeys(lost)}
     return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters, "certificate": told}
 
 

@@ -104,7 +104,8 @@ def _request(item: ItemDocument, model: Model) -> EvaluationRequest:
         message = f"unknown format '{given[:40]}'; there are {', '.join(FORMATS)}{meant(given, FORMATS)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
     if item.get("format") == "arrow" and find_spec("pyarrow") is None:
-        message = "Arrow needs the extra 'arrow' on the server: pip install 'substructures[arrow]'"
+        how = "pip install 'substructures[arrow]' (in a clone: pip install -e '.[arrow]')"
+        message = f"Arrow needs the extra 'arrow' on the server: {how}"
         raise InvalidDocument.at("/format", "not-installed", message)
     with inside("/request"):
         read = EvaluationRequest.read(request)

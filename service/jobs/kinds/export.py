@@ -20,6 +20,7 @@ from service.analyses.exporting import (
     ALL_TARGETS,
     DEFAULT_OPTIONS,
     FMI,
+    NAME,
     PRECISIONS,
     URDF,
     ZIP,
@@ -33,7 +34,6 @@ from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
 from service.analyses.grouping import QUANTITIES as GROUPED
 from service.analyses.grouping import grouped_text
 from service.analyses.printing import (
-    NAME,
     Style,
     check_quantity,
     described,

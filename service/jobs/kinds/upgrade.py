@@ -76,6 +76,7 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     model = couple(spec, parts, item["nodes"])
     found = improvement(old, model.program)
     told = {"name": name, "digest": digest, "program": model.program.digest, "nodes": len(model.program)}
+    told["software"] = software()
     figures = {"dof": model.dof, "before": found.before, "after": found.after, "outcome": found.outcome}
     files = {"program": pack(model.program), "summary": tree_summary(spec, model)} if found.is_one else {}
     return Outcome({**told, **figures}, files)

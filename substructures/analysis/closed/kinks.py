@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -63,7 +64,7 @@ def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, f
     signs = np.sign(places(times))
     for k in range(signs.shape[1]):
         there = np.flatnonzero(np.abs(signs[:, k]) == 1)
-        for i, j in zip(there[:-1], there[1:], strict=True):
+        for i, j in pairwise(there.tolist()):
             if signs[i, k] != signs[j, k]:
                 a, b = float(times[i]), float(times[j])
                 while b - a > 4 * h:
@@ -76,13 +77,12 @@ def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, f
 
 def _require(t: float, before: Array, after: Array, allowed: Array, pointer: str, unit: str) -> None:
     """``before``, ``after``: value and velocity on both sides of t."""
-    for what, unit_of, a, b, most in zip(
-        ("it", "its velocity"), (unit, f"{unit}/s"), before, after, allowed, strict=True
-    ):
+    named = ("it", unit), ("its velocity", f"{unit}/s")
+    for (what, unit_of), a, b, most in zip(named, before, after, allowed, strict=True):
         if abs(b - a) > most:
             message = (
                 f"the given motion has a kink at t = {t:.6g} s: {what} jumps from {a:.6g} to {b:.6g} {unit_of}, which "
-                "takes an infinite force; round it, as tables are whose 'interpolation' is 'cubic' or 'quintic' (or not "
-                "given), or end the span there and begin anew with the state and the motion after it"
+                "takes an infinite force; round it, as tables are whose 'interpolation' is 'cubic' or 'quintic' (or is "
+                "not given), or end the span there and begin anew with the state and the motion after it"
             )
             raise InvalidArgument.at(pointer, "kink", message)

@@ -20,7 +20,7 @@ from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
 TIME = Symbol("t", "time", "s")

@@ -18,6 +18,7 @@ from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
+from substructures.analysis.motion.dry_friction import friction_laws
 from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, unbalanced
@@ -38,6 +39,8 @@ RESIDUAL = 1e-9
 OPENINGS = ("opening", "opening_rate")
 #: one-step methods, which can begin anew on the closures after every step
 METHODS = ("DOP853", "RK45", "RK23")
+#: steps from which on it is looked whether friction makes a motion stiff, and near rest: in velocities v_0 of its law
+MANY, NEAR_REST = 1000, 3
 ADVICE = "look for very stiff springs, for masses or lengths near zero and for jumps in loads"
 
 
@@ -92,8 +95,25 @@ def simulate_closed(
     x = np.concatenate((state.q, state.qd, (0.0,)))
     motion = _moved(s, problem, x, place.rank, progress, folder)
     found = _judged(s, problem, motion, place.rank)
+    found = replace(found, message=". ".join(filter(None, (found.message, _stiff(s, motion)))))
     more = _repeated if s.conditions.varied_potential() else _steps_again
     return replace(found, checks=(*found.checks, *more(s, problem, x, place.rank, motion, progress)))
+
+
+def _stiff(s: Constrained, motion: IntegratedMotion) -> str:
+    """What is said of many steps near rest, where the smooth law of friction is steep."""
+    if isinstance(s, DryConstrained) or motion.steps < MANY or "friction" not in s.model.program.outputs:
+        return ""
+    laws = friction_laws(s.model, s.conditions.values)
+    rates = np.abs(np.array(motion.step_x)[:, s.n + laws.places])
+    slow = (rates < NEAR_REST * laws.velocity).mean(axis=0) > 0.5
+    if not slow.any():
+        return ""
+    names = ", ".join(f"'{s.model.coordinates[a]}'" for a in laws.places[slow])
+    return (
+        f"{motion.steps:,} steps were taken, most of them while {names} nearly stood still, where the smooth law of "
+        "friction is stiff: 'friction': 'exact' needs no such steps"
+    )
 
 
 def _repeated(

@@ -47,7 +47,7 @@ from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 from substructures.quantities.certificate import certified
 from substructures.quantities.formulas import derived
 from substructures.tree.model import Model, require_open

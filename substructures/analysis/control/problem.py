@@ -23,7 +23,7 @@ from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 from substructures.quantities.measured import numeric
 from substructures.quantities.states import read_states
 from substructures.tree.model import Model, require_open

@@ -8,7 +8,7 @@ from typing import Any
 from substructures.analysis.arguments import exact, require_read
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.part.scope import Scope
+from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
 #: (value, pointer) of expressions

@@ -113,7 +113,7 @@ def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) 
     expectation = constant(result, [vars(each) for each in integrals], rows)
     kinds = dict.fromkeys(rows, "input")
     needs = (*DYNAMICS, "linear_momentum", "angular_momentum", "rotation", "U", "Omega")
-    certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
+    result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
     return FirstIntegrals(result, integrals, tuple(search.cyclic_names))
 
 

@@ -115,7 +115,8 @@ def quasi_velocity_equations(
     closed = [f"{each.name}.{row}" for each in model.closures for row in each.rows]
     expectation = Quasi(result, texts, rows.labels, list(rows.gaps), plain, model.frames, closed)
     kinds = {s.name: s.kind for s in f.symbols.values()}
-    certified(result, model, expectation, "velocity equations", needs=(*CERTIFIED, *KINEMATICS), more=kinds)
+    needs = (*CERTIFIED, *KINEMATICS)
+    result = certified(result, model, expectation, "velocity equations", needs=needs, more=kinds)
     labels = tuple(rows.labels), tuple(rows.gaps), tuple(dependent)
     return QuasiVelocities(model, result, tuple(names), *labels, vanishing(f, Y))
 

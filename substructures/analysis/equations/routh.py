@@ -128,7 +128,7 @@ class _Reduction:
         result = program(f.graph, outputs, f.symbols | momenta)
         more = dict.fromkeys(momenta, "parameter")
         needs = (*DYNAMICS, "christoffel")
-        certified(result, f.model, reduced(cyclic, rest), "routhian", needs=needs, zero=f.zero, more=more)
+        result = certified(result, f.model, reduced(cyclic, rest), "routhian", needs=needs, zero=f.zero, more=more)
         return Reduced(result, rest, cyclic, tuple(momenta))
 
     def _metric(self, a: int, b: int) -> Expr:

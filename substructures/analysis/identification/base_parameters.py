@@ -123,7 +123,7 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     columns = _Columns(Y, tuple(dict.fromkeys(drives)))
     found = dependencies(columns.functions())
     result = _program(Y, columns, found)
-    _certify(Y, columns, found.base, result)
+    result = result.marked(_certify(Y, columns, found.base, result))
     unseen = tuple(columns.names[j] for j, c in found.others.items() if not c)
     used = {symbol.name for symbol in result.symbols}
     parameters = {name: value for name, value in Y.parameters.items() if name in used}
@@ -132,8 +132,8 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     )
 
 
-def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: Program) -> None:
-    """Raise VerificationFailed unless Y = Y_B [1 C], by the certified regressor."""
+def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: Program) -> list[str]:
+    """Raise VerificationFailed unless Y = Y_B [1 C], by the certified regressor; returns what cannot be judged."""
     kinds = {s.name: s.kind for s in (*Y.program.symbols, *result.symbols)}
     for name in Y.coordinates:
         kinds |= {f"{name}'": "velocity", f"{name}''": "acceleration"}
@@ -145,9 +145,10 @@ def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: 
     given = {name: parameter.get("value") for name, parameter in Y.parameters.items()}
     defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
     try:
-        compare(result, kinds, expected, defaults, states_between(result.operations, Y.program.operations))
+        found = compare(result, kinds, expected, defaults, states_between(result.operations, Y.program.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"base_parameters: {error}") from None
+    return list(result.outputs) if Y.program.not_judged else found.not_judged
 
 
 class _Columns:

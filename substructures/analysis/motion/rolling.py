@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Constraint
-from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
 from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.judges import energy_balance, spread, unbalanced

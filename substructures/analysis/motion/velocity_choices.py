@@ -1,7 +1,7 @@
 """Velocities of coordinates that are changed on the way, where those at hand determine the others badly.
 
-With constraints B q' = 0 and velocities v of some coordinates, B_z z' = -B_v v for the others z. A blade that has turned
-by a right angle is as well described by the other coordinate; no choice holds in all positions. How good one is at a
+With constraints B q' = 0 and velocities v of some coordinates, B_z z' = -B_v v for the others z. A blade that has
+turned by a right angle is described by another coordinate; no choice holds in all positions. How good one is at a
 position is the smallest singular value of B_z there over that of B. The state is x = (q, q', work) for all choices.
 """
 

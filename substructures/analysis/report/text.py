@@ -5,6 +5,7 @@ from __future__ import annotations
 from substructures.analysis.report.report import (
     QUANTITIES,
     SECTIONS,
+    Printed,
     Report,
     percent,
     some_terms,
@@ -23,19 +24,7 @@ def text_report(found: Report, limit: int = LIMIT) -> str:
     for about, title in SECTIONS.items():
         lines += ["", title, *(f"* {each.text}" for each in found.statements if each.about == about)]
     printed = {name: found.printed(name, Text, limit) for name in QUANTITIES if name in found.shown}
-    sizes, reason = found.sizes(printed["metric"])
-    lines += [
-        "",
-        "Sizes of terms",
-        told_sizes(found).replace(MARK, "") if sizes else f"Not told: {reason or 'all elements are one term'}.",
-    ]
-    terms = printed["metric"].terms
-    for each in sizes:
-        shown, rest = some_terms(each)
-        lines.append(f"* g[{','.join(str(i + 1) for i in each.index)}]")
-        if terms is not None:
-            lines += [f"    {percent(t.share)}{' (small)' if t.is_small else ''}: {terms.text(t.term)}" for t in shown]
-        lines += [f"    {rest}"] if rest else []
+    lines += ["", "Sizes of terms", *_sizes(found, printed["metric"])]
     for name, p in printed.items():
         lines += ["", QUANTITIES[name], *([p.reason] if p.reason else []), p.language.render(p.listing, name).rstrip()]
     lines += ["", "Sources"]
@@ -44,3 +33,18 @@ def text_report(found: Report, limit: int = LIMIT) -> str:
         for s in found.sources
     ]
     return "\n".join(lines) + "\n"
+
+
+def _sizes(found: Report, metric: Printed) -> list[str]:
+    """The terms of the elements of g, largest first, with their shares."""
+    sizes, reason = found.sizes(metric)
+    if not sizes:
+        return [f"Not told: {reason or 'all elements are one term'}."]
+    lines, terms = [told_sizes(found).replace(MARK, "")], metric.terms
+    for each in sizes:
+        shown, rest = some_terms(each)
+        lines.append(f"* g[{','.join(str(i + 1) for i in each.index)}]")
+        if terms is not None:
+            lines += [f"    {percent(t.share)}{' (small)' if t.is_small else ''}: {terms.text(t.term)}" for t in shown]
+        lines += [f"    {rest}"] if rest else []
+    return lines

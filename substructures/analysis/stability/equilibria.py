@@ -82,9 +82,9 @@ def equilibria(
     Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
     distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
     ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first moved onto the
-    closures; an equilibrium in a singular position has a linearisation that is ``failed``, and is not judged. That none is found is a
-    result with advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without
-    derivative) and MissingValue. Source: notation.md, section 7.
+    closures; an equilibrium in a singular position has a linearisation that is ``failed``, and is not judged. That none
+    is found is a result with advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces
+    without derivative) and MissingValue. Source: notation.md, section 7.
     """
     require_moving(model)
     conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))

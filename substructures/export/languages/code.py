@@ -146,6 +146,7 @@ def head(exported: Exported, first: int, software: str, executed: str = "here") 
     lines.append(YOURS)
     if not executed:
         lines.append(NOT_EXECUTED)
+    lines += [f"Warning: {comment(warning['message'])}." for warning in exported.warnings]
     lines.append("Functions:")
     for each in exported.functions:
         arguments = ", ".join(each.arguments)

@@ -113,13 +113,10 @@ def _applied(given: Any, path: tuple[str | int, ...], change: Change) -> Any:
 def _changes(a: Any, b: Any, path: tuple[str | int, ...]) -> Iterator[Change]:
     is_declared = len(path) == 2 and path[0] in DECLARED  # whose value and unit are fields
     if (_is_tree(a) and _is_tree(b)) or (is_declared and isinstance(a, Mapping) and isinstance(b, Mapping)):
-        keys = [*a, *(key for key in b if key not in a)]
-        yield from _members({key: (a.get(key), b.get(key), key in a, key in b) for key in keys}, path)
+        yield from _members(a, b, path)
     elif _is_list_of_trees(a) and _is_list_of_trees(b):
         ours, theirs = _named(a), _named(b)
-        names = [*ours, *(name for name in theirs if name not in ours)]
-        pairs = {x: (ours.get(x), theirs.get(x), x in ours, x in theirs) for x in names}
-        yield from _members(pairs, path)
+        yield from _members(ours, theirs, path)
         common = [name for name in ours if name in theirs]
         moved = [name for name in theirs if name in ours]
         if common != moved:
@@ -128,17 +125,17 @@ def _changes(a: Any, b: Any, path: tuple[str | int, ...]) -> Iterator[Change]:
         yield Change(path, "changed", a, b)
 
 
-def _members(pairs: Mapping[Any, tuple[Any, Any, bool, bool]], path: tuple[str | int, ...]) -> Iterator[Change]:
-    for key, (x, y, is_in_a, is_in_b) in pairs.items():
-        here = (*path, key)
-        if is_in_a and is_in_b:
+def _members(a: Mapping[Any, Any], b: Mapping[Any, Any], path: tuple[str | int, ...]) -> Iterator[Change]:
+    for key in [*a, *(key for key in b if key not in a)]:
+        x, y, here = a.get(key), b.get(key), (*path, key)
+        if key in a and key in b:
             yield from _changes(x, y, here)
         elif _is_list_of_trees(x or y) and (x or y):
             yield from _changes(x or [], y or [], here)
         elif key in DECLARED and isinstance(x or y, Mapping):
             yield from _changes(x or {}, y or {}, here)
         else:
-            yield Change(here, "gone", x) if is_in_a else Change(here, "new", None, y)
+            yield Change(here, "gone", x) if key in a else Change(here, "new", None, y)
 
 
 def _is_same(a: Any, b: Any) -> bool:

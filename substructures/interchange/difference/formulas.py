@@ -118,18 +118,23 @@ def _quantity(
         _numbers(graph, some, side.symbols, v) for some, side, v in zip((ours, theirs), (a, b), values, strict=True)
     )
     has_size = all(s.kind != "parameter" or s.name in a.defaults or s.name in b.defaults for s in used | used_there)
-    differing = []
-    # an entry that is as good as zero beside the others is not compared with itself
-    least = NEGLIGIBLE * max((float(np.abs(v).max()) for some in (numbers, others) for v in some.values()), default=0.0)
-    for place in {**ours, **theirs}:
-        state = _state(graph, ours.get(place), theirs.get(place))
-        change = _change(numbers.get(place), others.get(place), least)
-        if not has_size and change is not None and change > TOLERANCE:
-            change = None
-        if state != "equal" or change is None or change > TOLERANCE:
-            differing.append(EntryDifference(place, state, change))
+    changes = _changes(numbers, others, has_size)
+    states = {place: _state(graph, ours.get(place), theirs.get(place)) for place in changes}
+    differing = tuple(
+        EntryDifference(place, states[place], change)
+        for place, change in changes.items()
+        if states[place] != "equal" or change is None or change > TOLERANCE
+    )
     size = max(_size(f, is_alike) for f in (x, y) if f is not None)
-    return QuantityDifference(name, max(size, len({**ours, **theirs})), tuple(differing))
+    return QuantityDifference(name, max(size, len(changes)), differing)
+
+
+def _changes(x: Mapping[Place, Array], y: Mapping[Place, Array], has_size: bool) -> dict[Place, float | None]:
+    """By element how far the numbers are apart; None where they are, and without sizes nobody can tell how far."""
+    # an entry that is as good as zero beside the others is not compared with itself
+    least = NEGLIGIBLE * max((float(np.abs(v).max()) for some in (x, y) for v in some.values()), default=0.0)
+    found = {place: _change(x.get(place), y.get(place), least) for place in {**x, **y}}
+    return {place: c if has_size or c is None or c <= TOLERANCE else None for place, c in found.items()}
 
 
 def _placed(formulas: Formulas, labels: tuple[tuple[str, ...] | None, ...], is_alike: bool) -> dict[Place, Expr]:

@@ -73,8 +73,11 @@ class Scope:
         except ExpressionError as error:
             code = "unknown-name" if error.name is not None else "bad-expression"
             advice = "; measures of frames stand in loads" if measured(error.name or "") else unit_advice(str(value))
-            if error.name is not None and lookup is not no_names and len(self.faults) < SOUGHT:
-                advice = advice or meant(error.name, [*self.names, *(() if lookup is None else self.more)])
+            known = [*self.names, *(() if lookup is None else self.more)]
+            if error.name in known:
+                advice = "; here a constant is needed"
+            elif error.name is not None and lookup is not no_names and len(self.faults) < SOUGHT:
+                advice = advice or meant(error.name, known)
             self.fault(pointer, code, str(error) + advice)
         except (ValueError, ArithmeticError) as error:
             self.fault(pointer, "bad-number", str(error))

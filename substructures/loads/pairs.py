@@ -109,6 +109,10 @@ class Reach(dict[int, Expr]):
         super().__init__(forces)
         self.acting = tuple(acting)
 
+    def times(self, factor: Expr) -> tuple[Acting, ...]:
+        """What acts, all of it times a factor."""
+        return tuple(replace(each, factors=(*each.factors, factor)) for each in self.acting)
+
 
 @dataclass(frozen=True)
 class Pair:
@@ -165,19 +169,6 @@ def rate(graph: Graph, reach: Mapping[int, Expr], rates: Sequence[Expr]) -> Expr
     return graph.sum(w * rates[a] for a, w in reach.items() if not w.is_zero)
 
 
-def scaled(reach: Mapping[int, Expr], factor: Expr) -> Reach:
+def scaled(reach: Reach, factor: Expr) -> Reach:
     """factor * w_a."""
-    acting = reach.acting if isinstance(reach, Reach) else ()
-    scaled_acting = (replace(each, factors=(*each.factors, factor)) for each in acting)
-    return Reach({a: factor * w for a, w in reach.items() if not w.is_zero}, scaled_acting)
-
-
-def added(some: Iterable[Mapping[int, Expr]]) -> Reach:
-    """Forces added by coordinate."""
-    result: dict[int, Expr] = {}
-    acting: list[Acting] = []
-    for forces in some:
-        acting += forces.acting if isinstance(forces, Reach) else ()
-        for a, x in forces.items():
-            result[a] = result[a] + x if a in result else x
-    return Reach(result, acting)
+    return Reach({a: factor * w for a, w in reach.items() if not w.is_zero}, reach.times(factor))
