@@ -15,6 +15,7 @@ from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
 from service.http.middleware import Conventions
 from service.http.not_derived import DerivesFirst
+from service.jobs.pool import InProcess
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
 from service.pages import account
@@ -91,7 +92,7 @@ def open_store(
     kept = kept or Kept()
     database = Database(settings.database, claim=kept.claim)
     label = str(kept.number) if settings.processes > 1 else ""
-    store = Store(settings, database, Metrics(label))
+    store = Store(settings, database, Metrics(label), InProcess())
     try:
         require(store)
         if kept.number == 0:

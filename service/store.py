@@ -13,8 +13,7 @@ from service.database.connections import Connection, Database
 from service.derivation import software
 from service.feed import Feed
 from service.integrity import missing, reading
-from service.jobs.pool import InProcess, Workers
-from service.jobs.worker import Worker
+from service.jobs.worker import Worker, Workers
 from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
@@ -36,9 +35,8 @@ from substructures.tree.model import Model, couple
 class Store:
     """What every operation works on: the database, the caches in front of it, kernels, and the running process."""
 
-    def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
-        self.settings, self.database, self.metrics = settings, database, metrics
-        self.workers: Workers = InProcess()
+    def __init__(self, settings: Settings, database: Database, metrics: Metrics, workers: Workers) -> None:
+        self.settings, self.database, self.metrics, self.workers = settings, database, metrics, workers
         self.caches = Caches.for_nodes(settings.cache_nodes)
         self.kernels = Kernels(settings.kernel_folder, settings.limits.kernel_bytes)
         self.runtime = Runtime(settings.key_seconds)

@@ -19,30 +19,19 @@ from dataclasses import dataclass, field
 from functools import partial
 from threading import Event, Lock, Thread, get_ident
 from time import monotonic
-from typing import Protocol
 
 from service.jobs.engine import AttemptReport, Work
 from service.jobs.kinds import run
 from service.jobs.local import LocalEngine
 from service.jobs.wire import read_report, read_work, report_frame, work_frame
+from service.jobs.worker import CLOSED
 from service.threads import SharedThreads
 
 NICE = 5  # those that answer go first, jobs last
 THREADS, LOOK = 4, 0.05  # of a process without runners; seconds between looks at the time that one has taken
 LEAST = 2  # runners: one is kept free
 PAUSE = 1.0  # seconds without news, and after a failure
-CLOSED = "the server stops"
 _log = logging.getLogger(__name__)
-
-
-class Workers(Protocol):
-    """Compute works of requests. For any number of threads."""
-
-    def compute(self, share: str, work: Work, seconds: float) -> AttemptReport:
-        """The last report about a work; ``share``: on whose behalf. Raises TimeoutError after so many seconds."""
-
-    def close(self) -> None:
-        """Stop all, and leave no process behind."""
 
 
 class InProcess:

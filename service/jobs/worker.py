@@ -10,19 +10,29 @@ import secrets
 from collections.abc import Mapping
 from dataclasses import dataclass
 from time import monotonic
-from typing import Any
+from typing import Any, Protocol
 
 from service.jobs.engine import AttemptReport, Budget, Outcome, Work
-from service.jobs.pool import CLOSED, Workers
 from service.refusals import Refused, refused_of
 from service.schemas.jobs import ItemDocument
 from substructures.errors import InvalidDocument, TooLarge
 
 ATTEMPTS = 2  # works store nothing, so that one whose runner died is computed again
+CLOSED = "the server stops"  # of a report
 KILLED = "the process that computed this was killed, and so was the next one"
 LATE = ("cpu-limit", "took-too-long")
 LEAST = 0.01  # seconds; a budget of none would be no limit
 _log = logging.getLogger(__name__)
+
+
+class Workers(Protocol):
+    """Compute works of requests. For any number of threads."""
+
+    def compute(self, share: str, work: Work, seconds: float) -> AttemptReport:
+        """The last report about a work; ``share``: on whose behalf. Raises TimeoutError after so many seconds."""
+
+    def close(self) -> None:
+        """Stop all, and leave no process behind."""
 
 
 @dataclass

@@ -8,7 +8,7 @@ from typing import Any
 from service.database.connections import Connection
 from service.jobs.worker import Worker
 from service.operations import catalogue, trees
-from service.operations.pinned import pinned_tree
+from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.refusals import Refused, unprocessable

@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from service.jobs.files import document_of
 from service.jobs.kinds.compare import SIDES, pinned_side
 from service.jobs.kinds.kind import inside
 from service.jobs.worker import Worker
-from service.operations.imports import document_of
 from service.operations.library import StoreLibrary
 from service.refusals import moved
 from service.store import Store

@@ -10,7 +10,7 @@ from typing import Any
 
 from service.database.connections import Connection
 from service.jobs import kinds
-from service.operations.imports import document_of
+from service.jobs.files import document_of
 from service.operations.library import Reader, StoreLibrary
 from service.operations.owners import require
 from service.queries import audit, jobs, uploads

@@ -11,9 +11,8 @@ from service.derivation import recipe_of
 from service.jobs.kinds.requested import publication_of
 from service.jobs.worker import Worker
 from service.operations import catalogue, owners, trees
-from service.operations.pinned import pinned_tree
 from service.operations.provenance import Origin
-from service.operations.sources import tree_parts
+from service.operations.sources import pinned_tree, tree_parts
 from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree

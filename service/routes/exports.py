@@ -14,7 +14,7 @@ from service.http.acting import Act, Commit, in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
-from service.operations import catalogue, exports
+from service.operations import analyses, catalogue
 from service.references import is_pinned
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
@@ -90,4 +90,4 @@ def _export(
         version = catalogue.find(connection, viewer, ref)
     lasting, reference = is_pinned(ref) and version.is_public, f"{version.name}@{version.version}"
     tag = etag(version.digest, version.program, reference, *wanted.identity)
-    return remembered(request, tag, lasting, lambda: exports.part_files(store, worker, version, wanted))
+    return remembered(request, tag, lasting, lambda: analyses.part_files(store, worker, version, wanted))

@@ -13,6 +13,7 @@ from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs, received
+from service.jobs.files import Wanted, read
 from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
 from service.refusals import Refused
@@ -56,11 +57,11 @@ def read_file(
         detail = f"send one of {accepted}; {received(request)} was received"
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept": accepted})
     links = tuple(text.strip() for text in cut.split(",") if text.strip())
-    wanted = imports.Wanted(Options(parameters, fixed, base), kind, name, file, license, links)
+    wanted = Wanted(Options(parameters, fixed, base), kind, name, file, license, links)
     if not stored:
-        return act.compute(lambda: json_answer(imports.answer_of(imports.read(act.worker, body, wanted))))
+        return act.compute(lambda: json_answer(imports.answer_of(read(act.worker, body, wanted))))
     act.require("write")
-    found = act.first(lambda: imports.read(act.worker, body, wanted))
+    found = act.first(lambda: read(act.worker, body, wanted))
     return _tree(store, act, found) if "tree" in found else _part(store, act, found)
 
 

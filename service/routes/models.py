@@ -18,7 +18,7 @@ from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
 from service.negotiation import MEDIA_TYPES
-from service.operations import at_hand, exports, trees, uploads
+from service.operations import analyses, at_hand, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
@@ -127,7 +127,7 @@ def _export(
         tree.digest, *_programs(store, tree, wanted.quantities), f"{tree.name}@{tree.revision}", *wanted.identity
     )
     lasting = is_pinned(ref) and tree.is_public
-    return remembered(request, tag, lasting, lambda: exports.tree_files(store, worker, tree, wanted))
+    return remembered(request, tag, lasting, lambda: analyses.tree_files(store, worker, tree, wanted))
 
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
@@ -180,5 +180,5 @@ def _quantity(
     tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
     lasting = is_pinned(ref) and tree.is_public
     return remembered(
-        request, tag, lasting, lambda: exports.printed(store, worker, tree, quantity, style, options, group)
+        request, tag, lasting, lambda: analyses.printed(store, worker, tree, quantity, style, options, group)
     )

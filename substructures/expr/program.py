@@ -18,9 +18,8 @@ from typing import Any
 import orjson
 
 from substructures.errors import InvalidProgram
-from substructures.expr.demands import check_demands
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.needs import needed, totals
+from substructures.expr.needs import check_demands, needed, totals
 from substructures.expr.operations import (
     ARITHMETIC,
     ARITY,

@@ -17,7 +17,7 @@ from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, written
 from service.app import open_store
 from service.jobs.kinds.trees import source_of
-from service.operations.pinned import pinned_tree
+from service.operations.sources import pinned_tree
 from service.operations.trees import find
 from service.settings import Settings
 from service.store import Store

@@ -14,8 +14,8 @@ import pytest
 
 from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.local import LocalEngine
-from service.jobs.pool import InProcess, WorkerPool, Workers
-from service.jobs.worker import Worker
+from service.jobs.pool import InProcess, WorkerPool
+from service.jobs.worker import Worker, Workers
 from service.refusals import Refused
 from substructures import Definition
 from substructures.documents import read_json
