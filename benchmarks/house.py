@@ -36,6 +36,7 @@ import sys
 import tokenize
 from collections import Counter
 from collections.abc import Callable, Iterable, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -71,15 +72,28 @@ def imports(root: Path) -> dict[str, set[str]]:
 
 def _imported(name: str, file: Path, known: Mapping[str, Path]) -> set[str]:
     found: set[str] = set()
-    for node in ast.walk(ast.parse(file.read_text())):
+    for node in _statements(file)[0]:
         if isinstance(node, ast.Import):
             found.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
+        else:
             package = name.split(".") if file.name == "__init__.py" else name.split(".")[:-1]
             above = package[: len(package) - node.level + 1] if node.level else []
             base = ".".join([*above, *filter(None, [node.module])])
             found.update(f"{base}.{alias.name}" if f"{base}.{alias.name}" in known else base for alias in node.names)
     return found & known.keys()
+
+
+@cache
+def _statements(file: Path) -> tuple[list[ast.Import | ast.ImportFrom], dict[str, int]]:
+    """The imports of a file, and its functions with their lines, docstring included."""
+    imported: list[ast.Import | ast.ImportFrom] = []
+    functions: dict[str, int] = {}
+    for node in ast.walk(ast.parse(file.read_text())):
+        if isinstance(node, ast.Import | ast.ImportFrom):
+            imported.append(node)
+        elif isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef):
+            functions[f"{node.name}:{node.lineno}"] = (node.end_lineno or node.lineno) - node.lineno + 1
+    return imported, functions
 
 
 def contracted(graph: Graph, place: Callable[[str], str | None]) -> dict[str, set[str]]:
@@ -158,13 +172,12 @@ def naming(root: Path, quantity: str) -> list[str]:
 
 
 def long_functions(root: Path) -> dict[str, int]:
-    """Functions of more than FUNCTION lines: ``file:function`` -> lines, docstring included."""
+    """Functions of more than FUNCTION lines: ``file:function:line`` -> how many they have."""
     return {
-        f"{file.relative_to(root)}:{node.name}": lines
+        f"{file.relative_to(root)}:{name}": lines
         for file in sources(root)
-        for node in ast.walk(ast.parse(file.read_text()))
-        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
-        and (lines := (node.end_lineno or node.lineno) - node.lineno + 1) > FUNCTION
+        for name, lines in _statements(file)[1].items()
+        if lines > FUNCTION
     }
 
 

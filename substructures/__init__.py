@@ -48,6 +48,8 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
+from substructures.late import names_in
+
 if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures import catalogue
     from substructures.abbreviation.abbreviate import abbreviate
@@ -108,25 +110,25 @@ __all__ = [
 __version__: str
 
 _WHERE = {
-    "abbreviation.abbreviate": ("abbreviate",),
-    "analysis.equations.first_integrals": ("first_integrals",),
-    "analysis.simulate": ("simulate",),
-    "analysis.stability.equilibria": ("equilibria",),
-    "analysis.stability.linearise": ("linearise",),
-    "analysis.stability.steady_motions": ("steady_motions",),
-    "errors": (
+    "substructures.abbreviation.abbreviate": ("abbreviate",),
+    "substructures.analysis.equations.first_integrals": ("first_integrals",),
+    "substructures.analysis.simulate": ("simulate",),
+    "substructures.analysis.stability.equilibria": ("equilibria",),
+    "substructures.analysis.stability.linearise": ("linearise",),
+    "substructures.analysis.stability.steady_motions": ("steady_motions",),
+    "substructures.errors": (
         *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),
         *("SubstructuresError", "TooLarge"),
     ),
-    "export": ("render",),
-    "expr.program": ("Program",),
-    "part.definition": ("Definition",),
-    "part.part": ("Formula", "Part", "derive"),
-    "quantities.evaluation": ("evaluate",),
-    "tree.document": ("Instance", "TreeSpec", "read_instance"),
-    "tree.model": ("Model", "couple"),
+    "substructures.export": ("render",),
+    "substructures.expr.program": ("Program",),
+    "substructures.part.definition": ("Definition",),
+    "substructures.part.part": ("Formula", "Part", "derive"),
+    "substructures.quantities.evaluation": ("evaluate",),
+    "substructures.tree.document": ("Instance", "TreeSpec", "read_instance"),
+    "substructures.tree.model": ("Model", "couple"),
 }
-_MODULE_OF = {name: module for module, names in _WHERE.items() for name in names}
+_named = names_in(__name__, _WHERE)
 
 
 def __getattr__(name: str) -> Any:
@@ -134,11 +136,9 @@ def __getattr__(name: str) -> Any:
     if name == "__version__":
         value: Any = import_module("importlib.metadata").version("substructures")
     elif name == "catalogue":
-        return import_module("substructures.catalogue")
-    elif name in _MODULE_OF:
-        value = getattr(import_module(f"substructures.{_MODULE_OF[name]}"), name)
+        value = import_module("substructures.catalogue")
     else:
-        raise AttributeError(f"module 'substructures' has no attribute '{name}'")
+        return _named(name)
     globals()[name] = value
     return value
 

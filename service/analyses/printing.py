@@ -10,7 +10,8 @@ import orjson
 
 from service.analyses.binding import Parameters, bound, bound_names
 from service.analyses.exporting import NAME
-from service.analyses.formulas import OF_PARTS, QUANTITIES, Made, Options, check_options
+from service.analyses.formulas import OF_PARTS, QUANTITIES, check_options
+from service.analyses.formulas.entry import Made, Options
 from service.analyses.source import Source
 from service.refusals import not_found
 from substructures.analysis.identification.base_parameters import BaseParameters

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields, is_dataclass
+from importlib import import_module
 from typing import Any
 
 import numpy as np
 import orjson
 
-from substructures.analysis.closed.loops import LoopState
-from substructures.analysis.control.cost_gradient import CostGradient
-from substructures.analysis.control.optimal_control import Optimum
-from substructures.analysis.drawings import draw_root_locus, draw_trajectory
-from substructures.analysis.identification.fit import Identification
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
-from substructures.analysis.stability.found_places import FoundPlaces
-from substructures.analysis.stability.linearisation_result import Linearisation
-from substructures.analysis.stability.root_locus import RootLocus
-from substructures.analysis.stability.vibrations import Mode
 from substructures.formats import arrays, arrow
 from substructures.tree.model import Model
 
+#: of pictures alone
+DRAWINGS = "substructures.analysis.drawings"
 JSON, CSV, SVG = "application/json", "text/csv", "image/svg+xml"
 #: formats by their names in files and items of jobs
 MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "arrow": arrow.MEDIA_TYPE}
@@ -30,14 +24,14 @@ MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "
 PLAIN = (JSON, arrays.MEDIA_TYPE)
 TRAJECTORY = (*PLAIN, CSV, SVG, arrow.MEDIA_TYPE)
 DRAWN = (*PLAIN, SVG)
-#: properties that are written beside the fields, each with the field that it is written before
-PROPERTIES: dict[type, dict[str, str]] = {
-    Linearisation: {"is_equilibrium": "modes"},
-    Identification: {"is_right": "checks"},
-    FoundPlaces: {"is_right": "message", "checks": "message"},
-    CostGradient: {"is_right": "trajectory", "checks": "trajectory"},
-    Optimum: {"is_right": "trajectory", "checks": "trajectory"},
-    Mode: {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
+#: by class, properties that are written beside the fields, each with the field that it is written before
+PROPERTIES: dict[str, dict[str, str]] = {
+    "Linearisation": {"is_equilibrium": "modes"},
+    "Identification": {"is_right": "checks"},
+    "FoundPlaces": {"is_right": "message", "checks": "message"},
+    "CostGradient": {"is_right": "trajectory", "checks": "trajectory"},
+    "Optimum": {"is_right": "trajectory", "checks": "trajectory"},
+    "Mode": {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
 }
 
 
@@ -58,14 +52,15 @@ def written(result: Any, media: str, model: Model) -> bytes:
         return orjson.dumps(_told(result, warnings), option=orjson.OPT_SERIALIZE_NUMPY, default=_listed)
     if media == arrays.MEDIA_TYPE:
         return _npz(_told(result, warnings))
-    if isinstance(result, RootLocus):
-        return draw_root_locus(result).encode()
     motion = trajectory_of(result)
+    if media == SVG:
+        drawn: str = import_module(DRAWINGS).draw(result if motion is None else motion, model.joints)
+        return drawn.encode()
     if motion is None:
         raise ValueError(f"no motion to be written as {media}")
     if media == CSV:
         return to_csv(motion).encode()
-    return _arrow(motion, warnings) if media == arrow.MEDIA_TYPE else draw_trajectory(motion, model.joints).encode()
+    return _arrow(motion, warnings)
 
 
 def _told(result: Any, warnings: Sequence[Mapping[str, str]]) -> Any:
@@ -84,8 +79,6 @@ def plain(value: Any) -> Any:
     """Dataclasses as objects by field, complex numbers as pairs; arrays stay. In JSON what is not finite is null."""
     if isinstance(value, Trajectory):
         return {**value.summary(), "t": value.t, "q": value.q, "qd": value.qd, "series": dict(value.series)}
-    if isinstance(value, LoopState):
-        return plain(_loop_state(value))
     for name in ("summary", "plain"):
         if callable(method := getattr(value, name, None)):
             return plain(method())
@@ -103,26 +96,10 @@ def plain(value: Any) -> Any:
 def _members(value: Any) -> list[str]:
     """The fields of a dataclass, and its properties that are written, too."""
     names = [f.name for f in fields(value)]
-    for kind, properties in PROPERTIES.items():
-        for name, before in properties.items() if isinstance(value, kind) else ():
+    for kind in type(value).__mro__:
+        for name, before in PROPERTIES.get(kind.__name__, {}).items():
             names.insert(names.index(before), name)
     return names
-
-
-def _loop_state(found: LoopState) -> dict[str, Any]:
-    """The members of its parts beside each other, but for the mobility."""
-    state = {k: getattr(found.consistent, k) for k in ("q", "qd", "residual", "velocity_residual", "iterations")}
-    mobility = {**vars(found.mobility), "redundant": found.mobility.redundant}
-    forces = {"qdd": found.qdd, "multipliers": found.multipliers, "actuation": found.actuation}
-    return (
-        state
-        | forces
-        | {"mobility": mobility, "reactions": found.reactions, "message": found.message}
-        | {
-            "is_right": found.is_right,
-            "checks": found.checks,
-        }
-    )
 
 
 def _pairs(value: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:

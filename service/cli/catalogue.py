@@ -16,7 +16,7 @@ from service.cli.output import print_json
 from service.schemas.entries import PartEntry
 from service.viewer import PRIVATE
 from substructures.client import Client, ProblemError
-from substructures.client.connection import step
+from substructures.client.steps import step
 from substructures.documents import read_json, write_yaml
 from substructures.errors import InvalidInput
 from substructures.part.definition import Definition

@@ -1,4 +1,6 @@
-"""Words that an option may have, out of the tables of the science."""
+"""Words that an option may have. Those of formulas are names in tables whose modules write them: they are not imported
+for their names.
+"""
 
 from __future__ import annotations
 
@@ -8,8 +10,31 @@ from typing import Annotated, Any
 import typer
 
 from substructures.errors import among
-from substructures.export import FORMATS
-from substructures.printers import FORMS
+
+#: as substructures.export.FORMATS in order, and substructures.printers.FORMS
+FORMATS = (
+    "c",
+    "cpp",
+    "fortran",
+    "fricas",
+    "jax",
+    "json",
+    "julia",
+    "latex",
+    "latex-document",
+    "maple",
+    "mathematica",
+    "mathml",
+    "matlab",
+    "maxima",
+    "modelica",
+    "python",
+    "reduce",
+    "rust",
+    "sympy",
+    "text",
+)
+FORMS = ("readable", "textbook", "compact", "expanded")
 
 
 def one_of(words: Iterable[str], **more: Any) -> Any:
@@ -25,5 +50,5 @@ def one_of(words: Iterable[str], **more: Any) -> Any:
     return typer.Option(callback=checked, autocompletion=lambda: list(known), **more)
 
 
-Format = Annotated[str, one_of(sorted(FORMATS), help=f"Of formulas: {', '.join(sorted(FORMATS))}.")]
+Format = Annotated[str, one_of(FORMATS, help=f"Of formulas: {', '.join(FORMATS)}.")]
 Form = Annotated[str, one_of(FORMS, help=f"Of formulas: {', '.join(FORMS)}.")]

@@ -8,7 +8,7 @@ from typing import Any
 import typer
 
 from service.cli.options import Server
-from substructures.client.connection import step
+from substructures.client.steps import step
 
 SECONDS = 1.0  # that somebody waits for a server at a prompt
 MOST = 200  # names that a server is asked for

@@ -19,7 +19,7 @@ from service.cli.output import console, print_json
 from service.database.connections import Database, DatabaseError, told
 from service.queries.keys import list_keys
 from service.settings import Settings, SettingsError
-from substructures.client import ProblemError
+from substructures.client.problems import ProblemError
 from substructures.errors import SubstructuresError
 
 #: packages that are not needed, and what they are for

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from service.schemas.entries import PartEntry
-from substructures.client import ProblemError
+from substructures.client.problems import ProblemError
 from substructures.documents import places, read_json, read_yaml, require_object
 from substructures.documents.tables import with_tables
 from substructures.errors import Fault, InvalidInput

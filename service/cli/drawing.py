@@ -8,7 +8,7 @@ from typing import Any
 from rich.tree import Tree
 
 from substructures.client import Client
-from substructures.client.connection import step
+from substructures.client.steps import step
 
 BASE, WORLD = "base", "world"
 

@@ -15,8 +15,8 @@ from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.tree_files import local_source
-from service.cli.trees import values
-from substructures.client.connection import step
+from service.cli.values import values
+from substructures.client.steps import step
 from substructures.quantities.evaluation import evaluate as evaluated
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
 from substructures.quantities.states import STATE, wrong_length

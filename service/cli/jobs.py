@@ -18,9 +18,9 @@ from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, table
 from service.cli.progress import follow
 from substructures.client import Client
-from substructures.client.connection import step
 from substructures.client.jobs import FORMATS, PATIENCE
 from substructures.client.progress import counted
+from substructures.client.steps import step
 from substructures.errors import InvalidDocument
 from substructures.formats import arrow
 from substructures.formats.arrays import read_npz

@@ -16,10 +16,11 @@ from typing import Annotated, Any
 import typer
 from typer.core import TyperCommand, TyperGroup
 
-from service import __version__, respawn
+import service
+from substructures.late import Table
 
 PROGRAM = "substructures"
-FAILURES = "service.cli.failures"
+FAILURES, RESPAWN = "service.cli.failures", "service.respawn"
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ COMMANDS = (
     Command("search", "lists", "find parts, or trees; typing errors are forgiven", PARTS),
     Command("show", "show", "show a part, a tree, a formula, or a drawing of its structure", PARTS),
     Command("derive", "parts", "derive and verify a definition here, without a server", PARTS),
-    Command("submit", "parts", "submit a definition to a server", PARTS),
+    Command("submit", "submit", "submit a definition to a server", PARTS),
     Command("versions", "versions", "list the versions of a part, or the revisions of a tree, the newest first", PARTS),
     Command("diff", "versions", "tell how two versions, or two revisions of a tree, differ", PARTS),
     Command("uses", "versions", "list what uses a part", PARTS),
@@ -50,7 +51,7 @@ COMMANDS = (
     Command("couple", "trees", "couple a part onto a tree, which makes a new revision", TREES),
     Command("rm", "trees", "remove trees with all their revisions", TREES),
     Command("evaluate", "evaluate", "numbers at a state: metric, christoffel, forces, ...", TREES),
-    Command("simulate", "analysis", "simulate a tree and judge the motion by its first integrals", TREES),
+    Command("simulate", "simulate", "simulate a tree and judge the motion by its first integrals", TREES),
     Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion", TREES),
     Command("publish", "versions", "make a part of a tree", TREES),
     Command("jobs", "jobs", "submit, watch and read batch jobs", TREES),
@@ -74,6 +75,7 @@ COMMANDS = (
     Command("openapi", "openapi", "print the OpenAPI document", SERVICE),
 )  # fmt: skip
 _BY_NAME = {command.name: command for command in COMMANDS}
+_FUNCTIONS: Table[Any] = Table("COMMANDS", {each.name: f"service.cli.{each.module}" for each in COMMANDS})
 
 
 class _Group(TyperGroup):
@@ -153,7 +155,7 @@ def loaded(name: str) -> Any:
     command = _BY_NAME[name]
     gc.disable()  # what a module defines stays: nothing to collect in a tenth of the time that it takes to start
     try:
-        found = import_module(f"service.cli.{command.module}").COMMANDS[name]
+        found = _FUNCTIONS[name]
     finally:
         gc.enable()
     group = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True, help=command.text)
@@ -174,7 +176,7 @@ def _group() -> None:
 
 def _version(is_wanted: bool) -> None:
     if is_wanted:
-        print(__version__)
+        print(service.__version__)
         raise typer.Exit
 
 
@@ -201,8 +203,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
     if arguments is None and any(each.kept and each.name == _named(words) for each in COMMANDS):
         if not {"-h", "--help"}.isdisjoint(words):
             pass  # nothing is to be kept
-        elif not respawn.is_kept():
-            return respawn.keep()
+        elif not (respawn := import_module(RESPAWN)).is_kept():
+            kept: int = respawn.keep()
+            return kept
         else:
             respawn.end_with_parent()
     try:

@@ -9,14 +9,18 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
+from importlib import import_module
 from pathlib import Path
-from typing import Annotated, Any, Concatenate, ParamSpec
+from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec
 
-import httpx2
 import typer
 
 from service.settings import Settings, SettingsError, from_environment
-from substructures.client import Client, ProblemError
+from substructures import client as clients
+from substructures.client.problems import ProblemError
+
+if TYPE_CHECKING:
+    from substructures.client import Client
 
 P = ParamSpec("P")
 SERVER = "http://127.0.0.1:8000"
@@ -74,7 +78,7 @@ class Server:
         known = kept()
         address = self.address or known.get("server") or SERVER
         with (
-            Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client,
+            clients.Client(address, self.key or known.get("keys", {}).get(address.rstrip("/"))) as client,
             self._advised(address),
         ):
             yield client
@@ -98,7 +102,7 @@ class Server:
                 raise
             detail = f"{error.problem.get('detail')}; {advice}"
             raise ProblemError(error.status, {**error.problem, "detail": detail}) from None
-        except httpx2.ConnectError:
+        except import_module("httpx2").ConnectError:  # which is there where it was raised
             if not self.is_other:
                 raise
             tls = "; without TLS it begins with http://" if address.startswith("https") else ""

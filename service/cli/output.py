@@ -6,13 +6,16 @@ import json
 import sys
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import AbstractContextManager, ExitStack, contextmanager
+from importlib import import_module
 from time import monotonic
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from rich.console import Console
-from rich.status import Status
-from rich.table import Table
+if TYPE_CHECKING:
+    from rich.console import Console
+    from rich.status import Status
 
+#: modules of terminals alone
+CONSOLE, TABLE = "rich.console", "rich.table"
 #: columns where there is no terminal: nothing is broken or cut there
 WIDE = 100_000
 QUICK = 1.0  # seconds for which nobody is told what is done
@@ -23,9 +26,9 @@ _shown: list[Status] = []
 def console(to_errors: bool = False) -> Console:
     """As the stream is now."""
     stream = sys.stderr if to_errors else sys.stdout
-    if stream.isatty():
-        return Console(file=stream, highlight=False, markup=False)
-    return Console(file=stream, width=WIDE, highlight=False, markup=False, soft_wrap=True)
+    more = {} if stream.isatty() else {"width": WIDE, "soft_wrap": True}
+    made: Console = import_module(CONSOLE).Console(file=stream, highlight=False, markup=False, **more)
+    return made
 
 
 def print_json(value: Any) -> None:
@@ -37,7 +40,7 @@ def table(columns: Sequence[str], rows: Sequence[Sequence[Any]]) -> None:
     """A table on a terminal, elsewhere its rows in columns of the same width."""
     texts = [[str(cell) for cell in row] for row in rows]
     if sys.stdout.isatty():
-        shown = Table(*columns, box=None, pad_edge=False, header_style="bold")
+        shown = import_module(TABLE).Table(*columns, box=None, pad_edge=False, header_style="bold")
         for row in texts:
             shown.add_row(*row)
         console().print(shown)

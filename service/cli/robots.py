@@ -1,4 +1,4 @@
-"""The command ``import``, and documents of any kind: JSON, YAML, or a robot file by its content."""
+"""The commands ``import`` and ``same``: robot files, and models side by side."""
 
 from __future__ import annotations
 
@@ -10,30 +10,19 @@ from typing import Annotated, Any
 import typer
 
 from service.cli.choices import one_of
-from service.cli.documents import definition_of, named, read_document
+from service.cli.documents import named
+from service.cli.models import part_or_tree
 from service.cli.options import Json, Server, with_server
-from service.cli.output import print_json, tell_warnings
-from service.cli.tree_files import parts_beside
+from service.cli.output import print_json
 from substructures.documents import write_json
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence
 from substructures.interchange.importing import Imported, import_file
-from substructures.interchange.kinds import KINDS, is_foreign
-from substructures.interchange.sides import Parts, sides
-from substructures.part.part import Part, derive
-from substructures.tree.document import TreeSpec
+from substructures.interchange.kinds import KINDS
+from substructures.interchange.sides import sides
 
 #: an included file is read when it is in the folder of the file, or below it
 _MOST_BYTES = 4 * 2**20
-
-
-def read_definition(path: Path) -> Any:
-    """A definition as plain data, also out of a robot file; its warnings are told. Raises InvalidDocument."""
-    if not is_foreign(path.read_bytes()):
-        return read_document(path)
-    found = read_robot_file(path)
-    tell_warnings({"warnings": _warnings(found)})
-    return found.definition
 
 
 def read_robot_file(
@@ -113,10 +102,6 @@ def _submitted(server: Server, is_part: bool, document: Any) -> dict[str, Any]:
     return found
 
 
-def _warnings(found: Imported) -> list[dict[str, str]]:
-    return [{"pointer": r["place"], "message": r["message"]} for r in found.report if r["level"] == "warning"]
-
-
 def _told(found: Imported) -> Iterator[str]:
     for remark in found.report:
         yield f"{remark['level']}: {remark['place']}: {remark['message']}"
@@ -163,20 +148,6 @@ def _verdict(found: Equivalence) -> Iterator[str]:
     yield f"not the same: {write_json(found.first_difference).decode()}"
     for culprit in found.culprits:
         yield f"{culprit.body}: {culprit.parameter} {culprit.a} here, {culprit.b} there"
-
-
-def part_or_tree(path: Path) -> Part | Parts:
-    """A definition, derived, or a tree with its parts, found beside it or in the catalogue; also of robot files."""
-    if is_foreign(path.read_bytes()):
-        found = read_robot_file(path)
-        document = found.definition if found.tree is None else found.tree
-    else:
-        document = read_document(path)
-    with named(path):
-        if isinstance(document, dict) and "instances" in document:
-            spec = TreeSpec.read(document)
-            return spec, parts_beside(spec, path.parent)
-        return derive(definition_of(document))
 
 
 COMMANDS = {"import": read, "same": same}

@@ -15,7 +15,7 @@ from service.cli.drawing import drawn_part, drawn_tree
 from service.cli.options import Json, Server, with_server
 from service.cli.output import console, further, print_json, table, tell_warnings
 from substructures.client import Client, ProblemError
-from substructures.client.connection import step
+from substructures.client.steps import step
 from substructures.printers import FORMS
 
 #: formulas of trees whose first index is that of a frame

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
@@ -14,8 +14,8 @@ from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
-from substructures.client.connection import step
-from substructures.documents.fields import Quantity, quantity_of, with_unit
+from service.cli.values import values
+from substructures.client.steps import step
 
 Name = Annotated[str, typer.Argument(metavar="TREE", autocompletion=completion.trees)]
 Several = list[str] | None
@@ -136,25 +136,6 @@ def _vector(text: str) -> list[Any]:
     if len(found) != 3 or not all(found):
         raise typer.BadParameter(f"X,Y,Z is needed, found '{text}'")
     return found
-
-
-def pairs(given: Iterable[str] | None) -> dict[str, str]:
-    """``NAME=VALUE``, each once."""
-    found: dict[str, str] = {}
-    for text in given or ():
-        name, sign, value = (each.strip() for each in text.partition("="))
-        if not sign or not name or not value:
-            raise typer.BadParameter(f"NAME=VALUE is needed, found '{text}'")
-        if name in found:
-            raise typer.BadParameter(f"'{name}' is given twice")
-        found[name] = value
-    return found
-
-
-def values(given: Iterable[str] | None) -> dict[str, Any]:
-    """``NAME=VALUE`` with values as documents have them: texts, and ``500 mm`` as a number with its unit."""
-    found = {name: (with_unit(text) or quantity_of(text)) for name, text in pairs(given).items()}
-    return {name: x.model_dump() if isinstance(x, Quantity) else x for name, x in found.items()}
 
 
 COMMANDS = {"tree": tree, "couple": couple, "rm": remove}

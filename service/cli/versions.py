@@ -16,8 +16,8 @@ from service.cli.options import Json, Note, OfTrees, Private, Server, Wait, with
 from service.cli.output import further, print_json, table, waiting
 from service.cli.pages import items
 from service.cli.progress import became_job
-from substructures.client import ProblemError
-from substructures.client.connection import step
+from substructures.client.problems import ProblemError
+from substructures.client.steps import step
 
 Reference = Annotated[
     str,

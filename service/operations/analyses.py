@@ -9,7 +9,7 @@ from typing import Any
 import orjson
 
 from service.analyses.exporting import URDF, ExportRequest
-from service.analyses.formulas import Options
+from service.analyses.formulas.entry import Options
 from service.analyses.printing import TO_READ, Style, has_parts
 from service.analyses.results import MEDIA_TYPES
 from service.answers import Answer

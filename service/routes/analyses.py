@@ -6,7 +6,8 @@ from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, Request, Response
 
-from service.analyses.numbers import ANALYSES, Analysis
+from service.analyses.numbers import ANALYSES
+from service.analyses.numbers.analysis import Analysis
 from service.analyses.results import JSON
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs

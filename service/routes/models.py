@@ -9,7 +9,8 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.analyses import printing
 from service.analyses.exporting import ExportRequest
-from service.analyses.formulas import QUANTITIES, Options, check_options
+from service.analyses.formulas import QUANTITIES, check_options
+from service.analyses.formulas.entry import Options
 from service.analyses.grouping import check_group
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time

@@ -6,7 +6,8 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Query
 
-from service.analyses.formulas import OPTIONS, Options
+from service.analyses.formulas import OPTIONS
+from service.analyses.formulas.entry import Options
 
 Texts = list[Annotated[str, Query(max_length=5_000)]] | None
 

@@ -15,6 +15,15 @@ from substructures.pictures.plot import Line, Panel, plot
 TIME = "t in s"
 
 
+def draw(found: Trajectory | RootLocus, joints: str) -> str:
+    """A motion or a root locus as SVG. Raises ValueError for what is neither."""
+    if isinstance(found, RootLocus):
+        return draw_root_locus(found)
+    if not isinstance(found, Trajectory):
+        raise ValueError(f"there is no picture of a {type(found).__name__}")
+    return draw_trajectory(found, joints)
+
+
 def draw_trajectory(motion: Trajectory, joints: str) -> str:
     """SVG: angles, distances, and how far quantities that are constant moved from their first values.
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from typing import Any, Generic, Protocol, TypeVar, overload
+from typing import Any, Generic, TypeVar, overload
 
 import numpy as np
 
@@ -11,14 +11,6 @@ from substructures.display import Picture
 
 Kind = TypeVar("Kind")
 NUMBERS = frozenset((int, float))
-
-
-class Referable(Protocol):
-    """What has a reference or an id, and can stand in its place."""
-
-    @property
-    def ref(self) -> str:
-        """The reference, as in paths."""
 
 
 class Answer(dict[str, Any]):

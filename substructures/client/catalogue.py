@@ -5,10 +5,11 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from substructures.client.answers import Answer, Drawn, Page, Referable
-from substructures.client.connection import query, step
+from substructures.client.answers import Answer, Drawn, Page
+from substructures.client.connection import query
 from substructures.client.drawings import PictureCaller
 from substructures.client.problems import ProblemError
+from substructures.client.steps import Referable, step
 from substructures.display import Formula, Picture
 from substructures.documents import read_json
 

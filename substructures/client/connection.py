@@ -10,13 +10,13 @@ from pathlib import Path
 from secrets import token_hex
 from types import TracebackType
 from typing import Any, Self, TypeVar
-from urllib.parse import quote, urlencode, urlsplit
+from urllib.parse import urlencode, urlsplit
 
 import httpx2
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.client.answers import Answer, Page, Referable, plain
+from substructures.client.answers import Answer, Page, plain
 from substructures.client.bulk import Bulk, read_all
 from substructures.client.problems import check, problem_of
 from substructures.client.retries import Retries
@@ -26,14 +26,6 @@ from substructures.formats.arrays import Npz
 Kind = TypeVar("Kind")
 RETRIES = 3
 KEY = "Idempotency-Key"
-
-
-def step(given: str | Referable) -> str:
-    """A name, an id or what has one as one step of a path. Raises ValueError for what can be none."""
-    text = given if isinstance(given, str) else given.ref
-    if not text.strip("."):
-        raise ValueError(f"a name or an id is needed, found '{text}'")
-    return quote(text, safe="@:")
 
 
 def require_address(address: str) -> None:

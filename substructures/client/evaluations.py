@@ -8,11 +8,11 @@ from typing import Any
 
 import numpy as np
 
-from substructures.client.answers import Answer, Referable
-from substructures.client.connection import step
+from substructures.client.answers import Answer
 from substructures.client.jobs import JobCaller
 from substructures.client.numbers import Evaluation, Motion, arrays_of, motion_of
 from substructures.client.results import joined_parts
+from substructures.client.steps import Referable, step
 from substructures.formats import arrow
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrays import as_answer, flat, nested, view_npz, write_npz

@@ -8,9 +8,10 @@ from typing import Any
 
 import httpx2
 
-from substructures.client.answers import Answer, Referable
-from substructures.client.connection import query, step
+from substructures.client.answers import Answer
+from substructures.client.connection import query
 from substructures.client.jobs import JobCaller
+from substructures.client.steps import Referable, step
 
 FILE = {"Content-Type": "application/octet-stream"}
 ZIP = {"Content-Type": "application/zip"}

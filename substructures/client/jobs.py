@@ -13,13 +13,14 @@ from typing import Any, Self
 import httpx2
 import numpy as np
 
-from substructures.client.answers import Answer, Referable
-from substructures.client.connection import KEY, Caller, step
+from substructures.client.answers import Answer
+from substructures.client.connection import KEY, Caller
 from substructures.client.numbers import Evaluation
 from substructures.client.problems import ProblemError, check
 from substructures.client.progress import Bar, counted
 from substructures.client.results import part_of, require_result, result_of
 from substructures.client.retries import GATEWAY
+from substructures.client.steps import Referable, step
 from substructures.formats import arrow
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrays import flat, write_npz

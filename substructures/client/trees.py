@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from substructures.client.answers import Answer, Drawn, Referable
+from substructures.client.answers import Answer, Drawn
 from substructures.client.catalogue import CatalogueCaller, Version
-from substructures.client.connection import query, step
+from substructures.client.connection import query
+from substructures.client.steps import Referable, step
 from substructures.display import Formula, Picture
 
 

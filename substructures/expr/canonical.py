@@ -25,7 +25,7 @@ class RingEvaluator:
         forms = [generators.forms[n] for n in nodes if is_function(n)]
         self.units = generators.units(f for f in forms if isinstance(f, Angle))
         self.angles = sorted(self.units, key=lambda i: generators.order[i])
-        plain = self._plain(nodes, forms)
+        plain = self._plain(nodes)
         self.place = {i: n for n, i in enumerate(plain)}
         self.plain = plain
         self.ring = Ring(len(plain) + 1, len(self.angles), limit)
@@ -34,20 +34,10 @@ class RingEvaluator:
         for node in nodes:
             self.values[node] = self._value(node)
 
-    def _plain(self, nodes: list[Expr], forms: list[Angle | Product]) -> list[int]:
+    def _plain(self, nodes: list[Expr]) -> list[int]:
         """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
         g = self.generators
-        used = {g.symbol(n) for n in nodes if n.op == "sym"}
-        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
-        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
-            used.update(g.root(self.graph, n) for n in (2, 3))
-        stack = list(used)
-        while stack:
-            square = g.squares.get(stack.pop())
-            if isinstance(square, Sum):
-                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
-                used |= new
-                stack.extend(new)
+        used = g.plain(nodes)
         sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
         numbers = sorted(i for i in used if isinstance(g.squares.get(i), int))
         return [*sums, *numbers, *sorted(used - set(sums) - set(numbers), key=lambda i: g.order[i])]

@@ -15,7 +15,9 @@ at most d of them are -1, d its degree.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from fractions import Fraction
 from itertools import combinations
+from math import isqrt
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.vanish import Vanishing
@@ -31,7 +33,7 @@ def corners(exprs: Iterable[Expr]) -> list[Expr]:
 
 
 def inner(node: Expr) -> Expr:
-    """x of a node |x| or sign x."""
+    """x of a node |x|, also with a number before it, or sign x."""
     x = _inner(node)
     if x is None:
         raise ValueError(f"no corner: {node!r}")
@@ -42,7 +44,19 @@ def _inner(node: Expr) -> Expr | None:
     if node.op in ("abs", "sign"):
         return node.args[0]
     square = node.args[0] if node.op == "sqrt" else None
+    if square is not None and _factor(node):
+        square = square.args[1]
     return square.args[0] if square is not None and square.op == "mul" and square.args[0] is square.args[1] else None
+
+
+def _factor(node: Expr) -> Fraction | None:
+    """r of sqrt(r^2 x^2), which the graph makes of sqrt((r x)^2); None where no such number stands there."""
+    square = node.args[0]
+    if node.op != "sqrt" or square.op != "mul" or not square.args[0].is_number:
+        return None
+    c = Fraction(square.args[0].value)
+    r = Fraction(isqrt(max(0, c.numerator)), isqrt(c.denominator))
+    return r if r * r == c else None
 
 
 def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Expr]:
@@ -54,7 +68,7 @@ def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Exp
     for node in reachable(exprs):
         side = sides.get(node)
         if side is not None:
-            new[node] = node.graph.lift(side) if node.op == "sign" else new[inner(node)] * side
+            new[node] = node.graph.lift(side) if node.op == "sign" else new[inner(node)] * side * (_factor(node) or 1)
         else:
             new[node] = build(node.graph, node.op, [new[a] for a in node.args]) if node.args else node
     return [new[x] for x in exprs]

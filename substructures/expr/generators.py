@@ -6,7 +6,7 @@ Functions are recognised by the canonical form of their arguments, so that equal
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from math import gcd
@@ -87,6 +87,22 @@ class Generators:
         i = self.intern(("root", n), graph.sqrt(graph.number(n)), 0)
         self.squares[i] = n
         return i
+
+    def plain(self, nodes: Sequence[Expr]) -> set[int]:
+        """What nodes consist of but angles: symbols, functions, and roots with what they are roots of."""
+        forms = [self.forms[n] for n in nodes if is_function(n)]
+        used = {self.symbol(n) for n in nodes if n.op == "sym"}
+        used.update(i for f in forms if isinstance(f, Product) for i in f.ids)
+        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms):
+            used.update(self.root(nodes[0].graph, n) for n in (2, 3))
+        stack = list(used)
+        while stack:
+            square = self.squares.get(stack.pop())
+            if isinstance(square, Sum):
+                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
+                used |= new
+                stack.extend(new)
+        return used
 
     def classify(self, node: Expr, args: list[Sum]) -> None:
         """Enter a function node, given the canonical forms of its arguments."""

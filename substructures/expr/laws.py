@@ -13,9 +13,9 @@ table          y_0 + sum of p_k(u_k)          u_k = (x - x_k)/(x_{k+1} - x_k), h
 =============  =======================================================================================================
 
 Where a law has a corner (abs, sign, min, max, linear tables) its derivative is that of one side, and what needs one
-everywhere refuses it. The others have one, and are held by (x + sqrt(x^2))/2, as end stops are: their derivative is not
-a number at the very place where they become flat alone, and as rounding grows with x they are right for |x| up to 1e15
-times their width. x^y has no derivative at x = 0.
+everywhere refuses it. The others have one, and are held by (x + sqrt(x^2))/2, as end stops are: formulas of their
+derivative are 0/0 at the very place where pieces meet (given motions and linearisations take it from beside), and as
+rounding grows with x they are right for |x| up to 1e15 times their width. x^y has no derivative at x = 0.
 """
 
 from __future__ import annotations

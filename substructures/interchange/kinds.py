@@ -2,22 +2,21 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Mapping
 from typing import Any
 
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
+from substructures.interchange.content import is_par, is_table, is_xml
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Robot, tell_of_missing_masses
 from substructures.interchange.sdf.reader import read_sdf
-from substructures.interchange.symoro import is_par, read_par
+from substructures.interchange.symoro import read_par
 from substructures.interchange.tables import read_csv, read_table
 from substructures.interchange.urdf.reader import read_urdf
 from substructures.interchange.xml import Node, read_xml
 
-_CELLS = re.compile(rb"[,;\t]")
 #: a row of a table without its head
 #: what reads a root element, with the contents of included files by name
 Reader = Callable[[Node, Mapping[str, bytes]], Robot]
@@ -36,34 +35,14 @@ _NO_XML = (
 )
 
 
-def is_foreign(data: bytes) -> bool:
-    """Whether a file is no document of ours, by its content: XML, a table or a SYMORO file."""
-    return is_xml(data) or is_par(data) or _is_table(data)
-
-
-def is_xml(data: bytes) -> bool:
-    """Whether a file begins as XML does, in any of the encodings that XML has."""
-    beginning = data[:4000].lstrip(b"\xef\xbb\xbf\xff\xfe\x00 \t\r\n")
-    return beginning[:1] == b"<"
-
-
-def _is_table(data: bytes) -> bool:
-    """A DH table: a head with its four columns, or JSON with its rows."""
-    beginning = data[:4000].lstrip(b"\xef\xbb\xbf \t\r\n")
-    if beginning[:1] == b"{":
-        return b'"dh"' in beginning
-    head = next((line for line in beginning.splitlines() if line.strip() and not line.startswith(b"#")), b"")
-    return {b"a", b"alpha", b"d", b"theta"} <= {cell.strip() for cell in _CELLS.split(head)}
-
-
 def read_rows(data: bytes, kind: str | None = None, symbolic: bool = True) -> tuple[str, dict[str, Any], Report] | None:
     """Kind, definition and report of a DH table or a SYMORO file; None for XML. Raises InvalidDocument."""
-    is_rows = kind in ("par", "dh") or (kind is None and not is_xml(data) and (is_par(data) or _is_table(data)))
+    is_rows = kind in ("par", "dh") or (kind is None and not is_xml(data) and (is_par(data) or is_table(data)))
     if is_rows and len(data) > MAX_ROWS:
         raise InvalidDocument.at("", "too-large", f"the file has {len(data):,} bytes; the limit is {MAX_ROWS:,}")
     if kind == "par" or (kind is None and is_par(data) and not is_xml(data)):
         return "par", *read_par(data)
-    if kind == "dh" or (kind is None and _is_table(data)):
+    if kind == "dh" or (kind is None and is_table(data)):
         if data.lstrip(b"\xef\xbb\xbf \t\r\n")[:1] != b"{":
             return "dh", *read_csv(data, symbolic)
         document = read_json(data.lstrip(b"\xef\xbb\xbf"))

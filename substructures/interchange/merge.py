@@ -10,7 +10,7 @@ import numpy as np
 from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, cleaned, decimal_of, is_zero, triple, value
 from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial
-from substructures.interchange.rotations import from_rpy, six_of, steiner, tensor, to_rpy
+from substructures.interchange.rotations import from_rpy, six_of, steiner, tensor, to_rpy, turned_inertia
 
 
 @dataclass(frozen=True)
@@ -45,9 +45,8 @@ class Seat:
     def inertial(self, own: Inertial) -> Inertial:
         """An inertia that is given in it: R I R^T about its own mass centre."""
         six = own.inertia
-        if self.is_turned and not all(map(is_zero, six)):
-            R = from_rpy(self.rpy)
-            six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
+        if not all(map(is_zero, six)):
+            six = turned_inertia(six, from_rpy(self.rpy))
         return Inertial(own.mass, self.point(own.com), six)
 
 

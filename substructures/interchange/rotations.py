@@ -11,7 +11,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from substructures.array import Array
-from substructures.interchange.numbers import Triple, angle, decimal_of, value
+from substructures.interchange.numbers import Number, Triple, angle, cleaned, decimal_of, value
 
 #: below this |cos(pitch)| only the sum or difference of yaw and roll is known
 _GIMBAL = 1e-9
@@ -81,6 +81,13 @@ def tensor(six: Sequence[float]) -> Array:
 def six_of(theta: Array) -> tuple[float, ...]:
     """(xx, yy, zz, xy, xz, yz) of a matrix."""
     return tuple(float(theta[i, j]) for i, j in ((0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)))
+
+
+def turned_inertia(six: tuple[Number, ...], R: Array) -> tuple[Number, ...]:
+    """R I R^T, both as (xx, yy, zz, xy, xz, yz); I itself where R does not turn."""
+    if np.array_equal(R, np.eye(3)):
+        return six
+    return cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
 
 
 def steiner(mass: float, r: Array) -> Array:

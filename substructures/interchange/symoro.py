@@ -16,7 +16,6 @@ from substructures.expr.parse import parse
 from substructures.interchange.names import library_name
 from substructures.interchange.report import Place, Report, refuse
 
-_MARK = re.compile(rb"\(\*|^\s*N[LJF]\s*=", re.MULTILINE)
 _WORD = re.compile(r"\w+")
 _NAME = re.compile(r"\(\*\s*Robotname\s*=\s*'([^']*)'")
 _SYMBOL = re.compile(r"[A-Za-z]\w*", re.ASCII)
@@ -26,11 +25,6 @@ _UNITS = {"gamma": "rad", "alpha": "rad", "theta": "rad", "b": "m", "d": "m", "r
 _MOMENTS = ("XX", "YY", "ZZ", "XY", "XZ", "YZ")
 _FORCES = ("FX", "FY", "FZ", "CX", "CY", "CZ", "FS")
 _MOST_LINKS = 200
-
-
-def is_par(data: bytes) -> bool:
-    """Whether a file looks like one of SYMORO."""
-    return bool(_MARK.search(data[:4000])) and b"sigma" in data
 
 
 def read_par(data: bytes) -> tuple[dict[str, Any], Report]:

@@ -82,6 +82,10 @@ class OfTree(Load):
 
     name: Name
 
+    def of_part(self, fields: dict[str, Any]) -> dict[str, Any]:
+        """The load of the part that the tree becomes; ``fields``: those of this one, with names of the part."""
+        return fields
+
 
 class EndsOfTree(_FromTo, OfTree):
     """``from`` and ``to``: any two frames of a tree."""

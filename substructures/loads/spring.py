@@ -9,7 +9,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import partial
-from typing import ClassVar, Literal
+from typing import Any, ClassVar, Literal
 
 from pydantic import Field
 
@@ -77,6 +77,10 @@ class TreeSpring(EndsOfTree, _Spring):
 
     from_at: NumberVector = Field(NONE, description="m; the point in the frame 'from'")
     to_at: NumberVector = Field(NONE, description="m; the point in the frame 'to'")
+
+    def of_part(self, fields: dict[str, Any]) -> dict[str, Any]:
+        """Between points of bodies."""
+        return fields | {end: {"body": fields[end], "at": fields.pop(at)} for end, at in self.points.items()}
 
 
 @dataclass(frozen=True)

@@ -93,11 +93,20 @@ class TorqueBetween(_Torque, _Opposite, EndsOfPart):
     """A free moment on the frame ``to``; the opposite one acts on ``from``."""
 
 
-class TreeForce(_Point, _Opposite, EndsOfTree):
+class _BetweenOfTree(_Opposite, EndsOfTree):
+    def of_part(self, fields: dict[str, Any]) -> dict[str, Any]:
+        """What acts from the world acts on a body of the part, from outside."""
+        if self.from_ != "world":
+            return fields
+        axes, _ = fields.pop("axes"), fields.pop("from")
+        return fields | {"body": fields.pop("to"), "frame": "body" if axes == "to" else "world"}
+
+
+class TreeForce(_Point, _BetweenOfTree):
     """A force on ``to`` at a point; the opposite force acts on ``from`` at the same place."""
 
 
-class TreeTorque(_Torque, _Opposite, EndsOfTree):
+class TreeTorque(_Torque, _BetweenOfTree):
     """A free moment on ``to``; the opposite one acts on ``from``."""
 
 

@@ -32,7 +32,7 @@ class OwnNames(Names):
         """Poses and columns."""
         return own_kinematics(self.m) if self._k is None else self._k
 
-    @property
+    @cached_property
     def rates(self) -> Sequence[Expr]:
         """q'^a."""
         return [rate for name in self.coordinates if (rate := self._plain(f"{name}'")) is not None]

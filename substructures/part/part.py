@@ -196,6 +196,8 @@ LEADING: dict[str, tuple[str, ...]] = {
     "metric": ("coordinate", "b"),
     "christoffel": ("coordinate", "b", "c"),
 }
+#: those of all frames, of which each has an output of its own
+OF_FRAMES = dict.fromkeys(("frame.E", "frame.position"), ("frame",))
 
 
 def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:

@@ -38,7 +38,7 @@ class Field:
         units = self.generators.units(f for f in forms.values() if isinstance(f, Angle))
         self.units = {i: unit_of([unit]) for i, unit in units.items()}
         self.angles = sorted(self.units, key=lambda i: self.generators.order[i])
-        self.plain = self._plain(nodes, forms)
+        self.plain = self._plain(nodes)
         self.context = fmpq_mpoly_ctx.get([f"g{i}" for i in range(len(self.plain) + len(self.angles))], Ordering.lex)
         self.place = {g: n for n, g in enumerate(self.plain)}
         self.one = self.context.constant(1)
@@ -47,20 +47,10 @@ class Field:
         for node in nodes:
             self.values[node] = self._value(node, forms)
 
-    def _plain(self, nodes: Iterable[Expr], forms: Mapping[Expr, Angle | Product]) -> list[int]:
+    def _plain(self, nodes: Sequence[Expr]) -> list[int]:
         """Generators that are no angles; roots first, those of sums before those in the sums."""
         g = self.generators
-        used = {g.symbol(n) for n in nodes if n.op == "sym"}
-        used.update(i for f in forms.values() if isinstance(f, Product) for i in f.ids)
-        if any(isinstance(f, Angle) and (f.turns * 2).denominator != 1 for f in forms.values()):
-            used.update(g.root(next(iter(forms)).graph, n) for n in (2, 3))
-        stack = list(used)
-        while stack:
-            square = g.squares.get(stack.pop())
-            if isinstance(square, Sum):
-                new = {i for basis, _ in square.terms for i, _ in basis.monomial} - used
-                used |= new
-                stack.extend(new)
+        used = g.plain(nodes)
         sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
         return [*sums, *sorted(used - set(sums), key=lambda i: (i not in g.squares, g.order[i]))]
 

@@ -11,7 +11,7 @@ from typing import Any
 from substructures.errors import Fault, InvalidDocument, TooLarge, VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
-from substructures.expr.program import Program, program
+from substructures.expr.program import Formulas, Program, program
 from substructures.expr.syntax import RESERVED
 from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
@@ -20,7 +20,7 @@ from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_o
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certify_tree
 from substructures.tree.closures import ClosureRows
-from substructures.tree.coupling import couple_parts
+from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.grouping import every, numbers
 from substructures.tree.load_potentials import found_potential
@@ -176,7 +176,7 @@ def couple(
         admit(expected_operations(joints_of))
     names = _coordinate_names(assembly)
     try:
-        result = _formulas(spec, assembly, names, not entries.is_large, group)
+        result = _formulas(assembly, names, not entries.is_large, group)
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
     if len(result) > max_nodes:
@@ -202,19 +202,23 @@ def couple(
     return replace(model, program=result.marked(not_judged(certificate)), certificate=certificate)
 
 
-def _formulas(spec: TreeSpec, assembly: Assembly, names: Sequence[str], christoffel: bool, group: bool) -> Program:
+def _formulas(assembly: Assembly, names: Sequence[str], christoffel: bool, group: bool) -> Program:
     """All outputs of a tree; ``names``: of its coordinates; ``christoffel``: with the Christoffel symbols."""
     graph = assembly.scope.graph
     admitted = every if group else numbers
     coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
     coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
+    return hoisted(program(graph, loaded_outputs(assembly, coupled), assembly.scope.symbols))
+
+
+def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] | None = None) -> dict[str, Formulas]:
+    """The outputs of coupled parts on which the loads of the tree act; ``names``: those that are wanted, and more."""
     rates, accelerations = rate_symbols(assembly)
-    if spec.loads:
+    if assembly.reading.spec.loads:
         acting = load_formulas(assembly, coupled.placed, rates)
         coupled = coupled.with_loads(acting.forces, acting.potential)
     least = partial(least_forces, assembly.scope, coupled, rates)
-    outputs = model_outputs(assembly, coupled, rates, accelerations, forces=least)
-    return hoisted(program(graph, outputs, assembly.scope.symbols))
+    return model_outputs(assembly, coupled, rates, accelerations, names, least)
 
 
 def _blamed(parts: Mapping[str, Part], error: VerificationFailed) -> VerificationFailed:

@@ -113,8 +113,11 @@ def test_a_locus_begins_at_the_equilibrium_near_its_start() -> None:
 
 
 def test_an_equilibrium_without_linearisation_ends_the_locus() -> None:
-    """Friction sqrt(s'^2) s' has no derivative at rest."""
+    """The force sqrt(s'^2) has no derivative at rest; sqrt(s'^2) s' has, and is 0 beside the damper."""
     loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
+    found = root_locus(model_of(oscillator() | {"loads": loads}, (0, 0, 0)), "c", [1, 2], [0])
+    assert (found.status, found.stability) == ("finished", ("asymptotically stable",) * 2)
+    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)"}]
     found = root_locus(model_of(oscillator() | {"loads": loads}, (0, 0, 0)), "c", [1, 2], [0])
     assert (found.status, len(found.values), found.stability) == ("failed", 0, ())
     assert "c = 1" in found.message

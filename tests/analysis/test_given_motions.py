@@ -7,10 +7,11 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_model
-from scipy.interpolate import CubicSpline, make_interp_spline
+from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 
 from substructures import InvalidArgument, Model, simulate
 from substructures.analysis.closed.loops import loop_state
+from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.motion.signals import Curve, Table
 
 TIMES = [0.0, 1.0, 2.0, 3.0]
@@ -72,6 +73,7 @@ def test_within_a_span_without_kinks_they_do_so_too(
         ("sign(t-1.5)", 1.5, "it jumps from -1 to 1 m"),
         ("table(t; 0: 0, 1: 1, 2: 1, 4: 1)", 0, "velocity jumps from 0 to 1 m/s"),
         ("1e-9*abs(t-1.5)", 1.5, "velocity jumps from -1e-09 to 1e-09 m/s"),
+        ("sqrt(((t-2)/1.25)^2)", 2, "velocity jumps from -0.8 to 0.8 m/s"),
         ("3+abs(sin(t-2))", 2, "velocity jumps from -1 to 1 m/s"),
     ],
 )
@@ -102,6 +104,26 @@ def test_loop_states_see_kinks_where_they_are(slide: Model) -> None:
     found = loop_state(slide, [0], t=0.5, prescribed={"s.x": Table(TIMES, DWELL, "linear")})
     assert (found.consistent.q[0], found.consistent.qd[0]) == (0.5, 1)
     assert loop_state(slide, [0], t=0.25, prescribed={"s.x": "abs(t-1)"}).consistent.qd[0] == -1
+
+
+def test_smooth_laws_have_rates_where_their_pieces_meet(slide: Model) -> None:
+    """At every place of a table, its ends and a start at its first place, too; intervals of any length."""
+    x, y = [0.0, 1.0, 2.1, 3.0], [0.0, 1.0, 0.5, 2.0]
+    spline = CubicSpline(x, y, bc_type="clamped")
+    text = f"table(t; {', '.join(f'{a}: {b}' for a, b in zip(x, y, strict=True))}; smooth)"
+    given = Prescribed(slide, {"s.x": text}, (0.0, 3.0))
+    for t in (*x, *(a + d for a in x[1:3] for d in (1e-12, -1e-12)), 0.4):
+        np.testing.assert_allclose(given.at(t)[0], [spline(t), spline(t, 1), spline(t, 2)], atol=1e-9)
+    found = loop_state(slide, [0], t=0, prescribed={"s.x": text})
+    assert abs(found.consistent.qd[0]) < 1e-9
+    np.testing.assert_allclose(moved(slide, text), spline(np.linspace(0, 3, 7)), atol=1e-7)
+    ramp = Prescribed(slide, {"s.x": "step(t, 1, 2)"}, (0.0, 2.0))
+    for t, value in ((0.0, 0), (2.0, 1)):
+        np.testing.assert_allclose(ramp.at(t)[0], [value, 0, 0], atol=1e-10)
+    rising = Prescribed(slide, {"s.x": "table(t; 0: 0, 1: 2, 3: 3; monotone)"}, (0.5, 1.0))
+    slopes = PchipInterpolator([0, 1, 3], [0, 2, 3])
+    before = [slopes(1), slopes(1, 1), slopes(1 - 1e-9, 2)]  # the acceleration jumps: as within the span
+    np.testing.assert_allclose(rising.at(1.0)[0], before, atol=1e-7)
 
 
 def test_inputs_take_quintic_tables_too() -> None:

@@ -10,10 +10,12 @@ import pytest
 from analysis_models import catalogue_model, random_model, values_at
 from in_depth import seeds
 from random_trees import Plain, model_of, random_states
+from scipy.interpolate import CubicSpline
 
 from substructures import InvalidInput, Model, Program
 from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
 from substructures.analysis.simulate import simulate
+from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.vibrations import modes
 from substructures.expr.interpret import interpret
@@ -220,14 +222,37 @@ def test_a_load_that_jumps_is_refused() -> None:
 
 def test_a_root_at_zero_is_a_failure_with_advice() -> None:
     body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "s"}}
-    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)*s'"}]
+    loads = [{"type": "joint", "coordinate": "s", "force": "-sqrt(s'^2)"}]
     model = model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
     found = linearise(model, [0], qd=[0])
     assert found.status == "failed"
     assert "root" in found.message
     moving = linearise(model, [0], qd=[2])
     assert moving.status == "finished"
-    np.testing.assert_allclose(moving.D, [[4]])
+    np.testing.assert_allclose(moving.D, [[1]])
+
+
+def test_laws_have_their_derivative_where_their_pieces_meet() -> None:
+    """|v| v at rest; a stiffness that is a smooth table at its places, of which one is the equilibrium, and at its end;
+    not at the end of a monotone one, which is a corner."""
+    body = {"name": "b", "parent": "base", "mass": 2, "joint": {"type": "prismatic", "coordinate": "s"}}
+
+    def slide(force: str) -> Model:
+        loads = [{"type": "joint", "coordinate": "s", "force": force}]
+        return model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
+
+    damped = slide("-sqrt(s'^2)*s'")
+    assert linearise(damped, [0], qd=[0]).status == "finished"
+    np.testing.assert_allclose(linearise(damped, [0], qd=[0]).D, [[0]], atol=1e-8)
+    np.testing.assert_allclose(linearise(damped, [0], qd=[2]).D, [[4]])
+    x, y = [-1.0, 0.0, 1.1, 2.0], [-2.0, 0.0, 3.0, 4.0]
+    spline, places = CubicSpline(x, y, bc_type="clamped"), ", ".join(f"{a}: {b}" for a, b in zip(x, y, strict=True))
+    spring = slide(f"-table(s; {places}; smooth)")
+    for at in (*x, 0.3):
+        np.testing.assert_allclose(linearise(spring, [at]).K, [[spline(at, 1)]], atol=1e-7)
+    (found,) = equilibria(spring, count=4).found
+    np.testing.assert_allclose(found.q, [0], atol=1e-12)
+    assert linearise(slide(f"-table(s; {places}; monotone)"), [2.0]).status == "failed"
 
 
 @pytest.mark.parametrize(

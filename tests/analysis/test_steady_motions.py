@@ -12,6 +12,7 @@ from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
 from closed_trees import governor, governor_accelerations, lift, resized, tree_model
 from in_depth import deep
+from moved_worlds import motions, moved
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
@@ -29,7 +30,7 @@ from substructures.quantities.evaluation import evaluate
 G, LENGTH, MASS, FRAME = 9.81, 0.5, 2.0, 0.3
 
 
-def conical(damping: float = 0) -> Model:
+def conical_pendulum(damping: float) -> Plain:
     """A mass point on a rod that swings in a frame turning about the vertical; the angle is 0 where it hangs."""
     bodies: list[Plain] = [
         {
@@ -46,7 +47,11 @@ def conical(damping: float = 0) -> Model:
             "com": [0, -LENGTH, 0],
         },
     ]
-    return model_of({"name": "conical", "bodies": bodies}, (0, 0, -G))
+    return {"name": "conical", "bodies": bodies}
+
+
+def conical(damping: float = 0) -> Model:
+    return model_of(conical_pendulum(damping), (0, 0, -G))
 
 
 def at(found: Any, *place: float) -> SteadyMotion:
@@ -365,3 +370,20 @@ def test_what_is_stiff_elsewhere_excuses_no_acceleration() -> None:
     assert still("rest", "", falling, M, K).holds is False
     assert is_small(np.array([1.0, 0.0]), K, M)
     assert not is_met(np.array([0.0, 1.0]), K)
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_in_a_world_that_is_turned_by_decimals(number: int) -> None:
+    """The same motions: that gravity is along the axis to 16 digits makes the turn no force; that it is not, does."""
+    definition = conical_pendulum(0)
+    tree = {"gravity": [0, 0, -G], "instances": [{"name": "x", "substructure": "conical"}], "closures": []}
+    model = tree_model(moved(tree, motions(5, 1)[number]), {"conical": definition})
+    found, expected = (steady_motions(m, rates={"x.turn": 6.0}) for m in (model, conical()))
+    assert found.moving == ("x.turn",)
+    np.testing.assert_allclose([m.q[1] for m in found.found], [m.q[1] for m in expected.found], atol=1e-9)
+    for motion, other in zip(found.found, expected.found, strict=True):
+        np.testing.assert_allclose(motion.K, other.K, rtol=1e-9)
+        assert motion.stability.verdict == other.stability.verdict
+    leaning = tree | {"gravity": [1e-6, 0, -G]}
+    with pytest.raises(InvalidInput, match="no cyclic coordinate"):
+        steady_motions(tree_model(leaning, {"conical": definition}), rates={"x.turn": 6.0})

@@ -32,6 +32,13 @@ def read(text: str, **more: object) -> Imported:
     return import_file(text.encode(), Options("none"), **more)  # type: ignore[arg-type]
 
 
+def without_holes(text: str) -> str:
+    """The file with nothing where tests put something in."""
+    for hole, filling in (("MORE", ""), ("VERSION", "1.9"), ("LINK", ""), ("AXIS", "")):
+        text = text.replace(hole, filling)
+    return text
+
+
 def box(version: str = "1.9", link: str = "", axis: str = "") -> Imported:
     return read(BOX.replace("VERSION", version).replace("LINK", link).replace("AXIS", axis))
 
@@ -147,7 +154,7 @@ def test_rotors_behind_gears_are_armatures_in_every_format() -> None:
     ],
 )  # fmt: skip
 def test_what_is_left_out_is_told_by_the_file_the_part_and_the_tree(text: str, said: str) -> None:
-    found = read(text.replace("MORE", "").replace("VERSION", "1.9").replace("LINK", "").replace("AXIS", ""))
+    found = read(without_holes(text))
     assert any(said in message for message in warnings_of(found))
     assert any(said in message for message in kept(found))
     told = [w["message"] for w in model_of(found).certificate["warnings"] if w["code"] == "left-out"]
@@ -221,7 +228,7 @@ def test_known_names_are_not_told(text: str | bytes) -> None:
     ],
 )  # fmt: skip
 def test_names_that_are_not_known_are_told_with_what_was_meant(text: str, said: str) -> None:
-    found = read(text.replace("MORE", "").replace("VERSION", "1.9").replace("LINK", "").replace("AXIS", ""))
+    found = read(without_holes(text))
     assert any(said in message for message in warnings_of(found)), warnings_of(found)
 
 

@@ -16,7 +16,7 @@ from substructures.certificate.compare import TOLERANCE
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.expr.parse import parse
-from substructures.part import scope as part_scope
+from substructures.loads import scope as loads_scope
 from substructures.tree.certificate import certify_tree
 
 PART: dict[str, Any] = {
@@ -316,7 +316,7 @@ def test_names_of_axes_are_compared_too() -> None:
 def test_what_a_wrong_derivation_hands_on_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """A graph that takes two different expressions for one: both sides used to be built in it."""
     wrong = lambda graph, text, lookup: parse(graph, text.replace("l/2", "l/3"), lookup)  # noqa: E731
-    monkeypatch.setattr(part_scope, "parse", wrong)
+    monkeypatch.setattr(loads_scope, "parse", wrong)
     with pytest.raises(VerificationFailed, match="by the documents"):
         derive(Definition.read(EVERYTHING))
 

@@ -11,7 +11,7 @@ from closed_trees import at, slider_crank
 from random_trees import Plain
 from rolling_bodies import sleigh
 
-from service.analyses.formulas import velocity_equations_of
+from service.analyses.formulas.constraints import velocity_equations_of
 from service.analyses.numbers import ANALYSES
 from service.analyses.requests import arguments, read_request
 from service.analyses.results import plain

@@ -48,7 +48,9 @@ def require_smooth(motion: Columns, places: Columns, span: tuple[float, float], 
     start, end = span
     h = BESIDE * max(1.0, abs(start), abs(end))
     times = np.linspace(start - h, end + h, LOOKS if end > start else 3)
-    changes = np.abs(motion(times) - [motion(times[:1])[0, 0], 0, 0])
+    # a single time says nothing of how large the motion is
+    around = times if end > start else np.linspace(start - h / BESIDE, start + h / BESIDE, LOOKS)
+    changes = np.abs(motion(around) - [motion(around[:1])[0, 0], 0, 0])
     greatest = np.where(np.isfinite(changes), changes, 0).max(axis=0)
     for a, b in _changes(places, times, h):
         before, after = motion(np.array([a, b]))[:, :2]

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy
@@ -83,6 +84,21 @@ class LoopState:
     def is_right(self) -> bool | None:
         """Whether the state is closed and obeys the equations of motion; None where the ``message`` says why not."""
         return verdict(self.checks, not self.message)
+
+    def plain(self) -> dict[str, Any]:
+        """The members of its parts beside each other, but for the mobility."""
+        names = "q", "qd", "residual", "velocity_residual", "iterations"
+        return {
+            **{name: getattr(self.consistent, name) for name in names},
+            "qdd": self.qdd,
+            "multipliers": self.multipliers,
+            "actuation": self.actuation,
+            "mobility": {**vars(self.mobility), "redundant": self.mobility.redundant},
+            "reactions": self.reactions,
+            "message": self.message,
+            "is_right": self.is_right,
+            "checks": self.checks,
+        }
 
     def __repr__(self) -> str:
         place, state = self.mobility, self.consistent

@@ -15,15 +15,18 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
 from substructures.errors import among
-from substructures.expr.corners import corners, inner
+from substructures.expr.corners import corners, inner, on_side
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
+from substructures.expr.walk import transfer
 from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
 TIME = Symbol("t", "time", "s")
+#: how far beside a place where pieces of a law meet rates are taken, as a part of max(1, t)
+BESIDE = 2.0**-40
 
 
 class Prescribed:
@@ -35,7 +38,7 @@ class Prescribed:
         """Raises InvalidArgument (``/prescribed/name``): unknown coordinates, bad expressions, tables that do not cover
         the span, motions with a kink in it.
         """
-        self.values = np.zeros((len(given), 3))
+        self.values, self._middle = np.zeros((len(given), 3)), sum(span) / 2
         self._tables: list[tuple[int, Any]] = []
         scope = Scope(Graph())
         time = {"t": scope.graph.symbol("t")}
@@ -67,8 +70,12 @@ class Prescribed:
         """Expressions in t as machine code; constants are put in place at once."""
         if not rows:
             return None
-        p = program(graph, {"motion": array((len(rows), 3), lambda k, i: rows[k][i])}, {"t": TIME})
-        run = compile_program(p, ["motion"]).bind({"motion": self._found}, {"t": self._time})
+        meeting = [inner(node) for node in corners(row[0] for row in rows)]
+        motion = array((len(rows), 3), lambda k, i: rows[k][i])
+        p = program(graph, {"motion": motion, "meeting": array((len(meeting),), lambda k: meeting[k])}, {"t": TIME})
+        self._meeting = np.ones((1, len(meeting)))
+        out = {"motion": self._found, "meeting": self._meeting}
+        run = compile_program(p, list(out)).bind(out, {"t": self._time})
         run()
         self.values[self._places] = self._found[0]
         return run if p.symbols else None
@@ -79,15 +86,28 @@ class Prescribed:
             self._time[0] = t
             self._run()
             self.values[self._places] = self._found[0]
+            if not self._meeting.all():
+                self._beside(t, self._run)
         for k, table in self._tables:
             self.values[k] = table(t)
         return self.values
 
+    def _beside(self, t: float, run: Callable[[], None]) -> None:
+        """The rates at a time where pieces meet, as they are beside it within the span: kinks were refused."""
+        self._time[0] = t + (BESIDE if t < self._middle else -BESIDE) * max(1.0, abs(t))
+        run()
+        self.values[self._places, 1:] = self._found[0, :, 1:]
+
 
 def _with_rates(x: Expr) -> tuple[Expr, Expr, Expr]:
-    """s(t), s'(t), s''(t)."""
-    rate = derivative(x, "t")
-    return x, rate, derivative(rate, "t")
+    """s(t), s'(t), s''(t): with |x| = x sign x, whose derivatives need no quotient that is 0/0 where x = 0."""
+    found, graph = corners([x]), x.graph
+    sides = [graph.symbol(f"side {k}") for k in range(len(found))]
+    (smooth,) = on_side([x], dict(zip(found, sides, strict=True)))
+    rate = derivative(smooth, "t")
+    signs = {str(s.value): graph.function("sign", inner(node)) for s, node in zip(sides, found, strict=True)}
+    rate, second = transfer([rate, derivative(rate, "t")], graph, signs)
+    return x, rate, second
 
 
 def _require_smooth(row: tuple[Expr, Expr, Expr], span: tuple[float, float], pointer: str, unit: str) -> None:

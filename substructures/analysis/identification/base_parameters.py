@@ -24,23 +24,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import partial
 from typing import Any, TypeVar
+
+from flint import arb, ctx
 
 from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.certificate.compare import compare
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.regressed import base_outputs
 from substructures.certificate.states import states_between
+from substructures.certificate.stored import operations_in_balls
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
 from substructures.expr.bind import bind
 from substructures.expr.direct import ball
 from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.modular import Field, NoSquareRoot
-from substructures.expr.program import Formulas, Program, Symbol, array, program
+from substructures.expr.program import Formulas, Program, Symbol, array, operands, program
 from substructures.expr.replay import replay
 from substructures.expr.walk import transfer
 from substructures.printers import entries
@@ -59,6 +62,8 @@ DRIVE_UNITS = {
 MAX_FIELDS = 10_000
 #: terms of a coefficient that is written in its canonical form
 READABLE = 50
+#: bits of numbers that are written
+DIGITS = 256
 
 #: a formula, or a value in the field
 X = TypeVar("X", Expr, int)
@@ -99,12 +104,35 @@ class BaseParameters:
         return tuple(self.standard[i] for i in self.base)
 
     def combinations(self) -> dict[str, dict[str, str]]:
-        """Every base parameter as a sum: coefficient (text) by standard parameter. Raises TooLarge for long ones."""
+        """Every base parameter as a sum: coefficient (text) by standard parameter; long ones without parameters, as
+        lengths and angles in decimals make them, are numbers of 17 digits. Raises TooLarge for other long ones.
+        """
         found: dict[str, dict[str, str]] = {name: {} for name in self.names}
-        for entry in entries(self.program, "grouping", "text"):
+        for entry in entries(with_short_numbers(self.program.select(["grouping"])), "grouping", "text"):
             b, i = entry["index"]
             found[self.names[b]][self.standard[i]] = str(entry["formula"])
         return found
+
+
+def with_short_numbers(given: Program) -> Program:
+    """The program for people, with numbers of 17 digits for operations without symbols that are long when they stand
+    alone.
+    """
+    constant, size = list[bool](), list[int]()
+    for operation in given.operations:
+        used = operands(operation)
+        constant.append(operation[0] != "sym" and all(constant[i] for i in used))
+        size.append(1 + sum(size[i] for i in used))
+    long = [i for i, n in enumerate(size) if constant[i] and n > READABLE]
+    if not long:
+        return given
+    with ctx.workprec(DIGITS):
+        values = operations_in_balls(given, {symbol.name: arb(0) for symbol in given.symbols})
+    operations = list(given.operations)
+    for i in long:
+        number = Fraction(repr(float(values[i])))
+        operations[i] = ("rat", str(number.numerator), str(number.denominator))
+    return replace(given, operations=tuple(operations)).select(list(given.outputs))
 
 
 def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParameters:

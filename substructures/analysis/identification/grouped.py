@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.certificate.compare import compare
@@ -42,11 +41,8 @@ from substructures.printers.textbook import textbook_inlined
 from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.loads import load_formulas
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import model_outputs, rate_symbols
+from substructures.tree.model import Model, loaded_outputs
 from substructures.tree.mounted_part import MountedPart
-from substructures.tree.velocity_forces import least_forces
 
 #: outputs of a model that base parameters determine
 OUTPUTS = ("metric", "christoffel", "gravity", "forces", "bias", "nonlinear_effects", "inverse_dynamics")
@@ -93,7 +89,7 @@ def grouped_model(
     opened = [_opened(m, instance.name, values) for m, instance in pairs]
     # models that were stored before one of these was an output do not have it
     names = [name for name in OUTPUTS if name in model.program.outputs]
-    result = hoisted(_coupled(replace(assembly, mounted=tuple(opened)), spec, names))
+    result = hoisted(_coupled(replace(assembly, mounted=tuple(opened)), names))
     if len(result) > max_nodes:
         raise TooLarge("the grouped formulas (in operations)", len(result), max_nodes)
     _certify(model, result, definitions)
@@ -168,17 +164,12 @@ def _put(outputs: Mapping[str, dict[tuple[int, ...], Scalar]], name: str, lead: 
     outputs[f"{name}.J"] |= {(*lead, i, j): x.J[SYMMETRIC_INDEX[i][j]] for i in range(3) for j in range(3)}
 
 
-def _coupled(assembly: Assembly, spec: TreeSpec, names: Sequence[str]) -> Program:
+def _coupled(assembly: Assembly, names: Sequence[str]) -> Program:
     """The named outputs of the tree; every mass stays where it is."""
     graph = assembly.scope.graph
     run, christoffel = over_formulas(graph), "christoffel" in names
     coupled = couple_parts(run, assembly.mounted, assembly.gravity, christoffel, group=lambda _: False)
-    rates, accelerations = rate_symbols(assembly)
-    if spec.loads:
-        acting = load_formulas(assembly, coupled.placed, rates)
-        coupled = coupled.with_loads(acting.forces, acting.potential)
-    least = partial(least_forces, assembly.scope, coupled, rates)
-    found = model_outputs(assembly, coupled, rates, accelerations, frozenset(names), least)
+    found = loaded_outputs(assembly, coupled, frozenset(names))
     return program(graph, {name: found[name] for name in names}, assembly.scope.symbols)
 
 

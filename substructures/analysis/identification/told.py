@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.analysis.identification.base_parameters import BaseParameters, with_short_numbers
 from substructures.analysis.identification.grouped import cut, sum_of
 from substructures.expr.graph import Graph
 from substructures.expr.operations import Symbol
@@ -21,7 +21,7 @@ def base_symbols(base: BaseParameters) -> tuple[Program, tuple[Symbol, ...], dic
     """
     graph, outputs = Graph(), dict[str, Formulas]()
     symbols = {s.name: s for s in base.program.symbols}
-    found = replay(base.program, graph, {}, ["base_parameters", "grouping"])
+    found = replay(with_short_numbers(base.program.select(["base_parameters", "grouping"])), graph, {})
     beta, grouping = found["base_parameters"].entries, found["grouping"].entries
     units = dict(zip(base.standard, base.units, strict=True))
     called = {name: symbol_name(name) for name in base.standard}

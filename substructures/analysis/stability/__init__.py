@@ -11,6 +11,8 @@ linearisation_result    ``Linearisation`` and ``ClosedLinearisation``: what line
 operating_point         what linearise is given, and what both of its ways share
 vibrations              modes of M x'' + D x' + K x = 0, and what they say about stability
 root_locus              ``root_locus``: eigenvalues of an equilibrium over a parameter
+meetings                derivatives where pieces of smooth laws meet, from both sides
+nearly_cyclic           coordinates that are cyclic but for the rounding of decimals
 steady_motions          ``steady_motions``: cyclic coordinates at constant rates, all others still, with their stability
 steady_search           how they are found, and what linearises them
 energy_integrals        stability by the energy at constant other first integrals (Routh, Lyapunov)

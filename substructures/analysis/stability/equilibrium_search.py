@@ -16,6 +16,7 @@ from substructures.analysis.arguments import positive, real, whole
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import numbers
+from substructures.analysis.stability.meetings import with_sides
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
@@ -137,9 +138,13 @@ class RestSearch:
 
     def at(self, q: Array) -> tuple[Array, Array]:
         """-Q and its Jacobian at rest, over the units."""
-        self.q[0] = q
+        found = with_sides(self._ran, {"q": q}, ["q"])
+        return found["F"] / self.unit, found["K"] / self.unit[:, None]
+
+    def _ran(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        self.q[0] = values["q"]
         self.run()
-        return self.F[0] / self.unit, self.K[0] / self.unit[:, None]
+        return {"F": self.F[0].copy(), "K": self.K[0].copy()}
 
     def held(self, starts: Array) -> list[int]:
         """Coordinates on which nothing depends."""

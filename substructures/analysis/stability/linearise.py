@@ -14,6 +14,7 @@ from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
+from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, stability
 from substructures.array import Array
@@ -68,7 +69,8 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     qdd = _accelerations(model, values, states)
     # M, D, K, F and the residual at (q, q', q'', u, t)
     values |= {f"{name}''": qdd[:, a] for a, name in enumerate(model.coordinates)}
-    found = interpret_in_blocks(source, values, list(MATRICES), len(qdd))
+    moved = [f"{name}{prime}" for name in model.coordinates for prime in ("", "'")]
+    found = with_sides(lambda at: interpret_in_blocks(source, at, list(MATRICES), len(qdd)), values, moved)
     found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
     by_output = point.output_matrices(chosen, values, len(qdd))
     result = _assembled(model, (chosen, tuple(point.outputs)), found, by_output, qdd)

@@ -28,6 +28,7 @@ from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.motion.problem import Start
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation
+from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, normed, stability
 from substructures.array import Array
@@ -62,7 +63,8 @@ def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     except Singular as error:
         message = message or str(error)
     _put(s, values, qdd, multipliers)
-    found = interpret(perturbation(model), values, [*MATRICES, *ALONG])
+    moved = [f"{name}{prime}" for name in model.coordinates for prime in ("", "'")]
+    found = with_sides(lambda at: interpret(perturbation(model), at, [*MATRICES, *ALONG]), values, moved)
     message = message or fault_of(model.coordinates, qdd, found["damping"], found["stiffness"])
     found["input"] = found["input"][:, [inputs_of(model).index(name) for name in chosen]]
     found["C"], found["Dy"] = (x[0] for x in point.output_matrices(chosen, values, 1))

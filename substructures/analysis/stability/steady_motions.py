@@ -30,6 +30,7 @@ from substructures.analysis.given import numbers
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
 from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
+from substructures.analysis.stability.nearly_cyclic import nearly_cyclic
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.analysis.stability.vibrations import Mode, Stability, modes, normed, stability
 from substructures.analysis.verdict import Check
@@ -118,9 +119,10 @@ def steady_motions(
     """Steady motions: Gamma_xbc w^b w^c = Q_x with s' = w constant and all other coordinates x still; with closures
     Gamma_xbc w^b w^c = Q_x + lambda_k G_kx and phi_k = 0.
 
-    Given are either ``rates`` w [rad/s, m/s] or ``momenta`` [N m s, N s] of cyclic coordinates by name; those that are
-    not named have 0. ``held``: ``momenta`` keep their values when the motion is disturbed, since nothing acts on cyclic
-    coordinates; or ``rates`` do, those of the named coordinates, which are driven then and need not be cyclic as long
+    Given are either ``rates`` w [rad/s, m/s] or ``momenta`` [N m s, N s] of cyclic coordinates by name, also of those
+    that are so but for the rounding of decimals; those that are not named have 0. ``held``: ``momenta`` keep their
+    values when the motion is disturbed, since nothing acts on cyclic coordinates; or ``rates`` do, those of the named
+    coordinates, which are driven then and need not be cyclic as long
     as nothing else depends on them. The search is that of equilibria: ``starts`` (N, n), zero, ``count`` random places
     within ``reach`` [m]. ``parameters`` in place of their defaults, constant ``inputs`` [N m, N]. That none is found is
     a result with advice. Raises InvalidInput (``/rates``, ``/rates/name``, ``/momenta/name``, ``not-smooth``)
@@ -158,7 +160,8 @@ def _given(
 def _moving(model: Model, conditions: RestConditions, given: Mapping[str, float], field: str, held: Held) -> list[int]:
     """The coordinates s. Raises InvalidArgument for names that are none, or not free to move at constant rates."""
     acting = [name for name, value in conditions.inputs.items() if value]
-    cyclic = [] if held == "rates" else list(first_integrals(model, acting).cyclic)
+    free = {*first_integrals(model, acting).cyclic, *nearly_cyclic(model, conditions)} if held == "momenta" else set()
+    cyclic = [name for name in model.coordinates if name in free]
     known = model.coordinates if held == "rates" else cyclic
     what = "coordinate" if held == "rates" else "cyclic coordinate"
     faults = [

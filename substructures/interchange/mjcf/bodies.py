@@ -27,7 +27,7 @@ from substructures.interchange.numbers import (
 )
 from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Motion, MotionType, NamedFrame
-from substructures.interchange.rotations import from_z_axis, six_of, tensor, to_rpy
+from substructures.interchange.rotations import from_z_axis, six_of, tensor, to_rpy, turned_inertia
 from substructures.interchange.xml import Node
 
 _MOTION: dict[str, MotionType] = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical", "free": "free"}
@@ -247,9 +247,7 @@ class Bodies:
             six = (*node.numbers("diaginertia", 3), ZERO, ZERO, ZERO)
         else:
             raise refuse(node.place, "missing-attribute", "'diaginertia' or 'fullinertia' is needed")
-        if not np.array_equal(R, np.eye(3)):
-            six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
-        return Inertial(mass, com, six)
+        return Inertial(mass, com, turned_inertia(six, R))
 
     def _bounded(self, node: Node, own: Inertial) -> Inertial:
         """With the least mass and moments that the compiler asks for, and judged as that."""

@@ -24,7 +24,6 @@ from substructures.interchange.numbers import (
     ZERO,
     Number,
     Triple,
-    cleaned,
     decimal_of,
     direction,
     number_of,
@@ -33,7 +32,7 @@ from substructures.interchange.numbers import (
 )
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
-from substructures.interchange.rotations import six_of, tensor, to_rpy
+from substructures.interchange.rotations import to_rpy, turned_inertia
 from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, framed, full_name
 from substructures.interchange.xml import Node, numbers_in
 
@@ -274,8 +273,7 @@ class _Reader:
         if inertia is None:
             raise refuse(own.place, "missing-element", "<inertia> is needed")
         six: tuple[Number, ...] = tuple(_number(inertia, n, defaults.get(n, "0")) for n in names)
-        if not np.array_equal(pose.R, np.eye(3)):
-            six = cleaned(six_of(pose.R @ tensor([value(x) for x in six]) @ pose.R.T))
+        six = turned_inertia(six, pose.R)
         judge(own.place, mass, vector(pose.r), six, self.report)
         return Inertial(mass, vector(pose.r), six)
 

@@ -23,7 +23,6 @@ from substructures.interchange.numbers import (
     Triple,
     angle,
     axis_of,
-    cleaned,
     direction,
     is_zero,
     triple,
@@ -32,7 +31,7 @@ from substructures.interchange.numbers import (
 )
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, Robot, in_order
-from substructures.interchange.rotations import from_rpy, from_z_axis, six_of, tensor
+from substructures.interchange.rotations import from_rpy, from_z_axis, turned_inertia
 from substructures.interchange.urdf.transmissions import armatures
 from substructures.interchange.xml import Node
 
@@ -251,10 +250,7 @@ def _inertial(node: Node, report: Report) -> Inertial:
         *(inertia_of.number(name) for name in ("ixx", "iyy", "izz")),
         *(inertia_of.number(name, ZERO) for name in ("ixy", "ixz", "iyz")),
     )
-    six = undusted(six)
-    if not all(map(is_zero, rpy)):
-        R = from_rpy(rpy)
-        six = cleaned(six_of(R @ tensor([value(x) for x in six]) @ R.T))
+    six = turned_inertia(undusted(six), from_rpy(rpy))
     judge(inertial.place, mass, com, six, report)
     return Inertial(mass, com, six)
 

@@ -1,0 +1,38 @@
+"""Controls of least cost, and gradients of costs."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.analyses.numbers.analysis import Analysis
+from service.analyses.requests import arguments
+from service.analyses.results import TRAJECTORY
+from service.analyses.source import Source
+from service.schemas.control import GradientRequest, OptimalControlRequest
+from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.optimal_control import optimal_control
+from substructures.analysis.motion.progress import ProgressReport
+
+
+def _optimal_control(source: Source, read: OptimalControlRequest, report: ProgressReport) -> Any:
+    def told(iteration: int, _cost: float, _violation: float) -> None:
+        """The share of the iterations that are done at most."""
+        report(min(1.0, iteration / read.iterations))
+
+    return optimal_control(source.model, **arguments(read), progress=told)
+
+
+ANALYSES = {
+    "cost-gradients": Analysis(
+        GradientRequest,
+        lambda source, read, _: cost_gradient(source.model, **arguments(read)),
+        "The cost of a motion under given controls and its gradient by the adjoint",
+        TRAJECTORY,
+    ),
+    "optimal-controls": Analysis(
+        OptimalControlRequest,
+        _optimal_control,
+        "Controls of least cost, judged by the necessary conditions",
+        TRAJECTORY,
+    ),
+}

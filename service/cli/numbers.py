@@ -1,0 +1,113 @@
+"""Results of analyses in numbers, computed here or on a server, and what is told of them."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping
+from contextlib import nullcontext
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Annotated, Any
+
+import orjson
+import typer
+
+from service.analyses.numbers import ANALYSES
+from service.analyses.results import JSON, MEDIA_TYPES, written
+from service.cli import completion
+from service.cli.documents import is_document, named, read_document
+from service.cli.options import Server
+from service.cli.output import tell_warnings, waiting
+from service.cli.tree_files import local_source
+
+#: what is said of results that are not known to be right
+VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """A tree that is a document or on a server, and where the result goes."""
+
+    server: Server
+    tree: str
+    out: Path | None
+    as_json: bool = False
+
+
+Tree = Annotated[
+    str,
+    typer.Argument(
+        help="Tree document (JSON or YAML), or the name of a tree on a server.", autocompletion=completion.trees
+    ),
+]
+Out = Annotated[
+    Path | None,
+    typer.Option(
+        metavar="FILE",
+        help=f"For the result; its ending says what it is: {', '.join(f'.{name}' for name in MEDIA_TYPES)}.",
+    ),
+]
+
+
+def numbers(wanted: Wanted, name: str, given: Path | None) -> int:
+    """Compute, write and tell the result of an analysis; the exit code. Raises InvalidInput, ProblemError."""
+    request = {} if given is None else read_document(given)
+    media = _media(wanted.out, name)
+    source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
+    with waiting(name), nullcontext() if given is None else named(given):
+        if source is not None:
+            result = ANALYSES[name].compute(source, request, lambda _: None)
+            told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
+        else:
+            with wanted.server.client() as client:
+                data, told = client.analysis(wanted.tree, name, request, media)
+            told = orjson.loads(data) if media == JSON else told
+    return _tell(told, data, wanted.out, wanted.as_json)
+
+
+def _media(out: Path | None, name: str) -> str:
+    media = MEDIA_TYPES.get(out.suffix.removeprefix(".")) if out is not None else JSON
+    if media is None or media not in ANALYSES[name].media:
+        known = [f".{suffix}" for suffix, each in MEDIA_TYPES.items() if each in ANALYSES[name].media]
+        raise ValueError(f"the result of '{name}' can be written as {', '.join(known)}")
+    return media
+
+
+def _tell(told: Mapping[str, Any], data: bytes, out: Path | None, as_json: bool) -> int:
+    """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
+    is_motion = "checks" in told and "t" in told
+    if out is not None:
+        out.write_bytes(data)
+        print(f"{out}: {len(data)} bytes", file=sys.stderr if as_json else sys.stdout)
+    if as_json:
+        print(data.decode() if out is None else orjson.dumps(told).decode())
+    elif out is not None or is_motion:
+        _summary(told)
+    else:
+        print(data.decode())
+    return int(told.get("status") == "failed" or told.get("is_right") is False)
+
+
+def _summary(told: Mapping[str, Any]) -> None:
+    words = [str(told[key]) for key in ("status", "message") if told.get(key)]
+    print(*words, *([VERDICTS[told["is_right"]]] if told.get("is_right", True) is not True else []))
+    for check in told.get("checks", []):
+        print(f"{check['name']}: {check['rule']}, {_found(check)}: {check['reason']}")
+    tell_warnings(told)
+    for event in told.get("events", []):
+        print(f"{event['name']} at t = {event['t']:.9g} s")
+    if "t" in told and "q" in told:
+        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
+        print(f"t = {told['t'][-1]:.9g} s: {last}")
+
+
+def _found(check: Mapping[str, Any]) -> str:
+    """What became of a check."""
+    if check["holds"] is None:
+        return "not made"
+    verdict = "holds" if check["holds"] else f"VIOLATED from t = {check['time']:.9g} s"
+    return f"{verdict}, {_short(check['relative'])} (limit {_short(check['limit'])})"
+
+
+def _short(number: float | None) -> str:
+    return "not finite" if number is None else f"{number:.2g}"
