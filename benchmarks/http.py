@@ -27,7 +27,7 @@ from substructures.array import Array
 from substructures.client import Client
 from substructures.expr.program import Program
 from substructures.formats.arrays import read_npz, view_npz, write_npz
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import EvaluationOptions, evaluate
 
 STATES = 100_000
 TURNS, SECONDS = 5, 3.0
@@ -162,13 +162,13 @@ def batch(client: Client, figures: dict[str, float]) -> None:
         """The work of a request without HTTP: npz written and read, states evaluated, npz written and read."""
         sent = b"".join(write_npz({"q": q}).pieces)
         given = {"quantities": quantities, **read_npz(io.BytesIO(sent), len(sent))}
-        found = evaluate(model, **given, evaluator=one_thread)
+        found = evaluate(model, **given, options=EvaluationOptions(evaluator=one_thread))
         answer = b"".join(write_npz({name: found[name] for name in quantities}).pieces)
         view_npz(np.frombuffer(answer, np.uint8))
 
     ways: dict[str, Callable[[], Any]] = {
-        "in process, one thread": lambda: evaluate(model, **request, evaluator=one_thread),
-        "in process, all threads": lambda: evaluate(model, **request, evaluator=engine),
+        "in process, one thread": lambda: evaluate(model, **request, options=EvaluationOptions(evaluator=one_thread)),
+        "in process, all threads": lambda: evaluate(model, **request, options=EvaluationOptions(evaluator=engine)),
         "npz": lambda: client.evaluate("cell0@1", quantities=quantities, q=q),
         "npz, packed": lambda: client.evaluate("cell0@1", quantities=quantities, q=q, packed=True),
         "npz, packed, float32": lambda: client.evaluate(

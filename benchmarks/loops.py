@@ -17,7 +17,8 @@ from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reductions import REDUCTIONS
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.from_fields import motion_arguments
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.simulate import simulate
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers: start, and values at t = 0.03 s
@@ -74,7 +75,7 @@ def measure(name: str, method: str) -> dict[str, Any]:
     seconds = []
     for _ in range(5):
         start = perf_counter()
-        motion = simulate(model, **request)
+        motion = simulate(model, **motion_arguments(model, **request))
         seconds.append(perf_counter() - start)
     result: dict[str, Any] = {"mechanism": name, "method": method, "seconds": median(seconds), "steps": motion.steps}
     result |= {check.name: check.worst / check.scale for check in motion.checks}

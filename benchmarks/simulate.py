@@ -23,9 +23,10 @@ from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
 from benchmarks.report import keep, options
 from substructures import couple, derive
-from substructures.analysis.motion.problem import TAYLOR
+from substructures.analysis.from_fields import motion_arguments
+from substructures.analysis.motion.problems.problem import TAYLOR
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import FixedStep, Integrator, Outputs, simulate
 from substructures.compile import compile_program
 from substructures.tree.model import Model
 
@@ -113,7 +114,7 @@ def ours(model: Model, system: Chain, method: str) -> list[Run]:
 
     def once(k: int) -> Array:
         request = base | {"relative_tolerance": 10.0**-k, "absolute_tolerance": 10.0 ** -(k + 1)}
-        return simulate(model, **request).q[-1]
+        return simulate(model, **motion_arguments(model, **request)).q[-1]
 
     start = perf_counter()
     once(6)
@@ -124,9 +125,10 @@ def ours(model: Model, system: Chain, method: str) -> list[Run]:
 def ours_fixed(model: Model, system: Chain) -> list[Run]:
     """simulate with fixed steps of the classical Runge-Kutta method."""
     numbers = {name: system.numbers[name.removeprefix("p0.")] for name in model.parameters}
-    base = {"q": system.q, "qd": system.qd, "span": [0, SPAN], "count": 2, "parameters": numbers}
+    base = {"q": system.q, "qd": system.qd, "span": [0, SPAN], "parameters": numbers, "outputs": Outputs(count=2)}
     steps = [SPAN / (250 * 2**k) for k in range(7)]
-    return [timed(f"h = {h:.1e}", lambda h=h: simulate(model, **base, fixed_step=FixedStep(h)).q[-1]) for h in steps]
+    ways = [(h, Integrator(FixedStep(h))) for h in steps]
+    return [timed(f"h = {h:.1e}", lambda way=way: simulate(model, **base, integrator=way).q[-1]) for h, way in ways]
 
 
 def sympy_function(system: Chain) -> Callable[[float, Array], Array]:

@@ -11,7 +11,7 @@ part           part                    its formulas, derived once and stored: U_
                                        and what couples them to any host; all outputs are listed in part.formulas
 tree           tree                    parts on ports of parts: tree.coupling makes g_ab, Gamma_abc and the gravity
                                        forces of the whole out of the stored formulas; the outputs of a model are
-                                       listed in tree.model
+                                       listed in tree.model_outputs
 quantities     quantities              what a model can be asked, as formulas and as numbers of one state or many
 analysis       analysis                what follows: first integrals, motion, closed loops, stability, control
 =============  ======================  ===========================================================================
@@ -36,11 +36,11 @@ documents (JSON and YAML with exact numbers and their units). Further: abbreviat
 without what is negligible, and proof of how wrong that is), catalogue (mechanisms with sources), formats
 (npz, Arrow), client (of the HTTP service).
 
->>> from substructures import Definition, TreeSpec, catalogue, couple, derive
->>> part = derive(Definition.read(catalogue.load("simple-pendulum")))
->>> tree = TreeSpec.read({"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]})
->>> couple(tree, {"p": part}).coordinates
-('p.q1',)
+>>> from substructures import couple, derive, simulate
+>>> tree = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
+>>> model = couple(tree, {"p": derive("simple-pendulum")})
+>>> simulate(model, [0.5], (0, 1)).is_right
+True
 """
 
 from __future__ import annotations
@@ -53,8 +53,28 @@ from substructures.late import names_in
 if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures import catalogue
     from substructures.abbreviation.abbreviate import abbreviate
+    from substructures.analysis.control.cost_gradient import cost_gradient
+    from substructures.analysis.control.nonlinear_program import Demands, End
+    from substructures.analysis.control.optimal_control import optimal_control
+    from substructures.analysis.control.problem import ControlProblem, Cost
     from substructures.analysis.equations.first_integrals import first_integrals
-    from substructures.analysis.simulate import simulate
+    from substructures.analysis.motion.parameter_sensitivity import sensitivities
+    from substructures.analysis.motion.problems.outputs import Outputs, SensitivityOutputs
+    from substructures.analysis.simulate import (
+        Closed,
+        ClosedMotion,
+        ConstrainedMotion,
+        Event,
+        FixedStep,
+        Geodesic,
+        Integrator,
+        KnifeEdge,
+        Linear,
+        Rolling,
+        Table,
+        TreeMotion,
+        simulate,
+    )
     from substructures.analysis.stability.equilibria import equilibria
     from substructures.analysis.stability.linearise import linearise
     from substructures.analysis.stability.steady_motions import steady_motions
@@ -72,37 +92,59 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.expr.program import Program
     from substructures.part.definition import Definition
     from substructures.part.part import Formula, Part, derive
-    from substructures.quantities.evaluation import evaluate
+    from substructures.quantities.evaluation import EvaluationOptions, evaluate
     from substructures.tree.document import Instance, TreeSpec, read_instance
     from substructures.tree.model import Model, couple
 
 __all__ = [
+    "Closed",
+    "ClosedMotion",
+    "ConstrainedMotion",
+    "ControlProblem",
+    "Cost",
     "Definition",
+    "Demands",
+    "End",
+    "EvaluationOptions",
+    "Event",
     "Fault",
+    "FixedStep",
     "Formula",
+    "Geodesic",
     "Instance",
+    "Integrator",
     "InvalidArgument",
     "InvalidDocument",
     "InvalidInput",
     "InvalidProgram",
+    "KnifeEdge",
+    "Linear",
     "MissingValue",
     "Model",
+    "Outputs",
     "Part",
     "Program",
+    "Rolling",
+    "SensitivityOutputs",
     "SubstructuresError",
+    "Table",
     "TooLarge",
+    "TreeMotion",
     "TreeSpec",
     "__version__",
     "abbreviate",
     "catalogue",
+    "cost_gradient",
     "couple",
     "derive",
     "equilibria",
     "evaluate",
     "first_integrals",
     "linearise",
+    "optimal_control",
     "read_instance",
     "render",
+    "sensitivities",
     "simulate",
     "steady_motions",
 ]
@@ -111,8 +153,17 @@ __version__: str
 
 _WHERE = {
     "substructures.abbreviation.abbreviate": ("abbreviate",),
+    "substructures.analysis.control.cost_gradient": ("cost_gradient",),
+    "substructures.analysis.control.nonlinear_program": ("Demands", "End"),
+    "substructures.analysis.control.optimal_control": ("optimal_control",),
+    "substructures.analysis.control.problem": ("ControlProblem", "Cost"),
     "substructures.analysis.equations.first_integrals": ("first_integrals",),
-    "substructures.analysis.simulate": ("simulate",),
+    "substructures.analysis.motion.parameter_sensitivity": ("sensitivities",),
+    "substructures.analysis.motion.problems.outputs": ("Outputs", "SensitivityOutputs"),
+    "substructures.analysis.simulate": (
+        *("Closed", "ClosedMotion", "ConstrainedMotion", "Event", "FixedStep", "Geodesic", "Integrator"),
+        *("KnifeEdge", "Linear", "Rolling", "Table", "TreeMotion", "simulate"),
+    ),
     "substructures.analysis.stability.equilibria": ("equilibria",),
     "substructures.analysis.stability.linearise": ("linearise",),
     "substructures.analysis.stability.steady_motions": ("steady_motions",),
@@ -124,7 +175,7 @@ _WHERE = {
     "substructures.expr.program": ("Program",),
     "substructures.part.definition": ("Definition",),
     "substructures.part.part": ("Formula", "Part", "derive"),
-    "substructures.quantities.evaluation": ("evaluate",),
+    "substructures.quantities.evaluation": ("EvaluationOptions", "evaluate"),
     "substructures.tree.document": ("Instance", "TreeSpec", "read_instance"),
     "substructures.tree.model": ("Model", "couple"),
 }

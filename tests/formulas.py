@@ -8,10 +8,10 @@ from typing import Any
 from random_trees import Plain
 
 from substructures import Definition, Model, TreeSpec, couple, derive
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import is_zero
 
 
 def alone(definition: Plain, gravity: list[Any], parameters: Plain | None = None) -> Model:

@@ -53,7 +53,7 @@ def test_what_type_checkers_see_is_what_there_is() -> None:
     seen = {
         (node.module, alias.name) for node in block.body if isinstance(node, ast.ImportFrom) for alias in node.names
     }
-    there = {(f"substructures.{module}", name) for module, names in substructures._WHERE.items() for name in names}
+    there = {(module, name) for module, names in substructures._WHERE.items() for name in names}
     assert seen == there | {("substructures", "catalogue")}
 
 

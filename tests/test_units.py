@@ -13,9 +13,9 @@ import pytest
 
 from substructures.documents import units
 from substructures.documents.units import NUMBER, UnknownUnitError, read_unit, si_text
-from substructures.expr.dimensions import Dimensioned, DimensionError, Inference, Inferred
 from substructures.expr.direct import value
 from substructures.expr.syntax import read
+from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference, Inferred
 
 #: exact by definition: BIPM, The International System of Units (9th ed., 2019), tables 4, 7, 8; pound and yard of 1959
 EXACT = {

@@ -9,7 +9,7 @@ import orjson
 from service.analyses.source import Source
 from service.schemas.abbreviations import AbbreviationRequest
 from substructures.abbreviation.abbreviate import Abbreviation, ElementError, abbreviate
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.export import interface_of_model, render
 from substructures.tree.model import Model
 

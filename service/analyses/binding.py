@@ -14,9 +14,9 @@ from substructures.documents.fields import Quantity, in_si, quantity_of
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import Fault, InvalidInput, among
 from substructures.expr.bind import bind
-from substructures.expr.dimensions import Dimensioned
 from substructures.expr.program import Program
-from substructures.expr.unit_check import UnitCheck, dimension_of
+from substructures.expr.units.dimensions import Dimensioned
+from substructures.expr.units.unit_check import UnitCheck, dimension_of
 
 Parameters = Mapping[str, Mapping[str, Any]]
 DEFAULTS, PLACE = "defaults", "/query/bind"

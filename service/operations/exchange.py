@@ -16,8 +16,16 @@ from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from service.spool import Spool
 from substructures.documents import read_json
+from substructures.documents.grouped import take
 from substructures.formats import arrays, arrow
-from substructures.quantities.evaluation import Evaluation, Evaluator, Sources, evaluate, evaluate_in_parts
+from substructures.quantities.evaluation import (
+    Evaluation,
+    EvaluationOptions,
+    Evaluator,
+    Sources,
+    evaluate,
+    evaluate_in_parts,
+)
 from substructures.quantities.states import longest
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
@@ -132,11 +140,5 @@ class TreeEvaluation:
         return max(1, PART // evaluations.bytes_per_state(self.sources, arguments["quantities"]))
 
     def _evaluated(self, arguments: Mapping[str, Any], first: int = 0) -> Evaluation:
-        return evaluate(
-            self.sources.model,
-            **arguments,
-            limit=self.limits.states,
-            evaluator=self.evaluator,
-            sources=self.sources,
-            first=first,
-        )
+        given = {**arguments, "limit": self.limits.states, "evaluator": self.evaluator, "first": first}
+        return evaluate(self.sources, options=take(EvaluationOptions, given), **given)

@@ -8,8 +8,8 @@ from typing import Any
 
 from service.pages.html import Content, Html, html, table, tag
 from substructures.errors import TooLarge
+from substructures.export import render
 from substructures.expr.program import KINDS, Program
-from substructures.printers import render
 
 #: operations of a formula that is shown inside of a page
 SHOWN = 3000

@@ -13,7 +13,7 @@ from service.refusals import Refused
 from service.schemas.resources import Health, LimitsView
 from service.views.resources import dump
 from substructures.documents import MAX_DEPTH, MAX_DIGITS
-from substructures.expr.exact import MAX_EXPONENT
+from substructures.expr.construction.exact import MAX_EXPONENT
 
 router = APIRouter(tags=["system"])
 READ = [needs("read")]

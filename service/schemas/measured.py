@@ -17,9 +17,9 @@ from substructures.documents import escape, read_model
 from substructures.documents.fields import Real
 from substructures.documents.units import Dimension, si_text
 from substructures.errors import Fault, InvalidArgument
-from substructures.expr.dimensions import Dimensioned, DimensionError, Inference, Inferred
 from substructures.expr.syntax import ExpressionError, read
-from substructures.expr.unit_check import UnitCheck, dimension_of
+from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference, Inferred
+from substructures.expr.units.unit_check import UnitCheck, dimension_of
 from substructures.quantities.measured import PlaceUnits, si_values
 from substructures.tree.model import EFFORTS, Model
 

@@ -29,7 +29,7 @@ from service.schemas.measured import (
 from service.schemas.parts import RequestPart
 from service.schemas.velocity_constraints import VelocityConstraints
 from substructures.analysis import simulate as science
-from substructures.analysis.motion.output_times import MAX_OUTPUTS, OutputTimes
+from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, PlainNumber, Positive, Real
 from substructures.errors import InvalidArgument
@@ -147,7 +147,7 @@ class SpanRequest(StateRequest):
 
     def output_times(self) -> OutputTimes:
         """The times where results are wanted."""
-        return OutputTimes(self.span, self.times, self.step, self.count)
+        return OutputTimes(self.span, OutputGrid(self.times, self.step, self.count))
 
 
 class WithReactions(SpanRequest):

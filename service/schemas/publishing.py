@@ -10,7 +10,7 @@ from service.schemas.entries import DERIVED_FROM, NOTE, VISIBILITY, Visibility
 from service.schemas.resources import VersionView
 from service.schemas.shapes import Shape
 from substructures.documents.fields import LibraryName, Name, Number, TagName, Words
-from substructures.loads.ends import FrameOfTree
+from substructures.loads.document import FrameOfTree
 from substructures.tree.document import REFERENCE
 
 ParameterOfTree = Annotated[str, Field(max_length=129)]

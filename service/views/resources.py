@@ -15,7 +15,7 @@ from service.queries.catalogue import Version
 from service.queries.formulas import FormulaRow
 from service.queries.trees import Tree
 from service.queries.uses import Withdrawn
-from substructures.expr.unit_check import Notice
+from substructures.expr.units.unit_check import Notice
 from substructures.part.parameters import uncounted
 from substructures.quantities.warnings import no_coordinates
 

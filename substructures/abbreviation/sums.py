@@ -1,8 +1,8 @@
 """The difference of two programs, element by element, as trigonometric sums with exact coefficients.
 
-Both programs are written into one graph and their difference in its canonical form (:mod:`substructures.expr.expand`),
-so that all that they have in common is gone before anything is estimated. A variable x that is in no angle is written
-as middle + half * xi with xi from -1 to 1. What is left of an element is
+Both programs are written into one graph and their difference in its canonical form
+(:mod:`substructures.expr.rings.expand`), so that all that they have in common is gone before anything is estimated. A
+variable x that is in no angle is written as middle + half * xi with xi from -1 to 1. What is left of an element is
 
     sum over m of  (product m of variables)  *  Re sum over k of C_mk exp(i k . q)
 
@@ -24,11 +24,11 @@ from substructures.abbreviation.balls import PRECISION, above, between, enclosur
 from substructures.abbreviation.ranges import Box, Interval, is_constant
 from substructures.array import Array, ComplexArray
 from substructures.errors import TooLarge
-from substructures.expr.expand import Expanded, Expander, Term
-from substructures.expr.generators import is_function
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import Expanded, Expander, Term
+from substructures.expr.rings.generators import is_function
 from substructures.expr.walk import reachable
 
 #: terms of the canonical form of one element

@@ -1,7 +1,8 @@
 """What follows from metric, Christoffel symbols and forces: motion, closed loops, stability, optimal control.
 
-Functions take a model and named arguments: numbers, arrays, frozen values such as ``Event`` and ``Table``; results are
-frozen values of arrays. Arguments that cannot be used raise InvalidArgument with their name as pointer (``arguments``).
+Functions take a model and a few arguments: numbers, arrays, frozen values such as ``Integrator`` and ``Outputs``, which
+cannot be combined wrongly; results are frozen values of arrays. What cannot be used raises InvalidArgument with the
+name of its field as pointer (``arguments``). Flat documents, as HTTP sends them, become arguments in ``from_fields``.
 
 ===============  ===================================================================================================
 folder           what is there
@@ -13,10 +14,10 @@ identification   which inertial parameters the motion depends on, and their valu
 closed           ``loops``: mobility, redundancy, reactions at a state; motions that stay on the closures
                  (``constrained``: the equations at a state, ``projection``: consistent states, ``reductions``: to
                  ordinary differential equations, ``prescribed``: motions that are given)
-motion           ``problem``: what a motion is computed from (``signals``, ``events``, ``output_times``);
-                 ``conditions``: the same in numbers and compiled formulas; ``integration`` and ``steppers``;
-                 ``corners``: force laws on one side of them; ``judges`` and ``trajectory``: checks and results;
-                 ``second_run``, ``single_steps``: judge what no first integral does; ``limits``;
+motion           ``problems``: what is asked of a motion (its kind, integrator, outputs, signals, events);
+                 ``conditions``: the same in numbers and compiled formulas; ``integrators``; ``corners``: force laws on
+                 one side of them; ``judges`` and ``trajectory``: checks and results; ``second_judges``
+                 (``second_run``, ``single_steps``): judge what no first integral does; ``limits``;
                  ``parameter_sensitivity``; ``writers``: trajectories as files
 equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
                  ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear

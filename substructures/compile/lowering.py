@@ -15,7 +15,7 @@ from dataclasses import dataclass, field
 
 from substructures.compile.order import REGIONS, depth_first, sharp, stage_of
 from substructures.compile.signs import negatives
-from substructures.expr.exact import MAX_EXPONENT
+from substructures.expr.construction.exact import MAX_EXPONENT
 from substructures.expr.interpret import constant
 from substructures.expr.program import Operation, Program, operands
 

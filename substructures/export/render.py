@@ -31,9 +31,8 @@ from substructures.expr.program import Program
 from substructures.printers.definitions import Definitions
 from substructures.printers.listing import compact, expanded
 from substructures.printers.render import FORMATS as WRITTEN
-from substructures.printers.render import LIMIT, check_form
+from substructures.printers.render import LIMIT, check_form, write
 from substructures.printers.render import first_index as first_written
-from substructures.printers.render import render as write
 from substructures.printers.textbook import textbook
 from substructures.quantities.quantity import made_of, outputs_of
 
@@ -83,8 +82,14 @@ def render(
     (:func:`substructures.export.interface_of_model`); ``quantity``: default, its only output. ``definitions``: of
     symbols, ``glossary``: names of intermediate quantities, both for formats for people; ``warnings``
     (pointer, code, message): what readers must know, in formats for people and in comments of code.
-    Raises as :func:`substructures.printers.render`, and InvalidArgument for a bad name, without an interface,
+    Raises as :func:`substructures.printers.render.write`, and InvalidArgument for a bad name, without an interface,
     and for a quantity that depends on what its signature does not have.
+
+    >>> from substructures import couple, derive
+    >>> tree = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
+    >>> program = couple(tree, {"p": derive("simple-pendulum")}).program.select(["metric"])
+    >>> print(render(program, "text", "expanded").splitlines()[-1])
+    metric[1, 1] = l^2*m
     """
     if format not in FORMATS:
         message = f"{format[:40]!r} is not one of {', '.join(FORMATS)}{meant(format, FORMATS)}"

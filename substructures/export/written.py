@@ -9,7 +9,7 @@ from dataclasses import replace
 from substructures.export.exported import Exported
 from substructures.export.languages.code import head
 from substructures.export.software import SOFTWARE
-from substructures.printers.render import FORMS, render
+from substructures.printers.render import FORMS, write
 
 Commented = Callable[[str], str]
 Files = dict[str, bytes]
@@ -25,7 +25,7 @@ def written(format_: str, suffix: str, exported: Exported, limit: int, commented
         called = exported.called(function)
         alone = replace(exported, functions=(function,))
         about = "\n".join(map(commented, head(alone, 1, SOFTWARE)))
-        first, line, rest = render(function.program, format_, FORMS[0], called, limit).partition("\n")
+        first, line, rest = write(function.program, format_, FORMS[0], called, limit).partition("\n")
         declared = first + line if first.startswith("<?xml") else ""
         text = f"{declared}{about}\n{rest if declared else first + line + rest}"
         found[f"{called}.{suffix}"] = text.encode()

@@ -7,7 +7,7 @@ from decimal import Decimal
 from fractions import Fraction
 
 from substructures.errors import Fault, InvalidDocument, TooLarge, among
-from substructures.expr.exact import MAX_BITS
+from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.program import Program

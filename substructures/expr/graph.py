@@ -1,13 +1,13 @@
 """Scalar expressions as a hash-consed graph (notation.md, section 8).
 
-Every node carries the fingerprint of its formula (see :mod:`substructures.expr.fingerprint`): building a formula that
-is equal, as a function, to an existing one (or to its negative) returns the existing one, so that zero and one fold
+Every node carries the fingerprint of its formula (:mod:`substructures.expr.construction.fingerprint`): building one
+that is equal, as a function, to an existing one (or to its negative) returns the existing one, so that 0 and 1 fold
 away, ``sin(q)**2 + cos(q)**2`` is ``1``, rotations are orthonormal and the addition theorems apply themselves, all by
 one dictionary lookup. Equality of functions alone does not suffice for that:
 
 * an existing node is taken only where it **asks for no more** than what is built: it depends on no other symbols,
   divides by nothing else, takes no other roots and logarithms, and rounding moves it no more
-  (:mod:`substructures.expr.stand_in`);
+  (:mod:`substructures.expr.construction.equivalent_nodes`);
 * numbers and symbols are always literal nodes, numbers of at most ``MAX_BITS`` bits;
 * signs follow from the structure, never from fingerprints: a root's square has another one than what is under it.
 
@@ -28,10 +28,10 @@ from fractions import Fraction
 from typing import Any
 
 from substructures.errors import TooLarge
-from substructures.expr.exact import MAX_BITS, MAX_EXPONENT, split_square
-from substructures.expr.fingerprint import PRIME, keyed, rational, square_root
-from substructures.expr.folding import folded_difference, folded_product, folded_quotient, folded_sum
-from substructures.expr.stand_in import StandIns
+from substructures.expr.construction.equivalent_nodes import StandIns
+from substructures.expr.construction.exact import MAX_BITS, MAX_EXPONENT, split_square
+from substructures.expr.construction.fingerprint import PRIME, keyed, rational, square_root
+from substructures.expr.construction.folding import folded_difference, folded_product, folded_quotient, folded_sum
 
 ExactNumber = int | Fraction | Decimal
 

@@ -10,7 +10,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import MissingValue
-from substructures.expr.exact import nearest_float
+from substructures.expr.construction.exact import nearest_float
 from substructures.expr.program import Output, Program
 
 _FUNCTIONS: dict[str, Callable[..., Any]] = {

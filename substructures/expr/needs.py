@@ -17,7 +17,7 @@ from collections.abc import Iterable, Mapping, Sequence
 import numpy as np
 
 from substructures.errors import InvalidProgram
-from substructures.expr.exact import MAX_BITS
+from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.operations import ARITHMETIC, Operation, Output, operands
 
 GROUPS = 1024  #: groups of entries that are counted in one pass

@@ -8,7 +8,7 @@ from math import prod
 from typing import Any
 
 from substructures.errors import InvalidProgram
-from substructures.expr.exact import MAX_BITS, MAX_EXPONENT
+from substructures.expr.construction.exact import MAX_BITS, MAX_EXPONENT
 
 FORMAT = "substructures.program"
 VERSION = 1

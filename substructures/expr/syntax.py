@@ -30,7 +30,7 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
 
-from substructures.expr.exact import MAX_EXPONENT
+from substructures.expr.construction.exact import MAX_EXPONENT
 
 #: longest text of which the steps are kept
 SHORT = 100

@@ -12,7 +12,8 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from substructures.expr.fingerprint import PRIME, add_angles, circle_point, multiply_angle
+from substructures.expr.construction.circle import added, multiplied
+from substructures.expr.construction.fingerprint import PRIME, circle_point
 from substructures.expr.graph import Expr, Graph
 
 LinearForm = tuple[dict[Expr, Fraction], Fraction]
@@ -43,10 +44,10 @@ def linear_form(x: Expr) -> LinearForm:
 
 def _point(terms: dict[Expr, Fraction], turns: Fraction) -> tuple[int, int]:
     """(cos, sin) in the field. A fraction of an atom is an atom of its own, which only loses simplifications."""
-    point = multiply_angle(circle_point("pi/" + str(turns.denominator)), turns.numerator) if turns else (1, 0)
+    point = multiplied(circle_point("pi/" + str(turns.denominator)), turns.numerator, PRIME) if turns else (1, 0)
     for atom, factor in terms.items():
         base = circle_point((atom.fp, factor.denominator))
-        point = add_angles(point, multiply_angle(base, factor.numerator))
+        point = added(point, multiplied(base, factor.numerator, PRIME), PRIME)
     return point
 
 

@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.documents import DocumentPart
 from substructures.documents.units import NUMBER, Dimension, read_unit
-from substructures.expr.unit_check import Place
+from substructures.expr.units.unit_check import Place
 
 
 def dimension(text: str) -> Dimension:

@@ -8,7 +8,7 @@ from decimal import Decimal, InvalidOperation
 from typing import Any
 
 from substructures.documents.units import NUMBER
-from substructures.expr.unit_check import Notice, Place
+from substructures.expr.units.unit_check import Notice, Place
 from substructures.part.definition import Parameter
 
 TURNS = 10  # rad

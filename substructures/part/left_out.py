@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from substructures.errors import among
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program
-from substructures.expr.unit_check import Notice
+from substructures.expr.units.unit_check import Notice
 from substructures.loads.scope import Scope, no_names
 from substructures.part.definition import Definition
 

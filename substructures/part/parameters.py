@@ -8,7 +8,7 @@ from typing import Any
 
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import UnknownUnitError, read_unit
-from substructures.expr.unit_check import Notice, steps_of
+from substructures.expr.units.unit_check import Notice, steps_of
 from substructures.loads.friction import FrictionLaw, FrictionLoad
 from substructures.part.definition import BearingFriction, Definition, Input, Parameter
 

@@ -8,17 +8,18 @@ from functools import cached_property
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, TooLarge, listed
+from substructures.catalogue import load, names
+from substructures.errors import InvalidArgument, InvalidDocument, TooLarge, among, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Formulas, Program, program
-from substructures.expr.unit_check import UnitCheck
+from substructures.expr.units.unit_check import UnitCheck
+from substructures.part.applied_forces import read_loads
 from substructures.part.certificate import certify_part, not_judged, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.left_out import left_out_warnings, require_relations, weightless_warnings
-from substructures.part.loads import read_loads
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
 from substructures.part.topology import BASE, Entries, Topology, entries_of, expected_operations, topology
@@ -210,7 +211,7 @@ def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
 
 @without_collections
 def derive(
-    definition: Definition,
+    definition: Definition | Mapping[str, Any] | str,
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
     coupled: Callable[[Mechanism, bool], Coupled] | None = None,
@@ -218,15 +219,35 @@ def derive(
 ) -> Part:
     """Derive, verify and certify the formulas of a substructure.
 
+    ``definition``: what it is, as a document that was read or one of plain data, or the name of an entry of the shipped
+    catalogue.
+
+    >>> from substructures import derive
+    >>> derive("simple-pendulum").coordinates
+    ('q1',)
+
     ``admit`` is told how many operations to expect before the work begins, and may raise instead. ``coupled``: what is
     known of a part that was coupled of others, given how it is read and whether it is large. ``is_stored``: the
     definition was accepted once, so that contradictions of its units, which were texts in older versions, are warnings.
     Raises InvalidDocument (faults with pointers), or TooLarge for more than ``max_nodes`` operations.
     """
     start = perf_counter()
+    definition = _read(definition)
     m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
     certificate = _certificate(m, result, units, perf_counter() - start)
     return Part(definition, result.marked(not_judged(certificate)), certificate)
+
+
+def _read(given: Definition | Mapping[str, Any] | str) -> Definition:
+    """The definition. Raises InvalidInput, also for an entry that the catalogue does not have."""
+    if isinstance(given, Definition):
+        return given
+    if isinstance(given, str):
+        if given not in names():
+            message = f"no catalogue entry '{given[:80]}'{among(given, names())}"
+            raise InvalidArgument.at("/definition", "unknown-entry", message)
+        given = load(given)
+    return Definition.read(given)
 
 
 @without_collections

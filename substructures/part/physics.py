@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
-from substructures.expr.exact import nearest_float
+from substructures.expr.construction.exact import nearest_float
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.loads.scope import Scope, no_names

@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.documents.units import NUMBER, Dimension
-from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.syntax import measured
-from substructures.expr.unit_check import Place, UnitCheck, dimension_of
+from substructures.expr.units.dimensions import Dimensioned, Inferred
+from substructures.expr.units.unit_check import Place, UnitCheck, dimension_of
 from substructures.loads.friction import FRICTION
 from substructures.loads.units import (
     ANGLE,

@@ -7,11 +7,11 @@ from fractions import Fraction
 from functools import reduce
 
 from substructures.errors import TooLarge
-from substructures.expr.expand import LIMIT as TERMS
-from substructures.expr.expand import Expanded, Expander, Term
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Operation, Program, operands
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import LIMIT as TERMS
+from substructures.expr.rings.expand import Expanded, Expander, Term
 from substructures.expr.walk import reachable
 from substructures.printers.language import SUM, Language, Listing, Piece
 from substructures.printers.numbers import has_decimals

@@ -1,7 +1,7 @@
 """Names of intermediate quantities by what they are in mechanics (:mod:`substructures.tree.glossary`).
 
 An operation of a program is called what the glossary calls the same function of the symbols, whatever operations it is
-made of there: equal values in the field of :mod:`substructures.expr.fingerprint`.
+made of there: equal values in the field of :mod:`substructures.expr.construction.fingerprint`.
 """
 
 from __future__ import annotations

@@ -8,13 +8,13 @@ from math import prod
 from typing import Any, NamedTuple
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.expand import LIMIT as TERMS
-from substructures.expr.expand import Expander
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import MAX_ELEMENTS
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import LIMIT as TERMS
+from substructures.expr.rings.expand import Expander
 from substructures.printers.definitions import Definitions, defined, joined
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
@@ -52,7 +52,7 @@ LONGEST = 1000
 INLINE_LIMIT = 20_000
 
 
-def render(
+def write(
     program: Program,
     format: str,  # noqa: A002 -- the name in the contract
     form: str = "compact",
@@ -62,10 +62,10 @@ def render(
     glossary: Program | None = None,
     notes: Sequence[str] = (),
 ) -> str:
-    """A program in one of FORMATS; functions in languages are written by :mod:`substructures.export`.
+    """A program in one of FORMATS; :func:`substructures.export.render` writes it in languages, too.
 
     ``compact``: temporaries for shared subexpressions, then the independent non-zero elements of every output;
-    ``expanded``: every element as canonical sum (:mod:`substructures.expr.expand`); ``textbook``: every element
+    ``expanded``: every element as canonical sum (:mod:`substructures.expr.rings.expand`); ``textbook``: every element
     collected, factored and cancelled (:mod:`substructures.textbook`); ``readable``: ``textbook`` in formats for people
     where that takes no more than about a second, otherwise ``compact``. ``name`` is what the text calls it;
     ``definitions``: of symbols that stand for formulas, which are printed first (not in JSON); ``glossary``: what
@@ -133,7 +133,7 @@ def _readable(
 ) -> str:
     """The textbook form where it fits, otherwise the compact one with the reason."""
     if format == "json" or not LANGUAGES[format].is_for_people:
-        return render(program, format, "compact", name, limit, definitions, glossary, notes)
+        return write(program, format, "compact", name, limit, definitions, glossary, notes)
     said = _Said(program, definitions, limit)
     found = readable(
         lambda: _spoken(said.program, format)[1],
@@ -223,7 +223,7 @@ def entries(
     """The independent non-zero elements of one output: ``[{"index": [a, b, c], "formula": text}]``.
 
     Indices count from 0. Every formula stands alone (no temporaries). All other elements follow from the symmetry
-    (:func:`symmetry_rule`) or are zero. Raises KeyError for an unknown output, TooLarge like :func:`render`.
+    (:func:`symmetry_rule`) or are zero. Raises KeyError for an unknown output, TooLarge like :func:`write`.
     """
     part = program.select([output])
     if format not in LANGUAGES:

@@ -15,7 +15,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import reduce
 
-from substructures.certificate.centroidal import centroidal_outputs
+from substructures.certificate.derived.centroidal import centroidal_outputs
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Formulas, array
 from substructures.mechanics.kinematics import INTERFACE

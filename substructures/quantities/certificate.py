@@ -8,9 +8,9 @@ from typing import Any
 from flint import arb
 
 from substructures.certificate.compare import compare
-from substructures.certificate.model_at import ModelAt
+from substructures.certificate.derived.model_at import ModelAt
+from substructures.certificate.derived.model_formulas import Expectation
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.served import Expectation
 from substructures.certificate.states import states_between
 from substructures.certificate.stored import pruned
 from substructures.errors import VerificationFailed

@@ -25,8 +25,6 @@ from substructures.quantities.accelerations import (
 from substructures.quantities.canonical import momentum
 from substructures.quantities.conditioning import Look, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
-from substructures.quantities.doubtful import advice, result_of, state_warnings, told_of
-from substructures.quantities.judged import doubted, not_judged_warnings
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
@@ -38,6 +36,7 @@ from substructures.quantities.quantity import (
 )
 from substructures.quantities.reaction_numbers import reaction_numbers
 from substructures.quantities.result import Evaluation, Failure, failures_of, without_axis
+from substructures.quantities.result_warnings import advice, result_of, state_warnings, told_of
 from substructures.quantities.sources import (
     PARTS,
     Sources,
@@ -55,13 +54,14 @@ from substructures.quantities.states import (
     read_states,
     require,
 )
-from substructures.quantities.warnings import Notice, value_warnings
+from substructures.quantities.warnings import Notice, doubted, not_judged_warnings, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [
     "QUANTITIES",
     "Direction",
     "Evaluation",
+    "EvaluationOptions",
     "Evaluator",
     "Failure",
     "Sources",
@@ -83,8 +83,30 @@ def interpreted(
     return with_elements(interpret_in_blocks(program, values, names, states), places)
 
 
+@dataclass(frozen=True)
+class EvaluationOptions:
+    """What results look like, and what computes them.
+
+    ``along``: the direction of derivatives; ``joints``: rows of ``reactions`` (default: all). ``packed``: of metric and
+    Christoffel symbols the independent elements alone (:mod:`substructures.formats.packing`); ``float32``: results in
+    single precision. ``limit``: most states; ``evaluator``: what computes outputs of programs; ``first``: the number of
+    the first state in warnings, if they are part of more.
+    """
+
+    along: Direction | None = None
+    joints: Sequence[str] | None = None
+    packed: bool = False
+    float32: bool = False
+    limit: int | None = None
+    evaluator: Evaluator = interpreted
+    first: int = 0
+
+
+PLAIN = EvaluationOptions()
+
+
 def evaluate(
-    model: Model,
+    model: Model | Sources,
     quantities: str | Sequence[str],
     q: StateInput | None,
     qd: StateInput | None = None,
@@ -93,48 +115,39 @@ def evaluate(
     inputs: ValueInput | None = None,
     parameters: ValueInput | None = None,
     t: ArrayLike | None = 0.0,
-    along: Direction | None = None,
-    packed: bool = False,
-    float32: bool = False,
-    joints: Sequence[str] | None = None,
-    limit: int | None = None,
-    evaluator: Evaluator = interpreted,
-    sources: Sources | None = None,
-    first: int = 0,
+    options: EvaluationOptions = PLAIN,
 ) -> Evaluation:
-    """Numbers of quantities, one name of QUANTITIES or several, for one state or N.
+    """Numbers of quantities, one name of QUANTITIES or several, for one state or N of a model.
 
     ``q`` [rad, m], ``qd`` [rad/s, m/s], ``qdd`` [rad/s^2, m/s^2]: (n,), (N, n), or by coordinate name a number or (N,);
     velocities that are not given are zero. ``inputs`` [N m, N], ``parameters`` [SI]: by name a number or (N,); those
-    that are not given have their defaults, inputs without one are zero. ``t`` [s]: a number or (N,). ``along``: the
-    direction of derivatives. The results have the axis N first, but for one state with ``q`` (n,).
+    that are not given have their defaults, inputs without one are zero. ``t`` [s]: a number or (N,). The results have
+    the axis N first, but for one state with ``q`` (n,). In place of the model its Sources: with its parts, or to keep
+    what is derived.
 
     ``forward_dynamics`` of a model with closures are the accelerations on them, in states that meet them
     (:func:`substructures.mechanics.accelerations.closed_solve`); other quantities are those of the tree without them.
 
-    ``packed``: of metric and Christoffel symbols the independent elements alone
-    (:mod:`substructures.formats.packing`); ``float32``: results in single precision; ``joints``: rows of ``reactions``.
-
-    ``limit``: most states; ``evaluator``: what computes outputs of programs; ``sources``: the programs (default: formed
-    when they are first needed, and kept); ``first``: the number of the first state in warnings, if they are part of
-    more. Raises InvalidArgument (pointers start with the name of the argument), MissingValue (a parameter without a
-    value), TooLarge, and InvalidDocument for closures where they are not taken.
+    Raises InvalidArgument (pointers start with the name of the argument or option), MissingValue (a parameter without
+    a value), TooLarge, and InvalidDocument for closures where they are not taken.
     States without a finite result are no exceptions but ``failures``; accelerations that rounding changes noticeably,
     as the metric is nearly singular, are ``warnings`` (``condition`` is the number that tells).
 
-    >>> from substructures import Definition, TreeSpec, catalogue, couple, derive
-    >>> part = derive(Definition.read(catalogue.load("simple-pendulum")))
-    >>> tree = TreeSpec.read({"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]})
-    >>> evaluate(couple(tree, {"p": part}), ["metric", "forces"], q=[[0.0], [0.1]])
+    >>> from substructures import couple, derive
+    >>> tree = {"name": "clock", "gravity": [0, 0, "-9.81"]}
+    >>> tree["instances"] = [{"name": "p", "substructure": "simple-pendulum"}]
+    >>> model = couple(tree, {"p": derive("simple-pendulum")})
+    >>> evaluate(model, ["metric", "forces"], q=[[0.0], [0.1]])
     Evaluation of 2 state(s) of p.q1
       metric (2, 1, 1), forces (2, 1)
     """
-    given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t, "along": along}
-    given["joints"] = joints
-    form = _Form(packed, float32)
-    asked = _asked(sources or Sources(model), quantities, given, form, limit, evaluator)
+    given: dict[str, Any] = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
+    given |= {"along": options.along, "joints": options.joints}
+    sources = Sources(model) if isinstance(model, Model) else model
+    form = _Form(options.packed, options.float32)
+    asked = _asked(sources, quantities, given, form, options.limit, options.evaluator)
     states, values = asked.states, asked.values
-    return _answered(asked, states, values, _told_of_values(asked, states.q, values, first))
+    return _answered(asked, states, values, _told_of_values(asked, states.q, values, options.first))
 
 
 def evaluate_in_parts(

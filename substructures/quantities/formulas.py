@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from substructures.certificate.served import SERVED
+from substructures.certificate.derived.model_formulas import SERVED
 from substructures.errors import TooLarge
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Entries, Formulas, Program

@@ -20,9 +20,9 @@ from substructures.documents import escape
 from substructures.documents.fields import unit_advice
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 from substructures.errors import InvalidArgument
-from substructures.expr.dimensions import Dimensioned
-from substructures.expr.exact import nearest_float
-from substructures.expr.unit_check import dimension_of
+from substructures.expr.construction.exact import nearest_float
+from substructures.expr.units.dimensions import Dimensioned
+from substructures.expr.units.unit_check import dimension_of
 
 #: the SI unit of a place, empty where it is not known: one for all numbers, or by name (of lists: in that order)
 PlaceUnits = str | Mapping[str, "PlaceUnits"]

@@ -10,7 +10,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from substructures.certificate.powers import OUTPUT, power_outputs
+from substructures.certificate.derived.powers import OUTPUT, power_outputs
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
 from substructures.expr.replay import replay

@@ -18,7 +18,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import lru_cache
 
-from substructures.certificate.reactions import reaction_outputs
+from substructures.certificate.derived.reactions import reaction_outputs
 from substructures.errors import InvalidArgument, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, program

@@ -21,7 +21,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
-from substructures.certificate.regressed import regressor_outputs
+from substructures.certificate.derived.regressed import regressor_outputs
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program, array, program

@@ -13,9 +13,9 @@ from functools import cached_property
 from itertools import product
 from typing import Any
 
-from substructures.expr.generators import natural
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
+from substructures.expr.rings.generators import natural
 from substructures.expr.walk import reachable
 
 NUMBER, MASS, PARAMETER, INPUT, MOVING = range(5)

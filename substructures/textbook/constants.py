@@ -10,8 +10,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from fractions import Fraction
 
-from substructures.expr.generators import ANGULAR
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.rings.generators import ANGULAR
 from substructures.expr.walk import build, reachable
 from substructures.textbook.forms import Factor, Sum, Term, Trig
 

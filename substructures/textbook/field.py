@@ -15,9 +15,9 @@ from typing import Any
 
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
-from substructures.expr.expand import classified
-from substructures.expr.generators import Angle, Generators, Product, Sum, is_function
 from substructures.expr.graph import Expr
+from substructures.expr.rings.expand import classified
+from substructures.expr.rings.generators import Angle, Generators, Product, Sum, is_function, turned
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
 
@@ -90,7 +90,7 @@ class Field:
             for i in form.ids:
                 result *= self.context.gen(self.place[i])
             return self._reduced(result), self.one
-        re, im = self._turned(form.turns)
+        re, im = turned(form.turns, self.context.constant, self._root)
         below = self.one
         for n, i in enumerate(self.angles):
             k = int(form.atoms.get(i, 0) / self.units[i])
@@ -107,21 +107,6 @@ class Field:
                 raise ZeroDivisionError("tangent of a right angle")
             return self.lowest(im, re)
         return self.lowest(self._reduced(re if node.op == "cos" else im), below)
-
-    def _turned(self, turns: Fraction) -> tuple[Any, Any]:
-        """cos and sin of turns * pi, a multiple of pi/12: of pi/4 or nothing, and of pi/6."""
-        steps = int(turns * 12)
-        sixths = (steps - 3 * (steps % 2)) // 2 % 12
-        re, im = [(1, 0), (0, 1), (-1, 0), (0, -1)][sixths // 3]
-        x, y = self.context.constant(re), self.context.constant(im)
-        if sixths % 3:
-            small, root = self.one / 2, self._root(3) / 2
-            c, s = (root, small) if sixths % 3 == 1 else (small, root)
-            x, y = x * c - y * s, x * s + y * c
-        if steps % 2:
-            half = self._root(2) / 2
-            x, y = (x - y) * half, (x + y) * half
-        return x, y
 
     def _root(self, n: int) -> Any:
         return self.context.gen(self.place[self.generators.keys["root", n]])

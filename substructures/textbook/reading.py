@@ -10,11 +10,11 @@ from graphlib import TopologicalSorter
 from itertools import islice
 
 from substructures.errors import TooLarge
-from substructures.expr.expand import Expanded, Expander
-from substructures.expr.generators import natural
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program, Symbol
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import Expanded, Expander
+from substructures.expr.rings.generators import natural
 from substructures.expr.walk import reachable, transfer
 from substructures.textbook.atoms import Atoms, Monomial, ordered
 from substructures.textbook.constants import Constant, bindings, named, restored

@@ -15,10 +15,10 @@ from substructures.mechanics.linear3 import ZERO, Vector, scale
 from substructures.mechanics.newton_euler import Wrench
 from substructures.tree.assembly import Assembly, tree_name
 from substructures.tree.closures import PLACE, ClosureEnd, Cut, closure_formulas
+from substructures.tree.frame_points import place
 from substructures.tree.loads import load_formulas
 from substructures.tree.mounted_part import PlacedPart
 from substructures.tree.part_loads import loads_of_parts
-from substructures.tree.places import place
 
 
 def applied_wrenches(

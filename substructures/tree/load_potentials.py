@@ -10,8 +10,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
+from substructures.expr.calculus.integrate import from_zero, needed, potential
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.integrate import from_zero, needed, potential
 from substructures.loads.pairs import wrench_forces
 from substructures.part.outputs import Run
 from substructures.tree.coupling import place

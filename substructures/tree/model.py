@@ -148,13 +148,18 @@ def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
 
 @without_collections
 def couple(
-    spec: TreeSpec,
+    spec: TreeSpec | Mapping[str, Any],
     parts: Mapping[str, Part],
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
     group: bool = False,
 ) -> Model:
-    """Couple stored parts (by instance name) to a model and verify it.
+    """Couple stored parts (by instance name) to a model and verify it. ``spec``: the tree, or its document.
+
+    >>> from substructures import couple, derive
+    >>> tree = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
+    >>> couple(tree, {"p": derive("simple-pendulum")}).coordinates
+    ('p.q1',)
 
     ``group``: base parameters also of masses, lengths and inertias that are symbols, not only of numbers: fewer
     operations for each state, more for the parameters (:mod:`substructures.tree.grouping`).
@@ -164,6 +169,7 @@ def couple(
     VerificationFailed, which names the part whose stored formulas are wrong.
     """
     start = perf_counter()
+    spec = spec if isinstance(spec, TreeSpec) else TreeSpec.read(spec)
     _require_free_names(spec)
     assembly = assemble(spec, parts)
     definitions = {name: part.definition for name, part in parts.items()}

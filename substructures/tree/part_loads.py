@@ -13,9 +13,9 @@ from substructures.loads.pairs import Acting, Place, Reach
 from substructures.mechanics.linear3 import Vector
 from substructures.part.wrenches import acts_on_host
 from substructures.tree.assembly import Assembly
-from substructures.tree.load_names import LoadNames
+from substructures.tree.frame_points import place_of
+from substructures.tree.loads import LoadNames
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.places import place_of
 
 
 def loads_of_parts(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Sequence[Acting]:

@@ -18,7 +18,7 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, value
 from substructures.expr.syntax import ExpressionError
-from substructures.expr.unit_check import Notice
+from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Body, Definition
 from substructures.part.mass import sum_of
 from substructures.part.parameters import names_in_limits

@@ -7,9 +7,9 @@ from decimal import Decimal
 from typing import Any
 
 from substructures.documents.units import NUMBER, Dimension, read_unit
-from substructures.expr.dimensions import Dimensioned, Inferred
 from substructures.expr.program import Program
-from substructures.expr.unit_check import Notice, Place, UnitCheck, dimension_of
+from substructures.expr.units.dimensions import Dimensioned, Inferred
+from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimension_of
 from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition

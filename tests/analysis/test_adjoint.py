@@ -14,11 +14,12 @@ from scipy.integrate import solve_ivp
 from substructures import InvalidInput, MissingValue, Model
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import ControlProblem, Cost, initial_state, inputs_of
 from substructures.analysis.control.shooting import Shooting
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import Direction, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 
@@ -104,11 +105,12 @@ def test_gradient_of_a_request() -> None:
         "values": {"tau.x.q0": [1, -1, 2, 0]},
         "vary": ["x.m1"],
     }
-    found, h = cost_gradient(model, **request), 1e-3
+    found, h = cost_gradient(model, **control_arguments(**request)), 1e-3
 
     def slope(changed: Any) -> Any:
         return pytest.approx(
-            central([cost_gradient(model, **request | changed(h * k)).cost for k in STENCIL], h), rel=1e-8
+            central([cost_gradient(model, **control_arguments(**request | changed(h * k))).cost for k in STENCIL], h),
+            rel=1e-8,
         )
 
     assert found.status == "finished"
@@ -132,7 +134,7 @@ def test_adjoint_equations_are_transposed_perturbation_equations() -> None:
     state = {"q": q, "qd": qd, "t": 0.3, "inputs": {"x.u1": 0.4} if "x.u1" in inputs_of(model) else {}}
     along = {"q": dq, "qd": dqd, "inputs": du}
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    answer = evaluate(model, quantities, **state, along=Direction(**along))
+    answer = evaluate(model, quantities, **state, options=EvaluationOptions(along=Direction(**along)))
     slope = answer["forward_dynamics_derivative"]
     values: dict[str, Any] = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= dict.fromkeys(inputs_of(model), 0.0) | state["inputs"] | {"t": 0.3, "lambda.0": 1.0}
@@ -166,7 +168,7 @@ def test_multipliers_converge_to_the_costates() -> None:
         "q": [0.5],
         "values": {u: 0.2},
     }
-    found = cost_gradient(model, **request)
+    found = cost_gradient(model, **control_arguments(**request))
     g = float(answer["metric"][0, 0])
     a, b = -float(answer["gravity"][0]) / g / np.sin(0.5), 1 / g
 
@@ -197,7 +199,7 @@ def test_the_hamiltonian_at_every_time_and_at_the_end(hold: Any) -> None:
         "qd": [1.0],
     }
     request |= {"horizon": 0.6, "intervals": 3, "steps": 2, "hold": hold, "t": 0.3, "values": {"tau.x.q": u}}
-    motion = cost_gradient(model, **request).trajectory
+    motion = cost_gradient(model, **control_arguments(**request)).trajectory
     nodes = 0.3 + 0.2 * np.arange(len(u))
     force = np.interp(motion.t, nodes, u) if hold == "linear" else np.repeat(u, [2, 2, 3])
     q, qd, lam = motion.q[:, 0], motion.qd[:, 0], motion.series["costates"]
@@ -244,7 +246,7 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
 def test_refusals(change: Plain, pointer: str, code: str) -> None:
     request = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 4, "q": [0], "cost": Cost("tau.x.q1^2")}
     with pytest.raises(InvalidInput) as error:
-        cost_gradient(shipped("simple-pendulum"), **request | change)
+        cost_gradient(shipped("simple-pendulum"), **control_arguments(**request | change))
     assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
 
 
@@ -252,17 +254,17 @@ def test_failures_are_values() -> None:
     """Too large a step for a stiff motion; a parameter without a value."""
     model = shipped("simple-pendulum")
     request: Plain = {"controls": ["tau.x.q1"], "horizon": 1e9, "intervals": 60, "q": [1e200]}
-    found = cost_gradient(model, **request | {"values": {"tau.x.q1": 1e300}})
+    found = cost_gradient(model, **control_arguments(**request | {"values": {"tau.x.q1": 1e300}}))
     assert found.status == "failed"
     assert "steps" in found.message
     assert np.isfinite(found.trajectory.q).all()
     assert len(found.trajectory.t) < 61
     cusp = {"controls": ["tau.x.q1"], "horizon": 1, "intervals": 2, "q": [0], "cost": Cost("sqrt(x.q1^2)")}
-    found = cost_gradient(model, **cusp)
+    found = cost_gradient(model, **control_arguments(**cusp))
     assert found.status == "failed"
     assert "smooth" in found.message
     joint = {"type": "revolute", "coordinate": "q1"}
     body = {"name": "b", "parent": "base", "joint": joint, "mass": "m", "com": [1, 0, 0]}
     bare = model_of({"name": "x", "parameters": {"m": {}}, "bodies": [body]})
     with pytest.raises(MissingValue):
-        cost_gradient(bare, controls=["tau.x.q1"], horizon=1, intervals=2, q=[0])
+        cost_gradient(bare, ControlProblem(controls=["tau.x.q1"], horizon=1, intervals=2, q=[0]))

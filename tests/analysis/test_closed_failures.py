@@ -7,10 +7,11 @@ import pytest
 from closed_motions import METHODS, right
 from closed_trees import at, closed_entry, four_bar, slider_crank
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import InvalidInput
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.simulate import Closed, Event, Linear, Table, simulate
 
@@ -20,7 +21,7 @@ def test_a_locked_motion_fails_with_the_motion_up_to_there() -> None:
     wrist = {"name": "wrist", "type": "pin", "from": "x.rod_end", "to": "x.pin"}
     model = closed_entry("slider-crank", [wrist], r=0.2)
     request = {"q": at(model, rod=0.3, piston=0.3), "prescribed": {"x.crank": "2*t"}, "span": [0, 1], "count": 101}
-    motion = simulate(model, **request)
+    motion = simulated(model, **request)
     assert motion.status == "failed"
     locked = np.arcsin(0.14 / 0.2) / 2
     assert locked - 0.001 < motion.t[-1] < locked
@@ -37,7 +38,7 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
     assert (singular.status, "singular" in singular.message) == ("failed", True)
     model = four_bar()
     request = {"q": [0.7, 0.2, 1.2], "qd": [9, 0, 0], "fixed": ["x.crank"], "span": [0, 100], "max_steps": 20}
-    long = simulate(model, **request)
+    long = simulated(model, **request)
     assert (long.status, long.steps) == ("failed", 20)
     assert "max_steps" in long.message
     assert 0 < long.t[-1] < 100
@@ -55,26 +56,26 @@ def test_a_singular_position_between_two_steps_is_noticed(method: str, tolerance
         "fixed": ["x.crank"],
     }
     request |= {"relative_tolerance": tolerance, "absolute_tolerance": tolerance / 100}
-    motion = simulate(flat, **request, span=(0, 1), reduction=method, count=5)
+    motion = simulated(flat, **request, span=(0, 1), reduction=method, count=5)
     assert motion.status == "failed"
     assert "singular" in motion.message or "dead centre" in motion.message
     assert 0 < motion.t[-1] < 0.2
     assert motion.q[-1, 0] > -1e-6
-    before = simulate(flat, **request, span=(0, 0.1), reduction=method, count=5)
+    before = simulated(flat, **request, span=(0, 0.1), reduction=method, count=5)
     right(before)
 
 
 def test_one_entry_for_all_models() -> None:
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "span": [0, 0.01], "fixed": ["x.crank"], "count": 3}
-    assert "multipliers" in simulate(model, **request).series
+    assert "multipliers" in simulated(model, **request).series
     wrist = {"constraints": [Closed("wrist")], "independent": ["x.crank"]}
-    closed = simulate(model, **request)
-    rolling = simulate(model, **wrist, q=closed.q[0], span=(0, 0.01))
+    closed = simulated(model, **request)
+    rolling = simulated(model, **wrist, q=closed.q[0], span=(0, 0.01))
     assert "constraints" in rolling.series
     blade = {"constraints": [Linear("c", "x.crank'")], "q": closed.q[0]}
     for call in (
-        lambda: simulate(model, **blade, span=(0, 1)),
+        lambda: simulated(model, **blade, span=(0, 1)),
         lambda: simulate_tree(TreeProblem(model=model, start=Start([0, 0, 0]), times=OutputTimes((0, 1)))),
     ):
         with pytest.raises(InvalidInput, match="closure"):
@@ -110,7 +111,7 @@ BAD: list[tuple[Plain, str, str]] = [
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_arguments(change: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidInput) as caught:
-        simulate(SLIDER, **{"q": [0, 0, 0.18], "span": [0, 1]} | change)
+        simulated(SLIDER, **{"q": [0, 0, 0.18], "span": [0, 1]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 
 

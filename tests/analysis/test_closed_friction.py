@@ -11,15 +11,16 @@ from closed_trees import at, tree_model
 from in_depth import deep
 from random_trees import Plain
 from scipy.integrate import solve_ivp
+from simulated import simulated
 
 from substructures import InvalidInput, Model, catalogue
 from substructures.analysis.closed import dry_friction
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
 from substructures.analysis.closed.sticking_forces import bounded
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import FixedStep
 
 Laws = dict[str, tuple[str, str]]
 
@@ -88,7 +89,7 @@ def test_a_slider_crank_comes_to_rest(method: str) -> None:
     """
     model = slider_crank(LAWS)
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=9), "fixed": ["x.crank"]}
-    motion = simulate(model, **request, span=(0, 2), count=201, friction="exact", reduction=method)
+    motion = simulated(model, **request, span=(0, 2), count=201, friction="exact", reduction=method)
     right(motion)
     assert {"friction", "energy", "steps"} <= {check.name for check in motion.checks}
     stop, angle = own_stop(0.3, 9.0)
@@ -119,7 +120,7 @@ def test_a_slider_crank_breaks_away(method: str) -> None:
     request: Plain = {"q": at(model, crank=a, piston=x), "fixed": ["x.crank"], "inputs": {"tau.x.crank": "t/10"}}
     away = 10 * weights(a)
     times = [0, away / 2, away * (1 - 1e-6), away + 0.02, away + 0.05, away + 0.1]
-    motion = simulate(model, **request, span=(0, times[-1]), times=times, friction="exact", reduction=method)
+    motion = simulated(model, **request, span=(0, times[-1]), times=times, friction="exact", reduction=method)
     right(motion)
     assert np.abs(motion.qd[:3]).max() < 1e-13
     # held together: every joint has the same share of what it can, and the power of a virtual motion is none
@@ -144,11 +145,11 @@ def test_it_starts_at_a_dead_centre() -> None:
     model = slider_crank(LAWS)
     request: Plain = {"q": at(model, piston=0.18), "fixed": ["x.crank"], "count": 11, "friction": "exact"}
     assert np.isclose(weights(0), 0.03 + 0.015 * (1 + 0.04 / 0.14))
-    still = simulate(model, **request, span=(0, 0.2), inputs={"tau.x.crank": 0.99 * weights(0)})
+    still = simulated(model, **request, span=(0, 0.2), inputs={"tau.x.crank": 0.99 * weights(0)})
     right(still)
     assert np.abs(still.qd).max() < 1e-13
     torque = 1.01 * weights(0)
-    motion = simulate(model, **request, span=(0, 0.2), inputs={"tau.x.crank": torque})
+    motion = simulated(model, **request, span=(0, 0.2), inputs={"tau.x.crank": torque})
     right(motion)
     own = solve_ivp(
         lambda _, y: [y[1], sliding(y[0], max(y[1], 1e-300), torque)],
@@ -185,7 +186,7 @@ def slides(count: int, closures: list[Plain], pull: str, gravity: Any = (0, 0, 0
 def blocks(model: Model, span: tuple[float, float], **more: Any) -> Trajectory:
     """Both moving alike at the start."""
     n = model.dof
-    return simulate(model, [0.0] * n, span, qd=[0.7] * n, count=41, friction="exact", **more)
+    return simulated(model, [0.0] * n, span, qd=[0.7] * n, count=41, friction="exact", **more)
 
 
 @pytest.mark.parametrize("method", ["projection", *deep("partitioning")])
@@ -216,7 +217,7 @@ def test_friction_of_prescribed_motions() -> None:
     model = slider_crank(LAWS)
     drive = "1 + 0.5*sin(3*t)"
     request: Plain = {"q": at(model, crank=1, piston=0.15), "prescribed": {"x.crank": drive}, "span": (0, 3)}
-    motion = simulate(model, **request, friction="exact", count=61)
+    motion = simulated(model, **request, friction="exact", count=61)
     right(motion)
     w, a = motion.qd[:, 0], motion.q[:, 0]
     fast = np.abs(w) > 0.05
@@ -232,7 +233,7 @@ def test_a_drive_that_waits() -> None:
     model = slider_crank(LAWS)
     drive = "1 + max(t - 1, 0)^3"
     request: Plain = {"q": at(model, crank=1, piston=0.15), "prescribed": {"x.crank": drive}, "span": (0, 2)}
-    motion = simulate(model, **request, friction="exact", count=5)
+    motion = simulated(model, **request, friction="exact", count=5)
     assert motion.status == "finished", motion.message
     np.testing.assert_allclose(motion.series["friction"][:2], 0, atol=1e-12)
     np.testing.assert_allclose(motion.series["friction"][3:], [[-0.02, 0.01, 0.5]] * 2, rtol=1e-9)
@@ -244,7 +245,9 @@ def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
     welds = [{"name": f"w{i}", "type": "weld", "from": f"x.b{i}", "to": f"x.b{i + 1}"} for i in (0, 2)]
     model = slides(4, welds, "6 + 4*t")
-    motion = simulate(model, [0.0] * 4, (0, 1), inputs={"tau.x.z2": -10.0, "tau.x.z3": 2.0}, count=11, friction="exact")
+    motion = simulated(
+        model, [0.0] * 4, (0, 1), inputs={"tau.x.z2": -10.0, "tau.x.z3": 2.0}, count=11, friction="exact"
+    )
     right(motion)
     # 6 + 4 t beyond F_s = 4 + 5 N from t = 3/4 on; then 3 + 4 N of friction on 3 kg
     t = motion.t
@@ -274,7 +277,7 @@ def test_a_carriage_that_holds_its_mechanism() -> None:
     alone = slider_crank(LAWS, gravity=(0, -9.81, 0))
     request: Plain = {"span": (0, 1.5), "fixed": ["x.crank"], "count": 31, "friction": "exact"}
     found, wanted = (
-        simulate(model, at(model, crank=0.3, piston=0.17), qd=at(model, crank=9), **request) for model in (both, alone)
+        simulated(model, at(model, crank=0.3, piston=0.17), qd=at(model, crank=9), **request) for model in (both, alone)
     )
     right(found)
     assert (np.diff(np.sign(wanted.qd[:, 0])) != 0).any()
@@ -288,7 +291,7 @@ def test_a_mechanism_without_masses() -> None:
     nothing = dict.fromkeys(("mc", "Jc", "mr", "Jr", "mp"), 0)
     model = slider_crank(LAWS)
     values = {f"x.{name}": 0.0 for name in nothing}
-    motion = simulate(model, at(model, piston=0.18), (0, 1), parameters=values, friction="exact")
+    motion = simulated(model, at(model, piston=0.18), (0, 1), parameters=values, friction="exact")
     assert motion.status == "failed"
     assert "mass" in motion.message
     assert len(motion.t) == 1
@@ -332,7 +335,7 @@ def test_faults_are_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
     model = slider_crank(LAWS)
     x = float(piston(np.array(0.8))[0])
     request: Plain = {"q": at(model, crank=0.8, piston=x), "fixed": ["x.crank"], "inputs": {"tau.x.crank": "t/10"}}
-    motion = simulate(model, **request, span=(0, 13 * weights(0.8)), count=11, friction="exact")
+    motion = simulated(model, **request, span=(0, 13 * weights(0.8)), count=11, friction="exact")
     assert not motion.is_right
 
 
@@ -340,10 +343,10 @@ def test_what_closed_motions_refuse() -> None:
     model = slider_crank(LAWS)
     for more, pointer in (({"friction": "loaded"}, "/friction"), ({"fixed_step": FixedStep(0.1)}, "/fixed_step")):
         with pytest.raises(InvalidInput) as error:
-            simulate(model, at(model, piston=0.18), (0, 1), **({"friction": "exact"} | more))
+            simulated(model, at(model, piston=0.18), (0, 1), **{"friction": "exact"} | more)
         assert [fault.pointer for fault in error.value.faults] == [pointer]
     with pytest.raises(InvalidInput) as error:
-        simulate(slider_crank({}), at(model, piston=0.18), (0, 1), friction="exact")
+        simulated(slider_crank({}), at(model, piston=0.18), (0, 1), friction="exact")
     assert [fault.pointer for fault in error.value.faults] == ["/friction"]
 
 
@@ -382,7 +385,7 @@ def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float,
     """5 N m hold what is less: no energy is there, and none is the scale of another."""
     model = held_bar()
     inputs = {"tau.f.q1": torque}
-    motion = simulate(model, [0.5, 0.09, 1.2], (0, 0.3), count=4, inputs=inputs, friction="exact", reduction=method)
+    motion = simulated(model, [0.5, 0.09, 1.2], (0, 0.3), count=4, inputs=inputs, friction="exact", reduction=method)
     assert motion.is_right, motion.checks
     np.testing.assert_allclose(motion.q, np.tile(motion.q[0], (4, 1)), atol=1e-14)
     energy = next(check for check in motion.checks if check.name == "energy")
@@ -393,10 +396,10 @@ def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float,
 def test_many_steps_near_rest_are_told_to_take_exact_friction() -> None:
     """0.5 N m let the crank creep by v_0 atanh(0.5/5) = 1e-4 rad/s in steps of some 20 microseconds."""
     request = {"inputs": {"tau.f.q1": 0.5}, "count": 2}
-    motion = simulate(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), max_steps=1200, **request)
+    motion = simulated(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), max_steps=1200, **request)
     assert motion.qd[-1, 0] == pytest.approx(0.001 * np.arctanh(0.1), rel=1e-3)
     assert "1,200 steps were taken, most of them while 'f.q1' nearly stood still" in motion.message
     assert motion.message.endswith("'friction': 'exact' needs no such steps")
-    exact = simulate(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), friction="exact", **request)
+    exact = simulated(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), friction="exact", **request)
     assert (exact.message, exact.is_right) == ("", True)
     assert exact.steps < 20

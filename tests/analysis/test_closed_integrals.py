@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from closed_trees import bricard, four_bar, governor, tree_model
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.equations.first_integrals import FirstIntegrals, first_integrals
-from substructures.analysis.simulate import simulate
 from substructures.expr.interpret import interpret_in_blocks
 
 DOWN = (0, -9.81, 0)
@@ -19,7 +19,7 @@ DOWN = (0, -9.81, 0)
 
 def along(model: Model, found: FirstIntegrals, request: Plain) -> dict[str, Any]:
     """Values of all integrals along a simulated motion."""
-    motion = simulate(model, **request, span=(0, 0.6), count=7)
+    motion = simulated(model, **request, span=(0, 0.6), count=7)
     assert motion.is_right, motion.message
     values: Plain = {name: float(p["value"]) for name, p in model.parameters.items()}
     values |= {s.name: 0.0 for s in model.program.symbols if s.kind == "input"} | {"t": motion.t}

@@ -9,9 +9,10 @@ import pytest
 from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, stewart, stewart_points
 from random_trees import Plain
+from simulated import simulated
 
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import Event, Table, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, Outputs, Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -20,7 +21,7 @@ def test_four_bar(method: str) -> None:
     """The angles along the motion obey Freudenstein's equation (Trans. ASME 77, 1955); the energy stays."""
     model = four_bar((0, -9.81, 0))
     request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=9), "fixed": ["x.crank"]}
-    motion = simulate(model, **request, span=(0, 0.5), reduction=method)
+    motion = simulated(model, **request, span=(0, 0.5), reduction=method)
     right(motion)
     l0, l1, l2, l3 = 0.4, 0.1, 0.35, 0.25
     crank, _, rocker = motion.q.T
@@ -35,7 +36,7 @@ def test_large_mechanisms(method: str) -> None:
     pin = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
     model = closed_entry("four-bar", [pin], (0, -9.81, 0), l0=400, l1=100, l2=350, l3=250)
     request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=0.3), "fixed": ["x.crank"]}
-    right(simulate(model, **request, span=(0, 5), count=11, reduction=method))
+    right(simulated(model, **request, span=(0, 5), count=11, reduction=method))
 
 
 @pytest.mark.parametrize("method", METHODS)
@@ -43,7 +44,7 @@ def test_slider_crank(method: str) -> None:
     """Position, velocity and acceleration of the piston, and J a'' + J' a'^2 / 2 = torque."""
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=40), "fixed": ["x.crank"]}
-    motion = simulate(model, **request, span=(0, 0.3), reduction=method, inputs={"tau.x.crank": "2*sin(20*t)"})
+    motion = simulated(model, **request, span=(0, 0.3), reduction=method, inputs={"tau.x.crank": "2*sin(20*t)"})
     right(motion)
     a, w, dw = motion.q[:, 0], motion.qd[:, 0], motion.series["qdd"][:, 0]
     x, dx, ddx = piston(a)
@@ -62,7 +63,7 @@ def test_prescribed_crank(kind: str) -> None:
     if kind == "table":
         given = Table(t, 30 * t + 0.2 * np.sin(25 * t))
     request = {"q": at(model, piston=0.18), "prescribed": {"x.crank": given}, "span": [0, 0.1], "count": 51}
-    motion = simulate(model, **request)
+    motion = simulated(model, **request)
     right(motion)
     a = 30 * motion.t + 0.2 * np.sin(25 * motion.t)
     w, dw = 30 + 5 * np.cos(25 * motion.t), -125 * np.sin(25 * motion.t)
@@ -77,7 +78,7 @@ def test_bricard(method: str) -> None:
     """A redundant mechanism, through the positions where its independent coordinate turns back."""
     model, a = bricard(), 1.9
     b = np.arccos(-np.cos(a) / (1 + np.cos(a)))
-    motion = simulate(model, [a, b, a, b, a], (0, 2.5), count=51, reduction=method)
+    motion = simulate(model, [a, b, a, b, a], (0, 2.5), kind=ClosedMotion(reduction=method), outputs=Outputs(count=51))
     right(motion)
     cos = np.cos(motion.q[:, :2])
     np.testing.assert_allclose(cos.sum(axis=1) + cos.prod(axis=1), 0, atol=1e-11)
@@ -95,7 +96,7 @@ def test_stewart_platform() -> None:
     found = loop_state(model, **request)
     assert (found.mobility.degrees_of_freedom, found.mobility.redundant) == (6, False)
     np.testing.assert_allclose(found.consistent.q[:6], list(pose.values()))
-    motion = simulate(model, **request, span=(0, 0.3), count=4)
+    motion = simulated(model, **request, span=(0, 0.3), count=4)
     right(motion)
     assert abs(motion.q[-1, 2] - 1.1) > 0.1
     feet, joints = stewart_points()
@@ -121,7 +122,7 @@ def test_events_and_progress() -> None:
         "span": [0, 1],
     }
     told: list[float] = []
-    motion = simulate(model, **request, events=events, progress=lambda share: told.append(share) is None)
+    motion = simulated(model, **request, events=events, progress=lambda share: told.append(share) is None)
     assert (motion.status, "'turned'" in motion.message) == ("stopped", True)
     np.testing.assert_allclose(motion.q[-1, 0], 2 * np.pi, atol=1e-10)
     assert [event.name for event in motion.events][-1] == "turned"
@@ -129,7 +130,7 @@ def test_events_and_progress() -> None:
     dead = next(event for event in motion.events if event.name == "dead_centre")
     np.testing.assert_allclose(np.sin(dead.q[0]), 0, atol=1e-9)
     assert told == sorted(told)
-    cancelled = simulate(model, **request, progress=lambda share: share < 0.2)
+    cancelled = simulated(model, **request, progress=lambda share: share < 0.2)
     assert cancelled.status == "stopped"
     assert 0.2 <= cancelled.t[-1] + 0.01 < 0.5
 
@@ -141,13 +142,13 @@ def test_inputs_that_jump_and_inputs_that_depend_on_the_state(method: str) -> No
     held = Table([0, 0.1, 0.2, 0.3], [2, -3, 5, 0], "hold")
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
     request |= {"span": [0, 0.3], "reduction": method}
-    motion = simulate(model, **request, inputs={"tau.x.crank": held}, times=[0.1, 0.2, 0.3])
+    motion = simulated(model, **request, inputs={"tau.x.crank": held}, times=[0.1, 0.2, 0.3])
     right(motion)
     a, w = motion.q[:, 0], motion.qd[:, 0]
     kinetic = 0.5 * crank_inertia(a) * w**2
     np.testing.assert_allclose(np.diff(kinetic), [-3 * (a[1] - a[0]), 5 * (a[2] - a[1])], rtol=1e-7)
     assert motion.steps < 120
-    damped = simulate(model, **request, inputs={"tau.x.crank": "-x.crank'/100"}, series={"w": "x.crank'"})
+    damped = simulated(model, **request, inputs={"tau.x.crank": "-x.crank'/100"}, series={"w": "x.crank'"})
     right(damped)
     np.testing.assert_allclose(damped.series["tau.x.crank"], -damped.series["w"] / 100)
     assert damped.series["work"][-1] < 0

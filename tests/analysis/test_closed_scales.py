@@ -9,10 +9,10 @@ import pytest
 from closed_motions import METHODS, right
 from closed_trees import at, bricard, closed_entry
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import simulate
 
 LENGTHS = {"l0": 0.4, "l1": 0.1, "l2": 0.35, "l3": 0.25}
 PIN: Plain = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
@@ -28,7 +28,7 @@ def test_a_four_bar_of_nanometres(method: Any, size: float) -> None:
     """Freudenstein's equation (Trans. ASME 77, 1955) holds as well as for metres: residuals count beside lengths."""
     model = four_bar(size)
     request = {"qd": at(model, crank=9), "fixed": ["x.crank"], "reduction": method}
-    motion = simulate(model, at(model, crank=0.7, coupler=0.2, rocker=1.2), (0, 0.2), count=11, **request)
+    motion = simulated(model, at(model, crank=0.7, coupler=0.2, rocker=1.2), (0, 0.2), count=11, **request)
     right(motion)
     l0, l1, l2, l3 = LENGTHS.values()
     crank, _, rocker = motion.q.T

@@ -15,7 +15,7 @@ from substructures import InvalidInput, Model
 from substructures.analysis.drawings import draw_root_locus
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.simulate import Event, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.linearise_closed import ClosedLinearisation
@@ -75,7 +75,7 @@ def test_the_period_of_small_swings(make: Callable[[], Model]) -> None:
     start = at.q + 1e-3 * at.tangent[:, 0]
     level = float(at.q[model.coordinates.index(name)])
     event = Event("up", name, level=level, direction="rising", action="record")
-    motion = simulate(model, start, (0, 3.2 * period), events=[event], fixed=[name])
+    motion = simulate(model, start, (0, 3.2 * period), kind=ClosedMotion(fixed=[name]), outputs=Outputs(events=[event]))
     assert motion.is_right, motion.message
     np.testing.assert_allclose(np.diff([e.t for e in motion.events]), period, rtol=1e-5)
 

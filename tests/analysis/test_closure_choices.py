@@ -11,13 +11,14 @@ from closed_motions import METHODS, right
 from closed_trees import at, bricard, closed_entry, governor, parallelogram, slides
 from in_depth import deep, seeds
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.branches import change, singular_part
 from substructures.analysis.closed.constrained import Singular
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.pivoting import pivoted
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import ClosedMotion, Integrator, Outputs, simulate
 
 PIN: Plain = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
 PLANAR = ("pin.z", "pin.rx", "pin.ry")
@@ -83,11 +84,9 @@ def test_no_step_passes_a_dead_centre(method: str, seed: int) -> None:
             at(model, crank=angle, coupler=-angle, rocker=angle),
             (0, 2 * angle / speed),
             qd=at(model, crank=-speed),
-            fixed=["x.crank"],
-            relative_tolerance=tolerance,
-            absolute_tolerance=tolerance / 100,
-            reduction=method,
-            count=5,
+            kind=ClosedMotion(fixed=["x.crank"], reduction=method),
+            integrator=Integrator(relative_tolerance=tolerance, absolute_tolerance=tolerance / 100),
+            outputs=Outputs(count=5),
         )
         assert motion.status == "failed"
         assert "singular" in motion.message or "dead centre" in motion.message
@@ -103,7 +102,7 @@ def test_beside_a_dead_centre_a_motion_stays_on_its_branch(method: str, longer: 
     """
     model = bar(0.3, 0.2, 0.3 * longer, 0.2)(float)
     request: Plain = {"q": at(model, crank=0.5, coupler=-0.5, rocker=0.5), "qd": at(model, crank=-3)}
-    motion = simulate(model, **request, span=(0, 0.4), fixed=["x.crank"], reduction=method, count=1001)
+    motion = simulated(model, **request, span=(0, 0.4), fixed=["x.crank"], reduction=method, count=1001)
     right(motion)
     limit = (0.3**2 + 0.2**2 - (0.3 * longer - 0.2) ** 2) / (2 * 0.3 * 0.2)
     least = motion.q[:, 0].min()

@@ -10,7 +10,7 @@ from random_trees import Plain, model_of
 
 from substructures import Model
 from substructures.analysis.equations.first_integrals import Integral, first_integrals
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 
 DIRICHLET = "the potential energy has a strict minimum (Lagrange, Dirichlet)"
@@ -68,7 +68,7 @@ def test_a_force_with_a_potential(model: Model) -> None:
     assert energy(model).rule == "constant"
     assert at_zero(model).verdict == "stable"
     assert at_zero(model).reason == DIRICHLET
-    motion = simulate(model, [0.4] * model.dof, (0, 3), qd=[1.0] * model.dof, count=5)
+    motion = simulate(model, [0.4] * model.dof, (0, 3), qd=[1.0] * model.dof, outputs=Outputs(count=5))
     assert motion.is_right
     assert [(c.name, c.rule) for c in motion.checks] == [("energy", "constant"), ("steps", "accurate")]
 
@@ -79,7 +79,7 @@ def test_a_potential_that_is_not_in_closed_form_still_decides() -> None:
     assert energy(model).rule == "balance"
     assert "'x.x' have a potential, but none in closed form" in energy(model).reason
     assert at_zero(model).verdict == "stable"
-    assert simulate(model, [0.4], (0, 3), qd=[1.0], count=5).is_right
+    assert simulate(model, [0.4], (0, 3), qd=[1.0], outputs=Outputs(count=5)).is_right
 
 
 def test_a_curl_away_from_the_place_of_rest_is_seen() -> None:

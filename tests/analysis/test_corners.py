@@ -6,12 +6,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.motion import simulation
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import Event, Table, simulate
+from substructures.analysis.simulate import Event, Table
 
 
 def cart(force: str) -> Model:
@@ -28,7 +29,7 @@ def cart(force: str) -> Model:
 
 
 def moved(model: Model, end: float, q: float = 1.0, qd: float = 0.0, **given: Any) -> Trajectory:
-    return simulate(model, q=[q], qd=[qd], span=(0, end), **given)
+    return simulated(model, q=[q], qd=[qd], span=(0, end), **given)
 
 
 #: a quarter of the period of x'' = -sign x from x = 1

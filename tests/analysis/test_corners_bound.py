@@ -8,11 +8,12 @@ from typing import Any, Literal
 import numpy as np
 import pytest
 from closed_trees import four_bar, tree_model
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.motion.corners import Corners, Laws
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import Linear, Table, simulate
+from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, Linear, Outputs, Table, simulate
 
 REDUCTIONS = ("projection", "partitioning")
 
@@ -56,12 +57,12 @@ TIMES = np.linspace(0, 4, 41)
 
 def on_ring(reduction: Literal["projection", "partitioning"], **given: Any) -> Trajectory:
     q, qd = [np.cos(0.7), np.sin(0.7)], [2 * np.sin(0.7), -2 * np.cos(0.7)]
-    return simulate(ring(), q, (0, 4), qd=qd, times=TIMES, reduction=reduction, **given)
+    return simulated(ring(), q, (0, 4), qd=qd, times=TIMES, reduction=reduction, **given)
 
 
 @pytest.fixture(scope="module")
 def turned() -> Trajectory:
-    return simulate(pendulum(), [0.7], (0, 4), qd=[-2], times=TIMES)
+    return simulate(pendulum(), [0.7], (0, 4), qd=[-2], outputs=Outputs(times=TIMES))
 
 
 @pytest.mark.parametrize("reduction", REDUCTIONS)
@@ -87,13 +88,15 @@ def test_a_four_bar_is_driven_both_ways() -> None:
     """A torque of an input that changes its direction, and the pieces one after the other with a constant one."""
     model = four_bar()
     torque = next(name for name in model.input_names if name.startswith("tau."))
-    start = simulate(model, [0.4, 0.9, 1.2], (0, 0.01), fixed=[model.coordinates[0]], times=[0])
+    start = simulate(
+        model, [0.4, 0.9, 1.2], (0, 0.01), kind=ClosedMotion(fixed=[model.coordinates[0]]), outputs=Outputs(times=[0])
+    )
     q, qd = start.q[0], start.qd[0]
     ends = [0, *(np.pi * np.arange(1, 4) / 3), 4.0]
-    found = simulate(model, q, (0, 4), qd=qd, inputs={torque: "0.2*sign(sin(3*t))"}, times=ends)
+    found = simulate(model, q, (0, 4), qd=qd, inputs={torque: "0.2*sign(sin(3*t))"}, outputs=Outputs(times=ends))
     assert found.is_right
     for k, (a, b) in enumerate(pairwise(ends)):
-        piece = simulate(model, q, (a, b), qd=qd, inputs={torque: 0.2 * (-1) ** k}, times=[b])
+        piece = simulate(model, q, (a, b), qd=qd, inputs={torque: 0.2 * (-1) ** k}, outputs=Outputs(times=[b]))
         q, qd = piece.q[-1], piece.qd[-1]
         np.testing.assert_allclose(found.q[k + 1], q, atol=1e-9)
 
@@ -129,7 +132,9 @@ def parabolas(times: np.ndarray) -> np.ndarray:
 
 def test_a_wheel_with_a_torque_that_jumps() -> None:
     times = np.linspace(0, 20 * QUARTER, 101)
-    found = simulate(wheel(), [1, 2], (0, times[-1]), constraints=[GEAR], times=times)
+    found = simulate(
+        wheel(), [1, 2], (0, times[-1]), kind=ConstrainedMotion(constraints=[GEAR]), outputs=Outputs(times=times)
+    )
     np.testing.assert_allclose(found.q[:, 0], parabolas(times), atol=1e-10)
     assert found.is_right
     assert found.steps < 150
@@ -137,7 +142,13 @@ def test_a_wheel_with_a_torque_that_jumps() -> None:
 
 def test_a_wheel_without_them(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(Laws, "on_sides", lambda *_: None)
-    found = simulate(wheel(), [1, 2], (0, 20 * QUARTER), constraints=[GEAR], times=[20 * QUARTER])
+    found = simulate(
+        wheel(),
+        [1, 2],
+        (0, 20 * QUARTER),
+        kind=ConstrainedMotion(constraints=[GEAR]),
+        outputs=Outputs(times=[20 * QUARTER]),
+    )
     assert found.steps > 200
 
 
@@ -145,7 +156,14 @@ def test_corners_that_meet() -> None:
     """An input that is zero by corners where the torque has one, too."""
     times = np.linspace(0, 8 * QUARTER, 33)
     nothing = {"x.u": "abs(x.x) + min(x.x, 0) - max(x.x, 0)"}
-    found = simulate(wheel(), [1, 2], (0, times[-1]), constraints=[GEAR], times=times, inputs=nothing)
+    found = simulate(
+        wheel(),
+        [1, 2],
+        (0, times[-1]),
+        inputs=nothing,
+        kind=ConstrainedMotion(constraints=[GEAR]),
+        outputs=Outputs(times=times),
+    )
     np.testing.assert_allclose(found.q[:, 0], parabolas(times), atol=1e-9)
 
 
@@ -157,7 +175,7 @@ def cart(force: str) -> Model:
 
 
 def pushed(force: str, end: float, u: Any, **given: Any) -> Trajectory:
-    return simulate(cart(force), [0], (0, end), inputs={"x.u": u}, **given)
+    return simulated(cart(force), [0], (0, end), inputs={"x.u": u}, **given)
 
 
 def test_an_input_that_jumps() -> None:
@@ -212,7 +230,7 @@ def blind(monkeypatch: pytest.MonkeyPatch) -> None:
 
 @pytest.mark.usefixtures("blind")
 def test_verdicts_see_who_goes_on_at_the_wrong_side() -> None:
-    wheel_motion = simulate(wheel(), [1, 2], (0, 2 * QUARTER), constraints=[GEAR])
+    wheel_motion = simulate(wheel(), [1, 2], (0, 2 * QUARTER), kind=ConstrainedMotion(constraints=[GEAR]))
     for found in (on_ring("projection"), on_ring("partitioning"), wheel_motion, pushed("u", 3, "sign(sin(pi*t))")):
         assert found.is_right is False
         assert not all(check.holds for check in found.checks)

@@ -18,12 +18,12 @@ from random_trees import Kind, Plain, model_of, random_definition, with_paramete
 from substructures import InvalidInput, Model, TooLarge
 from substructures.analysis.equations.curvature import curvature, curvature_values, independent_elements
 from substructures.compile import compile_program
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.replay import replay
-from substructures.quantities.evaluation import evaluate, interpreted
+from substructures.expr.rings.expand import is_zero
+from substructures.quantities.evaluation import EvaluationOptions, evaluate, interpreted
 
 
 def symbolic(bodies: list[Plain], parameters: str) -> Model:
@@ -199,7 +199,9 @@ def test_nothing_moves(q: Any) -> None:
         shapes = {name: np.shape(x) for name, x in values.items() if name != "failures"}
         axes = {"riemann": 4, "ricci": 2, "scalar_curvature": 0, "inverse_metric": 2, "christoffel_second": 3}
         assert shapes == {name: (*states, *[0] * count) for name, count in axes.items()}
-        found = evaluate(model, ["metric", "potential_energy", "forces"], q=q, evaluator=engine)
+        found = evaluate(
+            model, ["metric", "potential_energy", "forces"], q=q, options=EvaluationOptions(evaluator=engine)
+        )
         expected = [(*states, 0, 0), states, (*states, 0)]
         assert [found[name].shape for name in ("metric", "potential_energy", "forces")] == expected
 

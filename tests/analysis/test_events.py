@@ -11,8 +11,9 @@ from closed_motions import METHODS as REDUCTIONS
 from closed_trees import slides
 from random_trees import Plain, model_of
 from rolling_bodies import BLADE, FORWARD, sleigh
+from simulated import simulated
 
-from substructures.analysis.simulate import Event, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, Outputs, simulate
 
 G, V = 9.81, 10.0
 #: by how much levels are below the top [m]; the others know the height less well
@@ -30,7 +31,7 @@ def passing(quantity: Any, level: float = 0.0, **more: Any) -> list[Event]:
 
 def thrown(events: list[Event], **more: Any) -> Any:
     """A mass that is thrown up: s = 10 t - g t^2 / 2, exact for every method in a few large steps."""
-    return simulate(model_of(oscillator(), (0, 0, -G)), [0], (0, 2.5), qd=[V], events=events, **more)
+    return simulated(model_of(oscillator(), (0, 0, -G)), [0], (0, 2.5), qd=[V], events=events, **more)
 
 
 @pytest.mark.parametrize(("method", "below"), [(name, x) for name, some in BELOW.items() for x in some])
@@ -60,7 +61,9 @@ def test_a_level_above_the_top_and_ways_through() -> None:
 @pytest.mark.parametrize("speed", [1.0, 37.0])
 def test_a_quantity_that_swings_while_the_motion_is_smooth(speed: float) -> None:
     """s = speed t without forces is one step; sin(10 s) passes 0.5 at (pi/6, 5 pi/6) + 2 pi k."""
-    motion = simulate(model_of(oscillator(), (0, 0, 0)), [0], (0, 2), qd=[speed], events=passing("sin(10*x.s)", 0.5))
+    motion = simulate(
+        model_of(oscillator(), (0, 0, 0)), [0], (0, 2), qd=[speed], outputs=Outputs(events=passing("sin(10*x.s)", 0.5))
+    )
     turns = np.arange(int(20 * speed / (2 * np.pi)) + 1)
     expected = np.sort(np.concatenate([np.pi / 6 + 2 * np.pi * turns, 5 * np.pi / 6 + 2 * np.pi * turns]))
     expected = expected[expected < 20 * speed] / (10 * speed)
@@ -70,7 +73,11 @@ def test_a_quantity_that_swings_while_the_motion_is_smooth(speed: float) -> None
 def test_a_quantity_with_a_kink() -> None:
     """|s - 1| passes 0.001 twice around s = 1."""
     motion = simulate(
-        model_of(oscillator(), (0, 0, 0)), [0], (0, 3), qd=[1], events=passing("sqrt((x.s - 1)^2)", 0.001)
+        model_of(oscillator(), (0, 0, 0)),
+        [0],
+        (0, 3),
+        qd=[1],
+        outputs=Outputs(events=passing("sqrt((x.s - 1)^2)", 0.001)),
     )
     np.testing.assert_allclose(times(motion), [0.999, 1.001], atol=1e-9)
 
@@ -79,7 +86,9 @@ def test_a_quantity_with_a_kink() -> None:
 def test_on_closures(reduction: Any) -> None:
     """x = cos 2t: 0.9999 is passed on both sides of t = pi; y' = 2 cos 2t falls through 0 and rises."""
     events = [*passing("x.x", 0.9999), Event("turns", "x.y'", action="record")]
-    motion = simulate(slides(), [1, 0], (0, 4), qd=[0, 2], reduction=reduction, events=events)
+    motion = simulate(
+        slides(), [1, 0], (0, 4), qd=[0, 2], kind=ClosedMotion(reduction=reduction), outputs=Outputs(events=events)
+    )
     a = np.arccos(0.9999) / 2
     np.testing.assert_allclose(times(motion), [a, np.pi - a, np.pi + a], atol=1e-8)
     np.testing.assert_allclose(times(motion, "turns"), np.pi * np.array([1, 3, 5]) / 4, atol=1e-8)
@@ -93,7 +102,7 @@ def test_with_velocity_constraints(form: Any) -> None:
     top = slope / (2 * w**2)
     events = [*passing("s.x", top * (1 - 1e-5)), Event("u", "s.x'*cos(s.f) + s.y'*sin(s.f)", 0.5, action="record")]
     request |= {"v": {"w": w}, "span": (0, 3), "form": form, "events": events}
-    motion = simulate(sleigh((slope, 0, -G * 0.96)), **request)
+    motion = simulated(sleigh((slope, 0, -G * 0.96)), **request)
     a = np.arccos(np.sqrt(1 - 1e-5))
     at = np.array([np.pi / 2 - a, np.pi / 2 + a, 3 * np.pi / 2 - a, 3 * np.pi / 2 + a]) / w
     np.testing.assert_allclose(times(motion), at[at < 3], atol=1e-7)

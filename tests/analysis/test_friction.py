@@ -12,13 +12,14 @@ import numpy as np
 import pytest
 from in_depth import seeds
 from random_trees import Plain, model_of
+from simulated import simulated
 
 from substructures import InvalidArgument, InvalidDocument, InvalidInput, Model
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide
-from substructures.analysis.simulate import Event, FixedStep, simulate
+from substructures.analysis.simulate import Event, FixedStep
 from substructures.quantities.evaluation import evaluate
 
 G = 9.81
@@ -54,7 +55,7 @@ def test_a_block_on_an_incline(way: int) -> None:
     mu, angle, v, m = 0.6, 0.3, 1.7, 2.0
     normal, along = m * G * float(np.cos(angle)), -G * float(np.sin(angle))
     model = block({"coulomb": exactly(mu * normal)}, along)
-    motion = simulate(
+    motion = simulated(
         model,
         [0.2],
         (0, 3),
@@ -87,7 +88,7 @@ def test_a_block_that_is_too_steep_slides_on() -> None:
     """Up to rest, then down with less acceleration: mu < tan of the angle."""
     mu, angle, v, m = 0.2, 0.5, 1.0, 2.0
     normal, along = m * G * float(np.cos(angle)), -G * float(np.sin(angle))
-    motion = simulate(
+    motion = simulated(
         block({"coulomb": exactly(mu * normal)}, along), [0.0], (0, 1), qd=[v], count=11, friction="exact"
     )
     up, down = mu * normal / m - along, -mu * normal / m - along
@@ -105,7 +106,7 @@ def test_a_stick_slip_oscillator() -> None:
     pull = {"type": "joint", "coordinate": "x", "force": "k*(V*t - x)"}
     model = block({"coulomb": 2, "static": 3}, mass=2, loads=[pull], k=k, V=V)
     ways = [Event("moves", "x.x'", 1e-6, "rising", "record"), Event("stops", "x.x'", 1e-6, "falling", "record")]
-    motion = simulate(model, [0.0], (0, 6), count=3001, friction="exact", events=ways)
+    motion = simulated(model, [0.0], (0, 6), count=3001, friction="exact", events=ways)
     assert motion.is_right, motion.checks
     w = np.sqrt(k / m)
     D = (F_s - F_c) * w / (k * V)
@@ -134,7 +135,7 @@ def test_a_stick_slip_oscillator() -> None:
 def test_the_smooth_law_creeps_where_the_exact_one_sticks() -> None:
     """The smooth one is near it as long as it moves, and then creeps with v_0 atanh(load/F_c)."""
     model, given = block({"coulomb": 4}, -1.0), {"q": [0.0], "span": (0, 1), "qd": [1.0], "count": 11}
-    exact, smooth = simulate(model, **given, friction="exact"), simulate(model, **given)
+    exact, smooth = simulated(model, **given, friction="exact"), simulated(model, **given)
     assert smooth.is_right
     np.testing.assert_allclose(smooth.q, exact.q, atol=2e-3)
     np.testing.assert_allclose(smooth.qd[-1], -1e-3 * np.arctanh(2 / 4), rtol=1e-6)
@@ -180,7 +181,7 @@ def test_who_sticks_when_several_are_at_rest(seed: int) -> None:
         if all(abs(f[i]) <= limits[i] if i in stuck else a[i] * ways[i] > 0 for i in range(3)):
             met.append(ways)
     assert tuple(int(s) for s in signs) in met
-    motion = simulate(model, [0, 0, 0], (0, 0.05), inputs=tau, count=3, friction="exact")
+    motion = simulated(model, [0, 0, 0], (0, 0.05), inputs=tau, count=3, friction="exact")
     assert motion.is_right, motion.checks
     assert np.array_equal(np.sign(motion.qd[-1]), signs)
 
@@ -192,7 +193,7 @@ def test_two_blocks_and_a_spring_come_to_rest() -> None:
     bodies = [{"name": f"b{i}", "parent": "base", "mass": 1 + i, "joint": joints[i]} for i in range(2)]
     load = {"type": "potential", "potential": "20*(x1 - x0)^2"}
     model = model_of({"name": "a", "bodies": bodies, "loads": [load]}, (0, 0, 0))
-    motion = simulate(model, [0.0, 0.7], (0, 5), qd=[0.5, 0], count=101, friction="exact")
+    motion = simulated(model, [0.0, 0.7], (0, 5), qd=[0.5, 0], count=101, friction="exact")
     assert motion.is_right, motion.checks
     assert not motion.qd[-1].any()
     np.testing.assert_allclose(motion.q[-1], motion.q[-10], rtol=0, atol=1e-12)
@@ -234,7 +235,7 @@ def test_motions_that_cannot_stick_exactly() -> None:
         (sliding, {"friction": "sticky"}, "/friction"),
     ):
         with pytest.raises(InvalidInput) as error:
-            simulate(model, [0.0], (0, 1), **({"friction": "exact"} | more))
+            simulated(model, [0.0], (0, 1), **{"friction": "exact"} | more)
         assert error.value.faults[0].pointer.startswith(pointer), error.value
     with pytest.raises(InvalidArgument):
         friction_laws(frictionless, {})

@@ -9,7 +9,7 @@ import pytest
 from exported_models import tree_of
 
 from substructures import Definition, TreeSpec, couple, derive
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Geodesic, simulate
 from substructures.errors import InvalidArgument
 
 
@@ -38,7 +38,7 @@ def test_in_polar_coordinates_they_are_straight_lines() -> None:
         {"name": "t", "gravity": [0, "-9.81", 0], "instances": [{"name": "p", "definition": definition}]}
     )
     model = couple(spec, {"p": derive(Definition.read(definition))})
-    found = simulate(model, [0.3, 1.0], (0, 2), qd=[0.5, -0.2], geodesic=True)
+    found = simulate(model, [0.3, 1.0], (0, 2), qd=[0.5, -0.2], kind=Geodesic())
     phi, r = found.q.T
     place = r * np.exp(1j * phi)
     velocity = (found.qd[0, 1] + 1j * r[0] * found.qd[0, 0]) * np.exp(1j * phi[0])
@@ -52,8 +52,8 @@ def test_faster_on_the_same_line() -> None:
     """A geodesic is a line of the space: twice as fast, it is at the same places in half of the time."""
     model = tree_of("scara")
     q, qd = [0.1, 0.4, -0.1, 0.2], np.array([0.5, -0.3, 0.1, 0.7])
-    slow = simulate(model, q, (0, 2), qd=qd, geodesic=True)
-    fast = simulate(model, q, (0, 1), qd=2 * qd, geodesic=True)
+    slow = simulate(model, q, (0, 2), qd=qd, kind=Geodesic())
+    fast = simulate(model, q, (0, 1), qd=2 * qd, kind=Geodesic())
     np.testing.assert_allclose(fast.q, slow.q, atol=1e-8)
     energy = slow.series["energy"]
     np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
@@ -61,4 +61,4 @@ def test_faster_on_the_same_line() -> None:
 
 def test_what_acts_is_refused() -> None:
     with pytest.raises(InvalidArgument, match="no forces"):
-        simulate(tree_of("acrobot"), [0, 0], (0, 1), inputs={"tau.i0.q1": 1}, geodesic=True)
+        simulate(tree_of("acrobot"), [0, 0], (0, 1), inputs={"tau.i0.q1": 1}, kind=Geodesic())

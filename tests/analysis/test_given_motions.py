@@ -12,7 +12,8 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 from substructures import InvalidArgument, Model, simulate
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.prescribed import Prescribed
-from substructures.analysis.motion.signals import Curve, Table
+from substructures.analysis.motion.problems.signals import Curve, Table
+from substructures.analysis.simulate import ClosedMotion, Outputs
 
 TIMES = [0.0, 1.0, 2.0, 3.0]
 DWELL = [0.0, 1.0, 1.0, 1.0]
@@ -26,7 +27,7 @@ def slide() -> Model:
 
 
 def moved(model: Model, motion: Any, span: tuple[float, float] = (0, 3), x: float = 0) -> np.ndarray:
-    found = simulate(model, [x], span, count=7, prescribed={"s.x": motion})
+    found = simulate(model, [x], span, kind=ClosedMotion(prescribed={"s.x": motion}), outputs=Outputs(count=7))
     assert found.is_right, found.message
     return found.q[:, 0]
 
@@ -34,7 +35,7 @@ def moved(model: Model, motion: Any, span: tuple[float, float] = (0, 3), x: floa
 @pytest.mark.parametrize("how", ["hold", "linear"])
 def test_a_table_that_jumps_or_has_corners_is_refused(slide: Model, how: Any) -> None:
     with pytest.raises(InvalidArgument, match=r"kink at t = 1 s: .*jumps from .* infinite force; .*quintic") as caught:
-        simulate(slide, [0], (0, 3), prescribed={"s.x": Table(TIMES, DWELL, how)})
+        simulate(slide, [0], (0, 3), kind=ClosedMotion(prescribed={"s.x": Table(TIMES, DWELL, how)}))
     assert [(f.pointer, f.code) for f in caught.value.faults] == [("/prescribed/s.x/interpolation", "kink")]
 
 
@@ -79,7 +80,7 @@ def test_within_a_span_without_kinks_they_do_so_too(
 )
 def test_kinks_of_expressions_are_named(slide: Model, motion: str, time: float, jump: str) -> None:
     with pytest.raises(InvalidArgument, match=f"kink at t = {time:g} s: .*{jump}") as caught:
-        simulate(slide, [0], (0, 3), prescribed={"s.x": motion})
+        simulate(slide, [0], (0, 3), kind=ClosedMotion(prescribed={"s.x": motion}))
     assert caught.value.faults[0].pointer == "/prescribed/s.x"
 
 

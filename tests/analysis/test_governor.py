@@ -8,7 +8,7 @@ from closed_motions import right
 from closed_trees import at, governor, governor_accelerations, lift
 
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Outputs, simulate
 
 
 @pytest.mark.parametrize(("angle", "rate", "spin"), [(0.6, 0, 7.0), (0.4, 1.5, 9.0), (0.9, -2.0, 3.0)])
@@ -29,10 +29,10 @@ def test_governor_keeps_its_speed_and_its_angular_momentum() -> None:
     low, high = governor_accelerations(angle, 0, 0)[0], governor_accelerations(angle, 0, 1)[0]
     steady = np.sqrt(-low / (high - low))
     start = at(model, right=angle, left=angle, lift=lift(angle)[0])
-    motion = simulate(model, start, (0, 0.5), qd=at(model, turn=steady), count=3)
+    motion = simulate(model, start, (0, 0.5), qd=at(model, turn=steady), outputs=Outputs(count=3))
     right(motion)
     np.testing.assert_allclose(motion.q[-1][1:], start[1:], atol=1e-9)
-    motion = simulate(model, start, (0, 1.5), qd=at(model, turn=1.2 * steady), count=51)
+    motion = simulate(model, start, (0, 1.5), qd=at(model, turn=1.2 * steady), outputs=Outputs(count=51))
     right(motion)
     arms = motion.q[:, model.coordinates.index("x.right")]
     momentum = (0.011 + 2 * (0.03 + 0.3 * np.sin(arms)) ** 2) * motion.qd[:, 0]

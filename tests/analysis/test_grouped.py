@@ -15,9 +15,9 @@ from substructures.analysis.identification import grouped
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.identification.grouped import OUTPUTS, Grouped, grouped_model, sum_of
 from substructures.errors import VerificationFailed
+from substructures.export import render
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
-from substructures.printers import render
 from substructures.printers.definitions import Definitions
 from substructures.quantities.formulas import derived
 from substructures.quantities.regressor import regressor

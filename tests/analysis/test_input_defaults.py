@@ -7,15 +7,18 @@ from typing import Any
 
 import numpy as np
 import pytest
+from simulated import simulated
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
-from substructures.analysis.simulate import KnifeEdge, simulate
+from substructures.analysis.simulate import KnifeEdge, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
@@ -74,19 +77,19 @@ START: Plain = {"q": [0.2, 0.4], "qd": [1, -0.5]}
 
 
 def moved(model: Model, **given: Any) -> Any:
-    found = simulate(model, START["q"], (0, 0.5), qd=START["qd"], count=5, **given)
+    found = simulated(model, START["q"], (0, 0.5), qd=START["qd"], count=5, **given)
     assert found.is_right, found
     return [found.q, found.qd, *(found.series[name] for name in ("energy",))]
 
 
 def rolled(model: Model, **given: Any) -> Any:
     edge = KnifeEdge("skate", "s.tip")
-    found = simulate(model, START["q"], (0, 0.3), count=3, constraints=[edge], **given)
+    found = simulated(model, START["q"], (0, 0.3), count=3, constraints=[edge], **given)
     return [found.q, found.qd]
 
 
 def driven(model: Model, **given: Any) -> Any:
-    found = simulate(model, START["q"], (0, 0.3), count=3, prescribed={"s.turn": "0.2 + t^2"}, **given)
+    found = simulated(model, START["q"], (0, 0.3), count=3, prescribed={"s.turn": "0.2 + t^2"}, **given)
     assert found.is_right
     return [found.q, found.series["actuation"], found.series["work"]]
 
@@ -113,12 +116,12 @@ def locus(model: Model, **given: Any) -> Any:
 
 def cost(model: Model, **given: Any) -> Any:
     fields: Plain = {"cost": Cost(running="s.q^2 + lift"), "horizon": 0.3, "intervals": 2, "steps": 10}
-    found = cost_gradient(model, controls=["tau.s.q"], q=START["q"], **fields, **given)
+    found = cost_gradient(model, **control_arguments(controls=["tau.s.q"], q=START["q"], **fields, **given))
     return [found.cost]
 
 
 def varied(model: Model, **given: Any) -> Any:
-    found = sensitivities(model, START["q"], (0, 0.2), by=["s.m"], count=3, **given)
+    found = sensitivities(model, START["q"], (0, 0.2), **sensitivity_arguments(by=["s.m"], count=3, **given))
     return [found.motion.q] if hasattr(found, "motion") else [found.q]
 
 
@@ -166,10 +169,10 @@ def test_a_drive_that_is_on_by_default_is_seen_by_judges() -> None:
         {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "s", "definition": definition}]}
     )
     model = couple(spec, {"s": derive(Definition.read(definition))})
-    motion = simulate(model, START["q"], (0, 0.5), qd=START["qd"], count=5)
+    motion = simulate(model, START["q"], (0, 0.5), qd=START["qd"], outputs=Outputs(count=5))
     assert motion.is_right, motion.checks
     assert "angular_momentum.z" not in motion.series
-    off = simulate(model, START["q"], (0, 0.5), qd=START["qd"], count=5, inputs={"s.drive": 0})
+    off = simulate(model, START["q"], (0, 0.5), qd=START["qd"], inputs={"s.drive": 0}, outputs=Outputs(count=5))
     assert off.is_right
     assert "angular_momentum.z" in off.series
     with pytest.raises(InvalidArgument, match="no cyclic coordinate"):

@@ -12,10 +12,11 @@ from closed_trees import at, bricard, four_bar, slider_crank
 from in_depth import deep
 from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, R, disc, sleigh
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import Event, FixedStep, simulate
+from substructures.analysis.simulate import ClosedMotion, Event, FixedStep, Integrator, Outputs, simulate
 from substructures.analysis.verdict import Check
 from substructures.quantities.evaluation import evaluate
 
@@ -66,7 +67,7 @@ def test_trees(name: str, method: str) -> None:
     entry, request = TREES[name]
     model = catalogue_model(entry)
     coarse = {"relative_tolerance": 1e-6, "absolute_tolerance": 1e-8} if method in ("RK23", "BDF") else {}
-    motion = simulate(model, **request | METHODS[method] | coarse)
+    motion = simulated(model, **request | METHODS[method] | coarse)
     assert motion.status == "finished", motion.message
     assert_energy_is_stated(model, motion)
     if entry == "puma560":
@@ -86,7 +87,7 @@ def test_all_momenta_of_a_free_body() -> None:
 def test_taylor() -> None:
     pytest.importorskip("heyoka", reason="heyoka is in the test extra")
     model = catalogue_model("acrobot")
-    motion = simulate(model, [1.2, 0], (0, 5), step=0.02, method="Taylor")
+    motion = simulate(model, [1.2, 0], (0, 5), integrator=Integrator(method="Taylor"), outputs=Outputs(step=0.02))
     assert_energy_is_stated(model, motion)
 
 
@@ -97,7 +98,7 @@ def test_states_of_events_are_judged() -> None:
         Event("level", "x.q1", level=0.3, action="record"),
         Event("end", "x.q1'", level=-1.0, direction="falling"),
     ]
-    motion = simulate(model, [1.2, 0], (0, 5), times=[0, 4.9], events=events)
+    motion = simulate(model, [1.2, 0], (0, 5), outputs=Outputs(times=[0, 4.9], events=events))
     assert (motion.status, motion.events[-1].name) == ("stopped", "end")
     assert_energy_is_stated(model, motion)
 
@@ -130,7 +131,7 @@ def test_closed_motions(reduction: str, count: int) -> None:
         (crank, {"q": at(crank, crank=0.3, piston=0.17), "qd": at(crank, crank=40)}, ("rod_end", "pin")),
     ):
         common = {"fixed": ["x.crank"], "span": [0, 0.2], "count": count, "reduction": reduction}
-        motion = simulate(model, **request | common)
+        motion = simulated(model, **request | common)
         assert motion.is_right, motion.checks
         assert_energy_is_stated(model, motion)
         assert_pin_is_stated(model, motion, (f"x.{ends[0]}", f"x.{ends[1]}"))
@@ -142,20 +143,26 @@ def test_closed_motions_in_space_driven_and_with_events(reduction: str) -> None:
     b = np.arccos(-np.cos(a) / (1 + np.cos(a)))
     model = bricard()
     event = Event("half", "l0.q", level=1.7, action="record")
-    motion = simulate(model, [a, b, a, b, a], (0, 1.5), count=30, reduction=reduction, events=[event])
+    motion = simulate(
+        model,
+        [a, b, a, b, a],
+        (0, 1.5),
+        kind=ClosedMotion(reduction=reduction),
+        outputs=Outputs(count=30, events=[event]),
+    )
     assert motion.events
     assert_energy_is_stated(model, motion)
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
     request |= {"span": [0, 0.3], "inputs": {"tau.x.crank": "-x.crank'/100"}}
-    assert_energy_is_stated(model, simulate(model, **request, reduction=reduction))
+    assert_energy_is_stated(model, simulated(model, **request, reduction=reduction))
 
 
 def test_nothing_is_wanted_but_the_judgement() -> None:
     """No times: series without rows, and the checks of all steps."""
     model = slider_crank()
     request: Plain = {"q": at(model, crank=0.3, piston=0.17), "qd": at(model, crank=20), "fixed": ["x.crank"]}
-    motion = simulate(model, **request, span=(0, 0.1), times=[])
+    motion = simulated(model, **request, span=(0, 0.1), times=[])
     assert {len(values) for values in motion.arrays().values()} == {0}
     assert stated(motion, "energy").worst > 0
 
@@ -166,14 +173,14 @@ def test_rolling_motions(form: str) -> None:
     model = disc()
     start = [0, 0, R * np.sin(1.2), 0.2, 1.2, 0]
     request: Plain = {"constraints": [FLOOR], "q": start, "v": [1.0, 0.5, 6.0], "span": [0, 3], "form": form}
-    motion = simulate(model, **request, count=2001)
+    motion = simulated(model, **request, count=2001)
     assert motion.is_right, motion.checks
     assert_energy_is_stated(model, motion)
     assert_stated(stated(motion, "gaps"), motion.q[:, 2] - R * np.sin(motion.q[:, 4]))
     model = sleigh()
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [1.0, 0.5], "form": form}
     event = Event("turned", "s.f", level=0.6, action="record")
-    motion = simulate(model, **request, span=(0, 2), times=[0.3, 1.1], events=[event])
+    motion = simulated(model, **request, span=(0, 2), times=[0.3, 1.1], events=[event])
     assert motion.events
     assert_energy_is_stated(model, motion)
     across = np.cos(motion.q[:, 2]) * motion.qd[:, 1] - np.sin(motion.q[:, 2]) * motion.qd[:, 0]

@@ -14,7 +14,7 @@ from scipy.interpolate import CubicSpline
 
 from substructures import InvalidInput, Model, Program
 from substructures.analysis.equations.perturbation import inputs_of, perturbation, state_space
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.vibrations import modes
@@ -97,7 +97,7 @@ def test_along_a_driven_trajectory() -> None:
     """Inputs and times of a simulation, one for each state; the residual of a motion is zero."""
     model = catalogue_model("furuta-pendulum")
     name = f"tau.{model.coordinates[0]}"
-    motion = simulate(model, [0, 0.3], (0, 1), count=5, inputs={name: "sin(5*t)/50"})
+    motion = simulate(model, [0, 0.3], (0, 1), inputs={name: "sin(5*t)/50"}, outputs=Outputs(count=5))
     request = {"q": motion.q, "qd": motion.qd, "t": motion.t, "inputs": {name: motion.series[name]}}
     found = linearise(model, **request)
     assert found.A.shape == (5, 4, 4)
@@ -190,7 +190,7 @@ def test_dampers_that_vanish_at_rest_do_not_make_it_stable(sign: str) -> None:
         assert found.stability is not None
         verdicts.append(found.stability.verdict)
     assert verdicts == ["stable", "undecided"]
-    motion = simulate(model, [0.3, 0], (0, 50), count=2)
+    motion = simulate(model, [0.3, 0], (0, 50), outputs=Outputs(count=2))
     assert (motion.series["energy"][-1] > motion.series["energy"][0]) == (sign == "")
 
 

@@ -9,11 +9,12 @@ import numpy as np
 import pytest
 import scipy
 from random_trees import Plain, tree_of
+from simulated import simulated
 
 from substructures import Definition, InvalidArgument, InvalidDocument, Model, couple, derive
 from substructures.analysis.motion import loaded_friction
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import FixedStep
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
 from substructures.quantities.reactions import ReactionModel, reactions
@@ -34,7 +35,7 @@ def built(bodies: list[Plain], gravity: tuple[float, float, float], **parameters
 
 
 def loaded(pair: tuple[Model, ReactionModel], *start: Any, **given: Any) -> Trajectory:
-    return simulate(pair[0], *start, friction="loaded", bearings=pair[1], **given)
+    return simulated(pair[0], *start, friction="loaded", bearings=pair[1], **given)
 
 
 def block(angle: float, coulomb: float = 0, **load: Any) -> tuple[Model, ReactionModel]:
@@ -166,7 +167,7 @@ def test_what_it_does_not_go_with() -> None:
             loaded(pair, [0], (0, 1), **given)
         assert caught.value.faults[0].code == "not-supported"
     with pytest.raises(InvalidArgument, match="bearings"):
-        simulate(pair[0], [0], (0, 1), friction="loaded")
+        simulated(pair[0], [0], (0, 1), friction="loaded")
     plain = built(
         [{"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "x"}}], (0, 0, 0)
     )

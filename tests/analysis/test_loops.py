@@ -12,7 +12,7 @@ from random_trees import Plain
 
 from substructures import Definition, InvalidInput, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import Table, simulate
+from substructures.analysis.simulate import ClosedMotion, Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -230,7 +230,7 @@ def test_a_force_on_a_coordinate_whose_velocity_occurs_nowhere() -> None:
     model = tree_model({"instances": [{"name": "x", "substructure": "p"}]}, {"p": part})
     np.testing.assert_allclose(loop_state(model, [0.0], t=2).qdd, [3], rtol=1e-14)
     # s = t^2: the drive adds 2 s'' - 3 t, and both together do the work T = 2 (2 t)^2 / 2
-    motion = simulate(model, [0.0], (0, 1), prescribed={"x.s": "t^2"})
+    motion = simulate(model, [0.0], (0, 1), kind=ClosedMotion(prescribed={"x.s": "t^2"}))
     assert motion.is_right
     np.testing.assert_allclose(motion.series["actuation"][:, 0], 4 - 3 * motion.t, atol=1e-9)
     np.testing.assert_allclose(motion.series["work"], 4 * motion.t**2, atol=1e-9)

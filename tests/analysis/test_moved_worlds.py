@@ -13,9 +13,11 @@ from closed_trees import tree_model
 from in_depth import deep
 from moved_worlds import motions, moved
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import Model, equilibria, evaluate, linearise, simulate
 from substructures.analysis.closed.loops import loop_state
+from substructures.analysis.simulate import ClosedMotion, Outputs
 from substructures.mechanics.closure_rows import RowBounds, row_sizes
 
 INERTIA = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
@@ -128,10 +130,10 @@ def test_what_moves_and_what_holds(name: str) -> None:
 )
 def test_motions(name: str, reduction: Any) -> None:
     here, others, q = pairs(name)
-    expected = simulate(here, q, (0, 0.1), count=3, reduction=reduction)
+    expected = simulate(here, q, (0, 0.1), kind=ClosedMotion(reduction=reduction), outputs=Outputs(count=3))
     assert expected.is_right, expected.message
     for model in others:
-        found = simulate(model, q, (0, 0.1), count=3, reduction=reduction)
+        found = simulate(model, q, (0, 0.1), kind=ClosedMotion(reduction=reduction), outputs=Outputs(count=3))
         assert found.is_right, found.message
         np.testing.assert_allclose(found.q, expected.q, atol=1e-8)
 
@@ -144,7 +146,7 @@ def test_motions_with_given_cranks_and_with_friction(name: str) -> None:
     rough = definitions | {"a": part | {"bodies": [first | {"joint": first["joint"] | FRICTION}, *part["bodies"][1:]]}}
     for request in ({"prescribed": {"on_a.a": "0.7+3*t"}}, {"friction": "exact"}):
         worlds = [document, *(moved(document, motion) for motion in motions(4, 1))]
-        runs = [simulate(tree_model(world, rough), q, (0, 0.1), count=3, **request) for world in worlds]
+        runs = [simulated(tree_model(world, rough), q, (0, 0.1), count=3, **request) for world in worlds]
         for found in runs:
             assert found.is_right, found.message
             np.testing.assert_allclose(found.q, runs[0].q, atol=1e-8)
@@ -183,7 +185,7 @@ def test_a_slider_crank_falls_however_its_mounting_is_written(angle: Any) -> Non
     found = loop_state(model, SLIDER)
     assert (found.mobility.rank, found.mobility.degrees_of_freedom, found.mobility.dependent) == (2, 1, ("c.z",))
     np.testing.assert_allclose(found.qdd, [-7.84306, 9.70002, 2.05385], atol=1e-5)
-    motion = simulate(model, SLIDER, (0, 0.1), count=2)
+    motion = simulate(model, SLIDER, (0, 0.1), outputs=Outputs(count=2))
     assert motion.is_right
     np.testing.assert_allclose(motion.q[-1], [0.970282, -1.321209, 0.704699], atol=1e-6)
 

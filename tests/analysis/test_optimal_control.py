@@ -12,6 +12,7 @@ from random_trees import Plain, model_of
 from scipy.integrate import solve_ivp
 
 from substructures import InvalidInput, Model
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.nonlinear_program import Demands, End, ShootingProgram
 from substructures.analysis.control.optimal_control import Optimum, optimal_control
 from substructures.analysis.control.problem import ControlProblem, Cost
@@ -39,7 +40,7 @@ REST: Plain = {
 @pytest.mark.parametrize("segments", [1, 3])
 def test_from_rest_to_rest(segments: int) -> None:
     """u = 6 m (T - 2 t) / T^3 and J = 12 m^2 / T^3, to rounding, since u is linear and l of degree two."""
-    found = optimal_control(slider(), **REST | {"segments": segments, "tolerance": 1e-14})
+    found = optimal_control(slider(), **control_arguments(**REST | {"segments": segments, "tolerance": 1e-14}))
     t = np.linspace(0, 1.5, 7)
     assert found.status == "optimal"
     np.testing.assert_allclose(found.controls[:, 0], 12 * (1.5 - 2 * t) / 1.5**3, atol=1e-6)
@@ -55,11 +56,13 @@ def test_from_rest_to_rest(segments: int) -> None:
 def test_bounds_and_free_ends() -> None:
     """As far as possible in one second with |u| <= 3: u = 3 throughout, q = u T^2 / (2 m); without demands L-BFGS-B."""
     free = REST | {"cost": Cost(terminal="-x.s"), "end": End(), "bounds": {"tau.x.s": [None, 3]}, "horizon": 1}
-    found = optimal_control(slider(), **free | {"segments": 1, "hold": "constant"})
+    found = optimal_control(slider(), **control_arguments(**free | {"segments": 1, "hold": "constant"}))
     assert found.status == "optimal"
     assert found.cost == pytest.approx(-0.75)
     np.testing.assert_allclose(found.controls, 3)
-    kept = optimal_control(slider(), **free | {"end": End(qd={"x.s": 0}), "bounds": {"tau.x.s": [-3, 3]}})
+    kept = optimal_control(
+        slider(), **control_arguments(**free | {"end": End(qd={"x.s": 0}), "bounds": {"tau.x.s": [-3, 3]}})
+    )
     assert kept.status == "optimal"
     assert kept.cost == pytest.approx(-0.75 / 2 * (1 - 1 / 27), rel=1e-2)
     assert np.abs(kept.controls).max() <= 3 + 1e-12
@@ -79,7 +82,7 @@ SWING_UP: Plain = {
 
 @cache
 def swing_up(intervals: int = 40) -> Optimum:
-    return optimal_control(shipped("cart-pendulum"), **SWING_UP | {"intervals": intervals})
+    return optimal_control(shipped("cart-pendulum"), **control_arguments(**SWING_UP | {"intervals": intervals}))
 
 
 # takes seconds: a whole optimisation, of which each step is a motion and its adjoint
@@ -133,7 +136,7 @@ def test_acrobot() -> None:
         "bounds": {"tau.x.q2": [-40, 40]},
         "segments": 12,
     }
-    found = optimal_control(shipped("acrobot"), **request)
+    found = optimal_control(shipped("acrobot"), **control_arguments(**request))
     assert found.status == "optimal"
     assert found.violation < 1e-6
 
@@ -174,19 +177,22 @@ def test_jacobian_against_finite_differences() -> None:
 )
 def test_refusals(change: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidInput) as error:
-        optimal_control(slider(), **REST | change)
+        optimal_control(slider(), **control_arguments(**REST | change))
     assert [(f.pointer, f.code) for f in error.value.faults] == [(pointer, code)]
 
 
 def test_failures_are_values() -> None:
     """Too weak to arrive; too few iterations."""
-    weak = optimal_control(slider(), **REST | {"bounds": {"tau.x.s": [-0.1, 0.1]}, "iterations": 50})
+    weak = optimal_control(
+        slider(), **control_arguments(**REST | {"bounds": {"tau.x.s": [-0.1, 0.1]}, "iterations": 50})
+    )
     assert weak.status == "failed"
     assert "bounds" in weak.message
     assert not weak.trajectory.is_right
     seen: list[int] = []
     few = optimal_control(
-        shipped("cart-pendulum"), **SWING_UP | {"iterations": 2}, progress=lambda k, *_: seen.append(k)
+        shipped("cart-pendulum"),
+        **control_arguments(**SWING_UP | {"iterations": 2}, progress=lambda k, *_: seen.append(k)),
     )
     assert seen == [1, 2]
     assert few.status == "failed"

@@ -6,10 +6,11 @@ import numpy as np
 import pytest
 from analysis_models import catalogue_model, defaults, random_model, values_at
 from random_trees import Plain, model_of, random_states
+from simulated import simulated
 
 from substructures import InvalidInput
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, sensitivity_formulas
-from substructures.analysis.simulate import simulate
 from substructures.expr.interpret import interpret
 
 FINE: Plain = {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-13}
@@ -40,7 +41,7 @@ def test_an_oscillator_by_its_stiffness_and_start() -> None:
     slide = {"type": "prismatic", "coordinate": "s", "stiffness": "k"}
     body = {"name": "b", "parent": "base", "joint": slide, "mass": 1}
     model = model_of({"name": "a", "bodies": [body], "parameters": {"k": {"value": 4}}}, (0, 0, 0))
-    found = sensitivities(model, [1], (0, 3), **FINE, by=["k"], of_start=True)
+    found = sensitivities(model, [1], (0, 3), **sensitivity_arguments(**FINE, by=["k"], of_start=True))
     t = found.t
     np.testing.assert_allclose(found.q[:, 0], np.cos(2 * t), atol=1e-10)
     np.testing.assert_allclose(found.series["d.k"][:, 0], -t * np.sin(2 * t) / 4, atol=1e-10)
@@ -54,7 +55,7 @@ def test_a_force_that_depends_on_time() -> None:
     loads = [{"type": "joint", "coordinate": "s", "force": "p*cos(t)"}]
     model = model_of({"name": "a", "bodies": [body], "loads": loads, "parameters": {"p": {"value": 2}}}, (0, 0, 0))
     name = next(iter(model.parameters))
-    found = sensitivities(model, [0], (0, 2), [name], count=5, **FINE)
+    found = sensitivities(model, [0], (0, 2), [name], **sensitivity_arguments(count=5, **FINE))
     np.testing.assert_allclose(found.series[f"d.{name}"][:, 0], 1 - np.cos(found.t), atol=1e-10)
 
 
@@ -63,11 +64,11 @@ def test_a_driven_machine_against_differences() -> None:
     names = list(model.parameters)[:3]
     request: Plain = {"q": [0.1, 0.4], "span": [0, 1], "count": 3, **FINE}
     request["inputs"] = {f"tau.{model.coordinates[0]}": "sin(4*t)/100"}
-    found = sensitivities(model, **request, by=names)
+    found = sensitivities(model, **sensitivity_arguments(**request, by=names))
     for name in names:
         value = defaults(model)[name]
         h = 1e-5 * max(abs(value), 1e-2)
-        ends = [simulate(model, **request, parameters={name: value + s}) for s in (h, -h)]
+        ends = [simulated(model, **request, parameters={name: value + s}) for s in (h, -h)]
         slope = (np.hstack([ends[0].q, ends[0].qd]) - np.hstack([ends[1].q, ends[1].qd])) / (2 * h)
         scale = np.abs(slope).max()
         np.testing.assert_allclose(found.series[f"d.{name}"], slope, rtol=0, atol=1e-4 * scale)
@@ -82,10 +83,10 @@ def test_what_is_refused() -> None:
     with pytest.raises(InvalidInput, match="unknown quantity"):
         sensitivity_formulas(model, ["x.m1"], ["mass"])
     with pytest.raises(InvalidInput, match="depend on t only"):
-        sensitivities(model, **base, inputs={"tau.x.q1": "x.q2"}, by=["x.m1"])
+        sensitivities(model, **sensitivity_arguments(**base, inputs={"tau.x.q1": "x.q2"}, by=["x.m1"]))
     with pytest.raises(InvalidInput) as error:
-        sensitivities(model, **base, method="Taylor", by=["x.m1"])
+        sensitivities(model, **sensitivity_arguments(**base, method="Taylor", by=["x.m1"]))
     assert [(f.pointer, f.code) for f in error.value.faults] == [("/method", "not-supported")]
     with pytest.raises(InvalidInput, match="unknown parameter") as error:
-        sensitivities(model, **base, by=["x.m1", "x.m9"])
+        sensitivities(model, **sensitivity_arguments(**base, by=["x.m1", "x.m9"]))
     assert error.value.faults[0].pointer == "/by/1"

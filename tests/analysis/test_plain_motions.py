@@ -19,13 +19,15 @@ from independent import value as read
 from plain_constraints import constraint_rows, random_closures, random_constraints
 from random_trees import Kind, Plain
 from scipy.optimize import brentq
+from simulated import simulated
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
-from substructures.analysis.simulate import Event, simulate
+from substructures.analysis.simulate import Event
 
 SPAN, FINE = 0.15, {"relative_tolerance": 1e-11, "absolute_tolerance": 1e-12}
 
@@ -89,7 +91,7 @@ def test_trees_and_taylor(seed: int) -> None:
         if method == "Taylor":
             pytest.importorskip("heyoka", reason="heyoka is in the test extra")
         request: Plain = {"qd": case.qd, "inputs": inputs, "count": 3, "events": [event], "method": method}
-        agrees(simulate(case.model, case.q, (0.3, 0.3 + SPAN), **request, **FINE), expected, crossings)
+        agrees(simulated(case.model, case.q, (0.3, 0.3 + SPAN), **request, **FINE), expected, crossings)
 
 
 def closed_case(seed: int) -> Case:
@@ -110,7 +112,7 @@ def test_closed_trees(seed: int) -> None:
     event, crossings = event_of(case, expected)
     for reduction in METHODS:
         request: Plain = {"qd": case.qd, "inputs": inputs, "count": 3, "events": [event], "reduction": reduction}
-        agrees(simulate(case.model, case.q, (0.3, 0.3 + SPAN), **request, **FINE), expected, crossings)
+        agrees(simulated(case.model, case.q, (0.3, 0.3 + SPAN), **request, **FINE), expected, crossings)
 
 
 @pytest.mark.parametrize("seed", seeds(3, 20))
@@ -143,7 +145,7 @@ def test_constraints_on_velocities(seed: int) -> None:
     event, crossings = event_of(case, expected)
     for form in ("voronets", "boltzmann-hamel"):
         request: Plain = {"qd": case.qd, "inputs": inputs, "count": 3, "events": [event], "form": form}
-        motion = simulate(case.model, case.q, (0.3, 0.3 + SPAN), constraints=constraints, **request, **FINE)
+        motion = simulated(case.model, case.q, (0.3, 0.3 + SPAN), constraints=constraints, **request, **FINE)
         agrees(motion, expected, crossings)
 
 
@@ -199,13 +201,17 @@ def test_costs_gradients_and_optimal_controls(seed: int) -> None:
     request |= {"q": case.q, "qd": case.qd, "cost": Cost(model_running, f"x.{last}'^2")}
     request["inputs"] = {k: v for k, v in case.inputs.items() if k not in names}
     u = np.random.default_rng(seed).uniform(-1, 1, (4 - seed % 2, n))
-    found = cost_gradient(case.model, **request, values={name: u[:, i] for i, name in enumerate(names)})
+    found = cost_gradient(
+        case.model, **control_arguments(**request, values={name: u[:, i] for i, name in enumerate(names)})
+    )
     states, cost = rollout(case, u, hold, running, terminal)
     np.testing.assert_allclose(np.hstack([found.trajectory.q, found.trajectory.qd]), states, rtol=0, atol=1e-11)
     assert found.cost == pytest.approx(cost, rel=1e-11)
     gradient = slope(lambda w: rollout(case, w, hold, running, terminal)[1], u)
     np.testing.assert_allclose(found.controls.ravel(), gradient, rtol=0, atol=1e-7 * np.abs(gradient).max())
-    best = optimal_control(case.model, **request, end=End(case.q + 0.3, [0.0] * n), tolerance=1e-12, segments=3)
+    best = optimal_control(
+        case.model, **control_arguments(**request, end=End(case.q + 0.3, [0.0] * n), tolerance=1e-12, segments=3)
+    )
     assert best.status == "optimal"
 
     def ends(w: Any) -> Any:

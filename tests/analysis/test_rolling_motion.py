@@ -9,10 +9,21 @@ import pytest
 from random_trees import Plain
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
 from scipy.integrate import solve_ivp
+from simulated import simulated
 
 from substructures import InvalidArgument, InvalidInput
-from substructures.analysis.motion.rolling import FORMS
-from substructures.analysis.simulate import Closed, Event, KnifeEdge, Linear, Rolling, Table, simulate
+from substructures.analysis.motion.reduced_motion import FORMS
+from substructures.analysis.simulate import (
+    Closed,
+    ConstrainedMotion,
+    Event,
+    KnifeEdge,
+    Linear,
+    Outputs,
+    Rolling,
+    Table,
+    simulate,
+)
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -23,7 +34,7 @@ def test_skate_on_an_inclined_plane(form: str) -> None:
     slope, w = 9.81 * 0.28, 1.7
     model = sleigh((slope, 0, -9.81 * 0.96))
     request = {"constraints": [BLADE], "velocities": FORWARD, "parameters": {"s.a": 0}, "q": [0, 0, 0], "v": {"w": w}}
-    motion = simulate(model, **request, span=(0, 5), form=form)
+    motion = simulated(model, **request, span=(0, 5), form=form)
     assert motion.status == "finished"
     assert motion.is_right, motion.checks
     wt = w * motion.t
@@ -37,17 +48,17 @@ def test_rolling_disc_in_steady_motion_and_beyond() -> None:
     mr2 = M * R**2
     w3 = (A * dpsi**2 * np.sin(th) * np.cos(th) - M * 9.81 * R * np.cos(th)) / ((C + mr2) * dpsi * np.sin(th))
     request: Plain = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(th), 0.2, th, 0], "span": [0, 3]}
-    steady = simulate(disc(), **request, v=[dpsi, 0, w3 - dpsi * np.cos(th)])
+    steady = simulated(disc(), **request, v=[dpsi, 0, w3 - dpsi * np.cos(th)])
     assert steady.is_right
     np.testing.assert_allclose(steady.q[:, 4], th, atol=1e-9)
     # the centre goes along a circle of radius r |w3 / psi'|
     period = 2 * np.pi / dpsi
     whole = steady.q[steady.t <= period][:, :2]
     np.testing.assert_allclose(np.ptp(whole[:, 0]) / 2, R * abs(w3 / dpsi), rtol=5e-3)
-    wild = simulate(disc(), **request, v={"s.psi'": 1.0, "s.th'": 0.5, "s.ph'": 6.0})
+    wild = simulated(disc(), **request, v={"s.psi'": 1.0, "s.th'": 0.5, "s.ph'": 6.0})
     assert (wild.status, [c.holds for c in wild.checks]) == ("finished", [True] * 4)
     assert np.ptp(wild.q[:, 4]) > 0.1
-    again = simulate(disc(), **request, qd=wild.qd[0], form="boltzmann-hamel")
+    again = simulated(disc(), **request, qd=wild.qd[0], form="boltzmann-hamel")
     np.testing.assert_allclose(again.q[-1], wild.q[-1], atol=1e-8)
 
 
@@ -61,7 +72,9 @@ def test_sphere_on_an_inclined_plane() -> None:
     tilt = 0.35
     normal = [round(float(np.sin(tilt)), 12), 0, round(float(np.cos(tilt)), 12)]
     floor = Rolling("slope", "s.ball", "s.r", shape="sphere", normal=normal)
-    motion = simulate(model, [0, 0, 0, 0, 0, 0], (0, 0.5), constraints=[floor], count=11)
+    motion = simulate(
+        model, [0, 0, 0, 0, 0, 0], (0, 0.5), kind=ConstrainedMotion(constraints=[floor]), outputs=Outputs(count=11)
+    )
     assert motion.is_right
     down = motion.q[:, 0] * np.cos(tilt) - motion.q[:, 2] * np.sin(tilt)
     np.testing.assert_allclose(down, 5 / 14 * 9.81 * np.sin(tilt) * motion.t**2, atol=1e-10)
@@ -69,8 +82,8 @@ def test_sphere_on_an_inclined_plane() -> None:
 
 def test_other_quasi_velocities_describe_the_same_motion() -> None:
     request: Plain = {"constraints": [BLADE], "q": [0, 0, 0.4], "span": [0, 0.8], "inputs": {"tau.s.f": "sin(t)"}}
-    one = simulate(sleigh(), **request, velocities=FORWARD, v={"u": 1.0, "w": 0.5})
-    two = simulate(sleigh(), **request, independent=["s.x", "s.f"], qd=one.qd[0])
+    one = simulated(sleigh(), **request, velocities=FORWARD, v={"u": 1.0, "w": 0.5})
+    two = simulated(sleigh(), **request, independent=["s.x", "s.f"], qd=one.qd[0])
     assert one.is_right
     assert two.is_right
     np.testing.assert_allclose(two.q, one.q, atol=1e-8)
@@ -83,7 +96,7 @@ def test_rolling_motions_have_events_series_and_inputs_of_all_kinds() -> None:
     request: Plain = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0], "v": {"u": 0.1}, "span": [0, 9]}
     request |= {"inputs": {"tau.s.x": "-s.x'/2", "tau.s.f": push}, "series": {"speed": "sqrt(s.x'^2 + s.y'^2)"}}
     event = Event("turned", "s.f", level=0.4)
-    motion = simulate(sleigh(), **request, events=[event])
+    motion = simulated(sleigh(), **request, events=[event])
     assert (motion.status, [e.name for e in motion.events]) == ("stopped", ["turned"])
     assert motion.is_right, motion.checks
     np.testing.assert_allclose(motion.q[-1, 2], 0.4, atol=1e-10)
@@ -99,31 +112,31 @@ def test_a_force_that_depends_on_time() -> None:
     loads = [{"type": "joint", "coordinate": "a", "force": "cos(t)"}]
     model = single({"name": "two", "bodies": slides, "loads": loads}, [0, 0, 0])
     tied = [Linear("tie", "s.a' - s.b'")]
-    motion = simulate(model, [0, 0], (0, 2), constraints=tied, count=5)
+    motion = simulate(model, [0, 0], (0, 2), kind=ConstrainedMotion(constraints=tied), outputs=Outputs(count=5))
     np.testing.assert_allclose(motion.q, np.outer((1 - np.cos(motion.t)) / 2, [1, 1]), atol=1e-9)
     assert motion.is_right
 
 
 def test_a_span_that_cannot_be_finished_fails_with_advice() -> None:
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 100]}
-    motion = simulate(sleigh(), **request, max_steps=10)
+    motion = simulated(sleigh(), **request, max_steps=10)
     assert (motion.status, motion.steps) == ("failed", 10)
     assert "max_steps" in motion.message
     assert 0 < motion.t[-1] < 100
-    assert simulate(sleigh(), **request, progress=lambda share: share < 0.1).status == "stopped"
+    assert simulated(sleigh(), **request, progress=lambda share: share < 0.1).status == "stopped"
 
 
 def test_constraints_that_leave_no_velocity_free() -> None:
     """The sleigh held by three rows rests where it is."""
     held = [Linear(name, f"s.{name}'") for name in ("x", "y", "f")]
-    motion = simulate(sleigh(), [0.1, 0.2, 0.3], (0, 1), constraints=held)
+    motion = simulate(sleigh(), [0.1, 0.2, 0.3], (0, 1), kind=ConstrainedMotion(constraints=held))
     assert (motion.status, motion.is_right) == ("finished", True)
     np.testing.assert_array_equal(motion.q[-1], [0.1, 0.2, 0.3])
 
 
 def test_nothing_that_has_mass() -> None:
     request = {"constraints": [BLADE], "velocities": FORWARD, "q": [0, 0, 0.4], "v": [0.5, 1.0], "span": [0, 1]}
-    motion = simulate(sleigh(), **request, parameters={"s.m": 0, "s.I": 0})
+    motion = simulated(sleigh(), **request, parameters={"s.m": 0, "s.I": 0})
     assert (motion.status, len(motion.t)) == ("failed", 1)
     assert "check masses" in motion.message
 
@@ -131,7 +144,7 @@ def test_nothing_that_has_mass() -> None:
 def test_a_disc_that_falls_flat() -> None:
     """Its contact is not determined any more; that is said, or the checks say that the numbers are wrong."""
     request = {"constraints": [FLOOR], "q": [0, 0, R * np.sin(1.0), 0, 1.0, 0], "v": [0, 0, 0], "span": [0, 2]}
-    motion = simulate(disc(), **request, max_steps=5000)
+    motion = simulated(disc(), **request, max_steps=5000)
     assert motion.status == "failed" or not motion.is_right
 
 
@@ -176,7 +189,7 @@ BAD: list[tuple[Plain, str, str]] = [
 @pytest.mark.parametrize(("change", "pointer", "code"), BAD)
 def test_bad_arguments(change: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidInput) as caught:
-        simulate(SLEIGH, **{"constraints": [BLADE], "q": [0, 0, 0], "span": [0, 1]} | change)
+        simulated(SLEIGH, **{"constraints": [BLADE], "q": [0, 0, 0], "span": [0, 1]} | change)
     assert [(f.pointer, f.code) for f in caught.value.faults] == [(pointer, code)]
 
 
@@ -187,7 +200,13 @@ def test_reactions_are_not_known() -> None:
     """A constraint may be one of coordinates."""
     transmitted: Any = object()
     with pytest.raises(InvalidArgument, match="does not say where on which body"):
-        simulate(sleigh(), [0, 0, 0], (0, 1), constraints=[BLADE], reactions=transmitted)
+        simulate(
+            sleigh(),
+            [0, 0, 0],
+            (0, 1),
+            kind=ConstrainedMotion(constraints=[BLADE]),
+            outputs=Outputs(reactions=transmitted),
+        )
 
 
 TORQUE = 1.0
@@ -200,7 +219,7 @@ def turning_sleigh(**request: Any) -> Any:
     body = {"name": "b", "parent": "base", "joint": joint, "mass": 2, "com": [0.4, 0, 0], "inertia": inertia}
     model = single({"name": "sleigh", "bodies": [body]}, [0, 0, -9.81])
     common: Plain = {"constraints": [KnifeEdge("k", "s.b")], "inputs": {"tau.s.h": TORQUE}, "count": 7}
-    return simulate(model, [0, 0, 0], (0, 30), **common, **request)
+    return simulated(model, [0, 0, 0], (0, 30), **common, **request)
 
 
 @pytest.mark.parametrize("method", ["DOP853", "Radau", "LSODA"])

@@ -11,11 +11,12 @@ from analysis_models import FINE, PERIOD, catalogue_model, defaults, oscillator,
 from exported_models import derived_anew
 from in_depth import seeds
 from random_trees import model_of, random_states
+from simulated import simulated
 
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_kernel
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv, to_npz
-from substructures.analysis.simulate import Event, FixedStep, Table, simulate
+from substructures.analysis.simulate import Event, FixedStep, Outputs, Table, simulate
 from substructures.quantities.evaluation import evaluate
 
 
@@ -51,7 +52,7 @@ def test_period_of_the_simple_pendulum(method: str) -> None:
     event = Event("turn", "x.q1'", direction="falling", action="stop")
     fine = FINE if method == "DOP853" else {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12}
     request = {"q": [np.pi / 2 - 1e-15], "span": [0, 3], "events": [event], "method": method, **fine}
-    motion = simulate(catalogue_model("simple-pendulum"), **request)
+    motion = simulated(catalogue_model("simple-pendulum"), **request)
     assert motion.status == "stopped"
     assert motion.events[0].t == pytest.approx(PERIOD, abs=1e-9)
     assert motion.t[-1] == motion.events[0].t
@@ -61,7 +62,7 @@ def test_period_of_the_simple_pendulum(method: str) -> None:
 def test_puma_560_keeps_its_energy() -> None:
     """Free motion for 100 s; the vertical moment of momentum is constant, too."""
     request = {"q": [0.1, 0.2, 0.3, 0.4, 0.5, 0.6], "qd": [0.5] * 6, "span": [0, 100], "count": 2, **FINE}
-    motion = simulate(catalogue_model("puma560"), **request)
+    motion = simulated(catalogue_model("puma560"), **request)
     assert motion.status == "finished"
     assert motion.is_right
     drifts = {check.name: check.relative for check in motion.checks}
@@ -74,7 +75,7 @@ def test_puma_560_keeps_its_energy() -> None:
 
 def test_a_free_body_keeps_all_six_momenta() -> None:
     request = {"q": [0] * 6, "qd": [0.3, -0.2, 0.1, 0.4, 0.2, 0.5], "span": [0, 5], **FINE}
-    motion = simulate(catalogue_model("free-body", (0, 0, 0)), **request)
+    motion = simulated(catalogue_model("free-body", (0, 0, 0)), **request)
     kinds = {f"{kind}_momentum.{axis}" for kind in ("linear", "angular") for axis in "xyz"}
     assert {"energy", *kinds} <= names(motion)
     assert max(check.relative for check in motion.checks) < 1e-11
@@ -89,14 +90,14 @@ def test_balance_of_energy_on_random_trees(number: int) -> None:
     request = {"q": [0.1] * model.dof, "span": [0, 0.4], "inputs": inputs, **FINE}
     if "x.u1" in inputs:
         inputs["x.u1"] = Table([0, 0.5, 1], [0, 1, -1], "cubic")
-    motion = simulate(model, **request)
+    motion = simulated(model, **request)
     assert motion.status == "finished", motion.message
     assert names(motion) & {"energy", "energy-balance"}
     assert max(check.relative for check in motion.checks) < 1e-9, motion.checks
 
 
 def test_energy_falls_with_dampers() -> None:
-    motion = simulate(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), [1], (0, 10), **FINE)
+    motion = simulated(model_of(oscillator(stiffness=4, damping=0.5), (0, 0, 0)), [1], (0, 10), **FINE)
     falling = next(check for check in motion.checks if check.rule == "falling")
     assert falling.holds
     assert motion.series["energy"][-1] < 0.01 * motion.series["energy"][0]
@@ -109,7 +110,7 @@ def test_energy_falls_with_dampers() -> None:
 def test_a_coarse_motion_is_marked_wrong() -> None:
     """The first time and the size of the violation are told."""
     request = {"q": [0.1] * 6, "qd": [1] * 6, "span": [0, 5], "relative_tolerance": 1e-2, "absolute_tolerance": 1e-2}
-    motion = simulate(catalogue_model("puma560"), **request)
+    motion = simulated(catalogue_model("puma560"), **request)
     assert motion.status == "finished"
     assert not motion.is_right
     energy = next(check for check in motion.checks if check.name == "energy")
@@ -128,7 +129,7 @@ def test_rounding_is_no_violation() -> None:
 def test_outputs_do_not_depend_on_their_number() -> None:
     model = catalogue_model("double-pendulum")
     base = {"q": [1, 0.5], "span": [0, 2], **FINE}
-    many, few = simulate(model, **base, step=0.01), simulate(model, **base, times=[0.5, 2])
+    many, few = simulated(model, **base, step=0.01), simulated(model, **base, times=[0.5, 2])
     assert len(many.t) == 201
     np.testing.assert_allclose(many.q[[50, 200]], few.q, atol=1e-11)
 
@@ -138,9 +139,9 @@ def test_order_of_fixed_steps(method: str, order: int) -> None:
     """Halving the step divides the error by 2^order; the real-time factor is told."""
     model = catalogue_model("double-pendulum")
     base = {"q": [1, 0.5], "span": [0, 1], "count": 2, "drift_limit": 1}
-    exact = simulate(model, **base | FINE).q[-1]
+    exact = simulated(model, **base | FINE).q[-1]
     steps = [0.02, 0.01] if order == 4 else [2e-3, 1e-3]
-    runs = [simulate(model, **base, fixed_step=FixedStep(h, method)) for h in steps]
+    runs = [simulated(model, **base, fixed_step=FixedStep(h, method)) for h in steps]
     errors = [np.abs(run.q[-1] - exact).max() for run in runs]
     assert np.log2(errors[0] / errors[1]) == pytest.approx(order, abs=0.3)
     assert runs[0].figures["real_time_factor"] > 0
@@ -150,19 +151,19 @@ def test_order_of_fixed_steps(method: str, order: int) -> None:
 
 @pytest.mark.parametrize(("step", "times"), [(0.25, [2, 2.25, 2.5, 2.75, 3]), (0.4, [2, 2.4, 2.8, 3])])
 def test_results_at_steps_from_the_start_and_at_the_end(step: float, times: list[float]) -> None:
-    motion = simulate(model_of(oscillator(stiffness=4), (0, 0, 0)), [1], (2, 3), step=step)
+    motion = simulate(model_of(oscillator(stiffness=4), (0, 0, 0)), [1], (2, 3), outputs=Outputs(step=step))
     assert motion.t.tolist() == pytest.approx(times)
 
 
 def test_outputs_between_fixed_steps() -> None:
     model = model_of(oscillator(stiffness=4), (0, 0, 0))
     request = {"q": [1], "span": [0, 1], "times": [0.33333, 1], "fixed_step": FixedStep(0.01)}
-    np.testing.assert_allclose(simulate(model, **request).q[:, 0], np.cos([0.66666, 2]), atol=1e-7)
+    np.testing.assert_allclose(simulated(model, **request).q[:, 0], np.cos([0.66666, 2]), atol=1e-7)
 
 
 def test_followed_quantities_and_files() -> None:
     model = catalogue_model("double-pendulum")
-    motion = simulate(model, [1, 0.5], (0, 1), count=5, series={"sum": "x.q1 + x.q2"})
+    motion = simulate(model, [1, 0.5], (0, 1), outputs=Outputs(count=5, series={"sum": "x.q1 + x.q2"}))
     np.testing.assert_allclose(motion.series["sum"], motion.q.sum(axis=1))
     with np.load(io.BytesIO(to_npz(motion)), allow_pickle=False) as stored:
         assert tuple(stored["coordinates"]) == model.coordinates
@@ -175,7 +176,7 @@ def test_followed_quantities_and_files() -> None:
 
 
 def test_results_say_in_two_lines_what_they_are() -> None:
-    motion = simulate(catalogue_model("simple-pendulum"), [1], (0, 1), count=3)
+    motion = simulate(catalogue_model("simple-pendulum"), [1], (0, 1), outputs=Outputs(count=3))
     first, second = repr(motion).splitlines()
     assert first.startswith("Trajectory: 3 states of x.q1, t = 0 to 1 s, ")
     assert second == "is_right=True: 2 of 2 checks hold (energy constant, steps accurate); series: energy"

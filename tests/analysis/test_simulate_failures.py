@@ -10,9 +10,10 @@ import numpy as np
 import pytest
 from analysis_models import catalogue_model, oscillator
 from random_trees import Plain, model_of
+from simulated import simulated
 
 from substructures import InvalidArgument, InvalidInput, MissingValue
-from substructures.analysis.simulate import Event, FixedStep, Linear, Rolling, Table, simulate
+from substructures.analysis.simulate import Event, FixedStep, Integrator, Linear, Outputs, Rolling, Table, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 
@@ -20,10 +21,10 @@ from substructures.analysis.stability.linearise import linearise
 def test_progress_is_told_and_can_cancel() -> None:
     model = catalogue_model("double-pendulum")
     told: list[float] = []
-    simulate(model, [1, 0.5], (2, 5), progress=lambda share: told.append(share))
+    simulate(model, [1, 0.5], (2, 5), integrator=Integrator(progress=lambda share: told.append(share)))
     assert told[-1] == 1
     assert told == sorted(told)
-    motion = simulate(model, [1, 0.5], (0, 50), progress=lambda share: share < 0.1)
+    motion = simulate(model, [1, 0.5], (0, 50), integrator=Integrator(progress=lambda share: share < 0.1))
     assert motion.status == "stopped"
     assert "cancelled" in motion.message
 
@@ -32,7 +33,9 @@ def test_progress_is_told_and_can_cancel() -> None:
 def test_a_motion_that_cannot_go_on_fails_with_advice(method: str) -> None:
     """s'' = 1 + s'^2 goes to infinity at t = pi/2; the motion up to there is kept."""
     definition = oscillator() | {"loads": [{"type": "joint", "coordinate": "s", "force": "1 + s'^2"}]}
-    motion = simulate(model_of(definition, (0, 0, 0)), [0], (0, 2), step=0.1, method=method)
+    motion = simulate(
+        model_of(definition, (0, 0, 0)), [0], (0, 2), integrator=Integrator(method=method), outputs=Outputs(step=0.1)
+    )
     assert motion.status == "failed"
     assert "the integrator could not go on" in motion.message
     assert 10 <= len(motion.t) <= 17
@@ -53,7 +56,7 @@ def test_a_singular_start_fails_with_advice() -> None:
 
 
 def test_steps_are_limited() -> None:
-    motion = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 100), max_steps=20)
+    motion = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 100), integrator=Integrator(max_steps=20))
     assert motion.status == "failed"
     assert "max_steps" in motion.message
     assert motion.steps == 20
@@ -105,7 +108,7 @@ def test_steps_are_limited() -> None:
 )
 def test_faults_have_pointers(changes: Plain, pointer: str, code: str) -> None:
     with pytest.raises(InvalidInput) as error:
-        simulate(catalogue_model("double-pendulum"), **{"q": [0, 0], "span": [0, 1]} | changes)
+        simulated(catalogue_model("double-pendulum"), **{"q": [0, 0], "span": [0, 1]} | changes)
     assert (error.value.faults[0].pointer, error.value.faults[0].code) == (pointer, code)
 
 
@@ -136,7 +139,13 @@ def test_numbers_of_all_kinds_are_the_same() -> None:
     model = catalogue_model("double-pendulum")
     kinds: list[Any] = [0.25, np.float64(0.25), Decimal("0.25"), "0.25", "1/4"]
     ends = [
-        simulate(model, [1, 0.5], (0, 1), count=2, inputs={"tau.x.q1": x}, series={"same": x}, events=[Event("e", x)])
+        simulate(
+            model,
+            [1, 0.5],
+            (0, 1),
+            inputs={"tau.x.q1": x},
+            outputs=Outputs(count=2, series={"same": x}, events=[Event("e", x)]),
+        )
         for x in kinds
     ]
     for end in ends:

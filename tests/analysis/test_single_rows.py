@@ -8,13 +8,13 @@ from closed_motions import METHODS, right
 from closed_trees import parallelogram, slides
 
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import ClosedMotion, simulate
 
 
 @pytest.mark.parametrize("method", METHODS)
 def test_a_mass_on_a_rod_goes_round_with_constant_speed(method: str) -> None:
     """x = cos 2t, y = sin 2t, through the positions where x, then y, says nothing about the other."""
-    motion = simulate(slides(), [1, 0], (0, 4), qd=[0, 2], reduction=method)
+    motion = simulate(slides(), [1, 0], (0, 4), qd=[0, 2], kind=ClosedMotion(reduction=method))
     right(motion)
     expected = np.stack([np.cos(2 * motion.t), np.sin(2 * motion.t)], axis=1)
     np.testing.assert_allclose(motion.q, expected, atol=1e-8)
@@ -23,7 +23,7 @@ def test_a_mass_on_a_rod_goes_round_with_constant_speed(method: str) -> None:
 @pytest.mark.parametrize("method", METHODS)
 def test_the_dead_centre_of_a_parallelogram_is_not_passed(method: str) -> None:
     """Stretched out both derivatives of the rod's length are zero, and the cranks may go on in opposite directions."""
-    motion = simulate(parallelogram(), [-0.5, -0.5], (0, 1), qd=[2, 2], reduction=method)
+    motion = simulate(parallelogram(), [-0.5, -0.5], (0, 1), qd=[2, 2], kind=ClosedMotion(reduction=method))
     assert motion.status == "failed"
     assert "dead centre" in motion.message
     np.testing.assert_allclose(motion.t[-1], 0.25, atol=1e-3)

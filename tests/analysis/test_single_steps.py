@@ -12,22 +12,34 @@ from analysis_models import shipped
 from closed_trees import at, slider_crank
 from random_trees import Plain
 from rolling_bodies import FLOOR, R, disc
+from simulated import simulated
 
 from substructures.analysis.closed import simulation as closed
 from substructures.analysis.motion import fixed_step, integration, rolling, simulation, single_steps
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, FixedStep, Outputs, simulate
 
 CRANK = slider_crank()
 MOTIONS: dict[str, tuple[Any, Callable[[], Trajectory]]] = {
     "tree": (simulation, lambda: simulate(shipped("acrobot"), [1.2, 0], (0, 3))),
     "closed": (
         closed,
-        lambda: simulate(CRANK, at(CRANK, crank=0.3, piston=0.17), (0, 0.2), qd=at(CRANK, crank=20), fixed=["x.crank"]),
+        lambda: simulate(
+            CRANK,
+            at(CRANK, crank=0.3, piston=0.17),
+            (0, 0.2),
+            qd=at(CRANK, crank=20),
+            kind=ClosedMotion(fixed=["x.crank"]),
+        ),
     ),
     "rolling": (
         rolling,
-        lambda: simulate(disc(), [0, 0, R * np.sin(1.2), 0.2, 1.2, 0], (0, 2), constraints=[FLOOR], v=[1.0, 0.5, 6.0]),
+        lambda: simulate(
+            disc(),
+            [0, 0, R * np.sin(1.2), 0.2, 1.2, 0],
+            (0, 2),
+            kind=ConstrainedMotion(constraints=[FLOOR], v=[1.0, 0.5, 6.0]),
+        ),
     ),
 }
 
@@ -74,7 +86,7 @@ def test_steps_that_are_too_long(kind: str, monkeypatch: pytest.MonkeyPatch) -> 
 
 @pytest.mark.parametrize("count", [2, 101])
 def test_no_more_steps_are_told_of_than_there_are(count: int) -> None:
-    motion = simulate(shipped("simple-pendulum"), [0.5], (0, 0.1), count=count)
+    motion = simulate(shipped("simple-pendulum"), [0.5], (0, 0.1), outputs=Outputs(count=count))
     (check,) = (check for check in motion.checks if check.name == "steps")
     done, of, ways = map(int, re.findall(r"\d+", check.reason)[:3])
     assert f"{done} of the {of} steps, and {ways} ways from one to a result, done again" in check.reason
@@ -85,10 +97,10 @@ def test_no_more_steps_are_told_of_than_there_are(count: int) -> None:
 
 def test_steps_of_a_fixed_size_that_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     request: Plain = {"q": [0.5], "span": (0, 1), "fixed_step": FixedStep(0.001)}
-    assert simulate(shipped("simple-pendulum"), **request).is_right
+    assert simulated(shipped("simple-pendulum"), **request).is_right
     rk4 = fixed_step.rk4
     monkeypatch.setattr(fixed_step, "rk4", lambda f, t, x, h: rk4(f, t, x, 1.001 * h))
-    assert failed(simulate(shipped("simple-pendulum"), **request)) == ["steps"]
+    assert failed(simulated(shipped("simple-pendulum"), **request)) == ["steps"]
 
 
 def test_a_step_that_cannot_be_done_again(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -9,10 +9,11 @@ import pytest
 from closed_motions import METHODS, right
 from closed_trees import SQUEEZER, at, closed_entry, tree_model
 from random_trees import Plain
+from simulated import simulated
 
 from substructures import Model, catalogue
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import ClosedMotion, simulate
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers; IFToMM benchmark A03: start, and values at 0.03 s
 START = [-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550]
@@ -77,12 +78,12 @@ def test_andrews_squeezer(build: Any) -> None:
     expected = np.zeros(7)
     expected[:2] = 14222.4439199541138, -10666.8329399655854
     np.testing.assert_allclose(first.qdd, expected, rtol=1e-9, atol=1e-6)
-    motion = simulate(model, **request, q=start, span=(0, 0.03), count=4)
+    motion = simulated(model, **request, q=start, span=(0, 0.03), count=4)
     right(motion)
     np.testing.assert_allclose(motion.q[-1], end, rtol=1e-7)
 
 
 def test_both_methods_agree() -> None:
     model, _, start, _ = squeezer_in_one_piece()
-    ends = [simulate(model, start, (0, 0.01), reduction=method).q[-1] for method in METHODS]
+    ends = [simulate(model, start, (0, 0.01), kind=ClosedMotion(reduction=method)).q[-1] for method in METHODS]
     np.testing.assert_allclose(*ends, rtol=1e-8, atol=1e-10)

@@ -9,17 +9,18 @@ from closed_motions import METHODS
 from closed_trees import at, closed_entry, four_bar
 from random_trees import Plain
 from rolling_bodies import FLOOR, R, disc
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import FixedStep
 
 ACROBOT: Plain = {"q": [1.2, 0.4], "span": [0, 1]}
 
 
 def assert_same_drift(model: Model, request: Plain, count: int) -> tuple[Trajectory, Trajectory]:
     """With many results, and with those at the ends of the span only; the energy drifts about as far."""
-    many, few = (simulate(model, **request, count=k) for k in (count, 2))
+    many, few = (simulated(model, **request, count=k) for k in (count, 2))
     assert many.steps == few.steps
     one, two = (next(c for c in motion.checks if c.name == "energy") for motion in (many, few))
     assert one.worst <= 1.3 * two.worst + 2e-13 * one.scale
@@ -55,7 +56,7 @@ def test_rolling_motions() -> None:
 def test_many_states_of_a_step_are_those_of_few(method: str) -> None:
     """A polynomial through shorter steps against these steps themselves."""
     model = catalogue_model("acrobot")
-    many, few = (simulate(model, **ACROBOT, count=count, method=method) for count in (2401, 13))
+    many, few = (simulated(model, **ACROBOT, count=count, method=method) for count in (2401, 13))
     np.testing.assert_allclose(many.q[::200], few.q, atol=1e-11)
     np.testing.assert_allclose(many.qd[::200], few.qd, atol=1e-10)
 
@@ -67,7 +68,7 @@ def test_many_states_before_a_singular_position(reduction: str) -> None:
     flat = closed_entry("four-bar", [pin], l0=0.3, l1=0.2, l2=0.3, l3=0.2)
     request: Plain = {"q": at(flat, crank=0.5, coupler=-0.5, rocker=0.5), "qd": at(flat, crank=-2.0)}
     request |= {"fixed": ["x.crank"], "reduction": reduction, "span": [0, 1]}
-    motion = simulate(flat, **request, count=5001)
+    motion = simulated(flat, **request, count=5001)
     assert motion.status == "failed"
     assert motion.checks
     assert all(check.holds for check in motion.checks), motion.checks

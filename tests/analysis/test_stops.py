@@ -10,10 +10,11 @@ from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
 from substructures.analysis.control.cost_gradient import cost_gradient
-from substructures.analysis.control.problem import Cost
+from substructures.analysis.control.problem import ControlProblem, Cost
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
-from substructures.analysis.simulate import Event, simulate
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
+from substructures.analysis.simulate import ClosedMotion, Event, Integrator, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.quantities.evaluation import evaluate
 
@@ -38,7 +39,9 @@ def test_a_mass_bounces_back() -> None:
     """2 m/s onto a stop of 50 N/m: half a period pi sqrt(m/k) in contact, deepest at v sqrt(m/k)."""
     contact = np.pi * np.sqrt(2 / 50)
     events = [Event("top", "x.x'", action="record")]
-    motion = simulate(slide({"stiffness": 50}), [2.0], (0, 0.5 + contact + 0.3), qd=[2.0], count=2, events=events)
+    motion = simulate(
+        slide({"stiffness": 50}), [2.0], (0, 0.5 + contact + 0.3), qd=[2.0], outputs=Outputs(count=2, events=events)
+    )
     assert motion.is_right
     assert [c.rule for c in motion.checks] == ["constant", "accurate"]
     np.testing.assert_allclose(motion.q[-1], 3 - 2 * 0.3, atol=1e-7)
@@ -52,7 +55,9 @@ def test_how_high_a_ball_bounces() -> None:
     """
     k, c, speed = 400.0, 300.0, 1.5
     events = [Event("leaves", "x.x", 3, "falling", "stop")]
-    motion = simulate(slide({"stiffness": 400, "damping": 300}), [2.7], (0, 5), qd=[speed], events=events)
+    motion = simulate(
+        slide({"stiffness": 400, "damping": 300}), [2.7], (0, 5), qd=[speed], outputs=Outputs(events=events)
+    )
     assert motion.is_right, motion.checks
     out, b = -float(motion.qd[-1, 0]), c / k
 
@@ -72,7 +77,7 @@ def test_damping_takes_energy_and_never_feeds_it_in() -> None:
     model = slide({"stiffness": 500, "damping": 2000}, 9.81)
     (energy,) = (i for i in first_integrals(model).integrals if i.kind == "energy")
     assert energy.rule == "falling"
-    motion = simulate(model, [2.5], (0, 8), qd=[3.0], count=200)
+    motion = simulate(model, [2.5], (0, 8), qd=[3.0], outputs=Outputs(count=200))
     assert motion.is_right, motion.checks
     assert {c.rule for c in motion.checks} == {"constant", "falling", "accurate"}
     np.testing.assert_allclose(motion.q[-1], -1 - 2 * 9.81 / 500, atol=1e-3)
@@ -108,8 +113,8 @@ def test_stops_of_a_compound_joint_that_begin_at_zero() -> None:
 @pytest.mark.parametrize("sign", [1.0, -1.0])
 def test_both_stops_are_alike(sign: float) -> None:
     model = slide({"stiffness": 20, "damping": 1}, limits=[-2, 2])
-    motion = simulate(model, [0.5 * sign], (0, 3), qd=[4.0 * sign], count=5)
-    other = simulate(model, [0.5], (0, 3), qd=[4.0], count=5)
+    motion = simulate(model, [0.5 * sign], (0, 3), qd=[4.0 * sign], outputs=Outputs(count=5))
+    other = simulate(model, [0.5], (0, 3), qd=[4.0], outputs=Outputs(count=5))
     np.testing.assert_allclose(motion.q * sign, other.q, atol=1e-9)
 
 
@@ -119,7 +124,7 @@ def test_limits_without_stops_are_warned_of() -> None:
     body: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": joint}
     definition = {"name": "a", "bodies": [body], "parameters": {"h": {"value": 3}}}
     model = model_of(definition, (0, 0, -10))
-    motion = simulate(model, [0.0], (0, 2), qd=[10.0], count=2)
+    motion = simulate(model, [0.0], (0, 2), qd=[10.0], outputs=Outputs(count=2))
     assert motion.is_right
     assert motion.limits == {"x.x": [-1.0, 3.0]}
     assert motion.reached is not None
@@ -128,8 +133,8 @@ def test_limits_without_stops_are_warned_of() -> None:
     assert warning["code"] == "limits-left"
     assert warning["pointer"] == "/q/x.x"
     assert "goes up to 5 m" in warning["message"]
-    assert simulate(model, [0.0], (0, 2), qd=[10.0], count=2, parameters={"h": 5.5}).warnings == ()
-    both = simulate(model, [0.0], (0, 2.5), qd=[10.0], count=2).warnings
+    assert simulate(model, [0.0], (0, 2), qd=[10.0], parameters={"h": 5.5}, outputs=Outputs(count=2)).warnings == ()
+    both = simulate(model, [0.0], (0, 2.5), qd=[10.0], outputs=Outputs(count=2)).warnings
     assert "down to -6.25 m and up to 5 m" in both[0]["message"]
 
 
@@ -140,10 +145,13 @@ def test_every_kind_of_motion_tells_of_its_limits() -> None:
     definition: Plain = {"name": "a", "bodies": [body], "parameters": {"h": {}}}
     model, given = model_of(definition, (0, 0, -10)), {"h": 1.0}
     motions = [
-        sensitivities(model, [0.5], (0, 1), of_start=True, parameters=given),
-        simulate(model, [0.5], (0, 1), prescribed={"x.x": "1/2 - t"}, parameters=given),
+        sensitivities(model, [0.5], (0, 1), parameters=given, outputs=SensitivityOutputs(of_start=True)),
+        simulate(model, [0.5], (0, 1), parameters=given, kind=ClosedMotion(prescribed={"x.x": "1/2 - t"})),
         cost_gradient(
-            model, controls=["tau.x.x"], horizon=1.0, intervals=9, q=[0.5], cost=Cost(running="x.x^2"), parameters=given
+            model,
+            ControlProblem(
+                controls=["tau.x.x"], horizon=1.0, intervals=9, q=[0.5], cost=Cost(running="x.x^2"), parameters=given
+            ),
         ).trajectory,
     ]
     for motion in motions:
@@ -157,4 +165,4 @@ def test_a_series_does_not_see_a_stop() -> None:
     """Taylor's method would go through it: |x| is x or -x for the whole of a step."""
     pytest.importorskip("heyoka", reason="heyoka is in the test extra")
     with pytest.raises(InvalidInput, match="no Taylor series everywhere"):
-        simulate(slide({"stiffness": 100}), [0.0], (0, 3), qd=[1.0], method="Taylor")
+        simulate(slide({"stiffness": 100}), [0.0], (0, 3), qd=[1.0], integrator=Integrator(method="Taylor"))

@@ -12,7 +12,7 @@ from random_trees import Plain, model_of, random_states
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral, first_integrals
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Outputs, simulate
 from substructures.expr.interpret import interpret
 from substructures.quantities.evaluation import evaluate
 
@@ -75,7 +75,7 @@ def test_a_force_that_knows_one_combination_only(text: str, direction: dict[str,
     np.testing.assert_allclose(x * wanted[1], y * wanted[0])
     assert found.cyclic == ()
     assert_constant(model, found, only.name)
-    motion = simulate(model, [0.3, 0.4], (0, 2), qd=[1.0, -0.5], count=3)
+    motion = simulate(model, [0.3, 0.4], (0, 2), qd=[1.0, -0.5], outputs=Outputs(count=3))
     assert motion.is_right
     assert only.name in {c.name for c in motion.checks}
 

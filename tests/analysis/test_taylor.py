@@ -9,10 +9,11 @@ import numpy as np
 import pytest
 from analysis_models import PERIOD, catalogue_model
 from random_trees import Plain, model_of
+from simulated import simulated
 
 from substructures import InvalidInput
 from substructures.analysis.motion import taylor
-from substructures.analysis.simulate import Event, Table, simulate
+from substructures.analysis.simulate import Event, Integrator, Outputs, Table, simulate
 
 pytest.importorskip("heyoka", reason="heyoka is in the test extra")
 
@@ -23,7 +24,7 @@ def test_period_of_the_simple_pendulum() -> None:
     """To 1e-12 of the elliptic integral."""
     event = Event("turn", "x.q1'", direction="falling", action="stop")
     request = {"q": [np.pi / 2 - 1e-15], "span": [0, 3], "events": [event], "method": "Taylor", **FINE}
-    motion = simulate(catalogue_model("simple-pendulum"), **request)
+    motion = simulated(catalogue_model("simple-pendulum"), **request)
     assert motion.status == "stopped"
     assert motion.t[-1] == pytest.approx(PERIOD, abs=1e-12)
 
@@ -34,7 +35,7 @@ def test_agreement_with_runge_kutta() -> None:
     request: Plain = {"q": [0.1, 0.4], "span": [0.5, 2], "times": [0.7, 1.1, 2], **FINE}
     request["inputs"] = {f"tau.{model.coordinates[0]}": f"sin(4*t)/100 - {model.coordinates[0]}'/50"}
     request["parameters"] = {next(iter(model.parameters)): 0.17}
-    one, two = (simulate(model, **request, method=method) for method in ("Taylor", "DOP853"))
+    one, two = (simulated(model, **request, method=method) for method in ("Taylor", "DOP853"))
     np.testing.assert_allclose(one.q, two.q, atol=1e-11)
     np.testing.assert_allclose(one.series["work"], two.series["work"], atol=1e-11)
     assert one.is_right
@@ -42,7 +43,7 @@ def test_agreement_with_runge_kutta() -> None:
     # parameters are free in what was compiled
     before = taylor._compiled.cache_info().misses
     del request["parameters"]
-    simulate(model, **request, method="Taylor")
+    simulated(model, **request, method="Taylor")
     assert taylor._compiled.cache_info().misses == before
 
 
@@ -51,7 +52,7 @@ def test_a_motion_that_cannot_go_on() -> None:
     body = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "s"}}
     loads = [{"type": "joint", "coordinate": "s", "force": "1 + s'^2"}]
     model = model_of({"name": "a", "bodies": [body], "loads": loads}, (0, 0, 0))
-    motion = simulate(model, [0], (0, 2), step=0.1, method="Taylor")
+    motion = simulate(model, [0], (0, 2), integrator=Integrator(method="Taylor"), outputs=Outputs(step=0.1))
     assert motion.status == "failed"
     assert "could not go on" in motion.message
     np.testing.assert_allclose(motion.qd[:15, 0], np.tan(motion.t[:15]), rtol=1e-8)
@@ -62,13 +63,13 @@ def test_what_is_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     request: Plain = {"q": [0], "span": [0, 1], "method": "Taylor"}
     table = {"tau.x.q1": Table([0, 1], [0, 1])}
     with pytest.raises(InvalidInput, match="no tables") as error:
-        simulate(model, **request, inputs=table)
+        simulated(model, **request, inputs=table)
     assert error.value.faults[0].pointer == "/method"
     with pytest.raises(InvalidInput, match="leave 'max_step' out"):
-        simulate(model, **request, max_step=0.1)
+        simulated(model, **request, max_step=0.1)
     monkeypatch.setattr(taylor, "_heyoka", lambda: None)
     with pytest.raises(InvalidInput, match="needs the package"):
-        simulate(model, **request)
+        simulated(model, **request)
 
 
 # takes seconds: a new process imports the whole service

@@ -10,18 +10,19 @@ from analysis_models import catalogue_model
 from closed_trees import at, slider_crank
 from random_trees import Kind, Plain, model_of, random_definition
 from rolling_bodies import BLADE, FLOOR, FORWARD, A, C, M, R, disc, single, sleigh
+from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Constraint
-from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Rolling, simulate
+from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Outputs, Rolling, simulate
 from substructures.export import Interface, render
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import is_zero
 from substructures.quantities.evaluation import evaluate
 
 
@@ -176,8 +177,8 @@ def test_closed_loops_in_independent_velocities() -> None:
         np.testing.assert_allclose(out["rates"], qd, rtol=1e-12)
         np.testing.assert_allclose(out["forces"][0] - out[bias][0], out["metric"][0, 0] * state.qdd[0], rtol=1e-9)
         np.testing.assert_allclose(out["multipliers"], state.multipliers[:2], rtol=1e-9)
-    motion = simulate(model, **document, q=q, v=[30], span=(0, 0.2), count=5)
-    closed = simulate(model, q, (0, 0.2), qd=qd, count=5)
+    motion = simulated(model, **document, q=q, v=[30], span=(0, 0.2), count=5)
+    closed = simulate(model, q, (0, 0.2), qd=qd, outputs=Outputs(count=5))
     assert motion.is_right, motion.checks
     np.testing.assert_allclose(motion.q, closed.q, atol=1e-8)
 

@@ -11,20 +11,23 @@ from analysis_models import oscillator, shipped
 from catalogue_entries import shipped_part
 from closed_trees import four_bar
 from random_trees import Plain, model_of
+from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed import loops
 from substructures.analysis.closed.loops import least_multipliers, loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification import fit
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.identification.fit import identify
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import Event, FixedStep, Linear, Table, simulate
+from substructures.analysis.simulate import Event, FixedStep, Integrator, Linear, Outputs, Table, simulate
 from substructures.analysis.stability.equilibria import Equilibrium, equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check, verdict
@@ -64,16 +67,16 @@ def test_what_is_not_a_number_is_violated_and_what_was_not_made_has_no_numbers()
 
 def test_motions_that_did_not_come_to_their_end_are_neither_right_nor_wrong() -> None:
     model, start = shipped("acrobot"), [1.2, 0]
-    failed = simulate(model, start, (0, 5), max_steps=3)
+    failed = simulate(model, start, (0, 5), integrator=Integrator(max_steps=3))
     assert (failed.status, failed.is_right) == ("failed", None)
     assert failed.summary()["is_right"] is None
     assert "is_right=None" in repr(failed)
-    cancelled = simulate(model, start, (0, 5), progress=lambda share: share < 0.1)
+    cancelled = simulate(model, start, (0, 5), integrator=Integrator(progress=lambda share: share < 0.1))
     assert (cancelled.status, cancelled.is_right) == ("stopped", None)
     for fixed in (None, FixedStep(0.001)):
-        cut = simulate(model, start, (0, 0.2), progress=lambda share: share < 0.5, fixed_step=fixed)
+        cut = simulated(model, start, (0, 0.2), progress=lambda share: share < 0.5, fixed_step=fixed)
         assert cut.is_right is None
-    stopped = simulate(model, start, (0, 5), events=[Event("level", "x.q1", level=0.3)])
+    stopped = simulate(model, start, (0, 5), outputs=Outputs(events=[Event("level", "x.q1", level=0.3)]))
     assert (stopped.status, stopped.is_right) == ("stopped", True)
     bare = Trajectory(("x",), np.zeros(1), np.zeros((1, 1)), np.zeros((1, 1)))
     assert bare.is_right is None
@@ -98,12 +101,12 @@ def error_of(name: str, found: Trajectory, exact: Trajectory) -> float:
 def test_sensitivities_state_their_error() -> None:
     """The difference of two runs is the error of the first, by a third that is far more accurate."""
     model = shipped("acrobot")
-    exact = sensitivities(model, **START, relative_tolerance=1e-13, absolute_tolerance=1e-14)
+    exact = sensitivities(model, **sensitivity_arguments(**START, relative_tolerance=1e-13, absolute_tolerance=1e-14))
     assert exact.is_right
     judged = 0
     for tolerance in (1e-2, 1e-4, 1e-7):
         both = {"relative_tolerance": tolerance, "absolute_tolerance": tolerance}
-        found = sensitivities(model, **START, **both)
+        found = sensitivities(model, **sensitivity_arguments(**START, **both))
         assert found.is_right is False
         for check in found.checks:
             if check.rule == "accurate":
@@ -117,12 +120,12 @@ def test_sensitivities_of_loose_tolerances_are_not_right() -> None:
     """Tolerances of 0.1, for which simulations of the same motion say so, too."""
     model, loose = shipped("acrobot"), {"relative_tolerance": 0.1, "absolute_tolerance": 0.1}
     request: Plain = {"q": [1.2, 0], "span": (0, 5)}
-    assert simulate(model, **request, **loose).is_right is False
-    assert sensitivities(model, **request, by=["x.Ic1"], **loose).is_right is False
-    assert sensitivities(model, **request, by=["x.Ic1"]).is_right is True
+    assert simulated(model, **request, **loose).is_right is False
+    assert sensitivities(model, **sensitivity_arguments(**request, by=["x.Ic1"], **loose)).is_right is False
+    assert sensitivities(model, **sensitivity_arguments(**request, by=["x.Ic1"])).is_right is True
     # steps that 'max_step' keeps short are not made shorter by tolerances: halved steps tell their error, too
-    held = sensitivities(model, **START, **loose, max_step=0.01, method="RK23")
-    exact = sensitivities(model, **START)
+    held = sensitivities(model, **sensitivity_arguments(**START, **loose, max_step=0.01, method="RK23"))
+    exact = sensitivities(model, **sensitivity_arguments(**START))
     assert held.is_right is False
     for check in held.checks:
         if check.rule == "accurate":
@@ -130,7 +133,7 @@ def test_sensitivities_of_loose_tolerances_are_not_right() -> None:
 
 
 def test_sensitivities_that_fail_are_not_judged() -> None:
-    found = sensitivities(shipped("acrobot"), [1.2, 0], (0, 5), ["x.Ic1"], max_steps=5)
+    found = sensitivities(shipped("acrobot"), [1.2, 0], (0, 5), ["x.Ic1"], integrator=Integrator(max_steps=5))
     assert (found.status, found.is_right) == ("failed", None)
     assert {check.holds for check in found.checks if check.rule == "accurate"} == {None}
 
@@ -163,7 +166,7 @@ def spring_of_given_length() -> Model:
 )
 def test_motions_without_first_integrals_have_a_second_run(change: Plain, expected: bool | None) -> None:
     model = spring_of_given_length()
-    found = simulate(model, [0.5], (0, 3), inputs={"x.u": "0.5*cos(3*t)"}, **change)
+    found = simulated(model, [0.5], (0, 3), inputs={"x.u": "0.5*cos(3*t)"}, **change)
     assert found.is_right is expected, found.checks
     assert {check.rule for check in found.checks if check.made or check.needed} == {"accurate"}
     assert [check.name for check in found.checks if not check.needed] == ["energy"]
@@ -195,8 +198,8 @@ SLOPE: Plain = {"constraints": [Linear("slope", "i.x' - i.y'")]}
 def test_potentials_that_vary(closures: Plain, more: Plain) -> None:
     """The same rest length as part of the load, where dV/dt is balanced, and as an input, where a second run judges."""
     request: Plain = {"q": [0.8, 0.6], "span": (0, 2), **more}
-    inside = simulate(two_slides("0.5*cos(3*t)", **closures), **request)
-    driven = simulate(two_slides("u", **closures), **request, inputs={"i.u": "0.5*cos(3*t)"})
+    inside = simulated(two_slides("0.5*cos(3*t)", **closures), **request)
+    driven = simulated(two_slides("u", **closures), **request, inputs={"i.u": "0.5*cos(3*t)"})
     assert inside.is_right, inside.checks
     assert driven.is_right, driven.checks
     np.testing.assert_allclose(inside.q, driven.q, atol=1e-8)
@@ -205,10 +208,10 @@ def test_potentials_that_vary(closures: Plain, more: Plain) -> None:
     assert [check.holds for check in driven.checks if check.name == "energy"] == [None]
     loose = {"relative_tolerance": 1e-2, "absolute_tolerance": 1e-2}
     model = two_slides("u", **closures)
-    wrong = simulate(model, **request, **loose, inputs={"i.u": "0.5*cos(3*t)"})
+    wrong = simulated(model, **request, **loose, inputs={"i.u": "0.5*cos(3*t)"})
     assert wrong.is_right is False
     early = [Event("there", "i.x", 0.81, action="stop")]
-    stopped = simulate(model, **request, inputs={"i.u": "0.5*cos(3*t)"}, events=early)
+    stopped = simulated(model, **request, inputs={"i.u": "0.5*cos(3*t)"}, events=early)
     assert (stopped.status, stopped.is_right) == ("stopped", True)
 
 
@@ -216,7 +219,7 @@ COSTLY: Plain = {"controls": ["tau.x.q1"], "horizon": 2, "intervals": 2, "q": [1
 
 
 def gradient(steps: int) -> Any:
-    return cost_gradient(shipped("acrobot"), **COSTLY, steps=steps, vary=["x.m1", "x.m2"])
+    return cost_gradient(shipped("acrobot"), **control_arguments(**COSTLY, steps=steps, vary=["x.m1", "x.m2"]))
 
 
 def test_cost_gradients_state_their_error() -> None:
@@ -235,12 +238,12 @@ def test_cost_gradients_state_their_error() -> None:
     assert stated["gradient by controls"] == pytest.approx(off, rel=0.2)
     start = np.abs(fine.qd - exact.qd).max() / np.abs(exact.qd).max()
     assert stated["gradient by qd"] == pytest.approx(start, rel=0.2)
-    strict = cost_gradient(shipped("acrobot"), **COSTLY, steps=40, error_limit=1e-9)
+    strict = cost_gradient(shipped("acrobot"), **control_arguments(**COSTLY, steps=40, error_limit=1e-9))
     assert strict.is_right is False
 
 
 def test_costs_that_leave_the_range_of_numbers_are_not_judged() -> None:
-    found = cost_gradient(shipped("acrobot"), **COSTLY | {"horizon": 20, "intervals": 20})
+    found = cost_gradient(shipped("acrobot"), **control_arguments(**COSTLY | {"horizon": 20, "intervals": 20}))
     assert (found.status, found.is_right, found.trajectory.is_right) == ("failed", None, None)
 
 
@@ -249,13 +252,16 @@ def test_optimal_controls_are_judged_along_accurate_motions() -> None:
     model = shipped("simple-pendulum")
     problem: Plain = {"controls": ["tau.x.q1"], "cost": Cost("tau.x.q1^2"), "horizon": 2, "intervals": 4, "q": [0]}
     problem |= {"end": End([0.5], [0])}
-    coarse, fine = optimal_control(model, **problem), optimal_control(model, **problem, steps=8)
+    coarse, fine = (
+        optimal_control(model, **control_arguments(**problem)),
+        optimal_control(model, **control_arguments(**problem, steps=8)),
+    )
     assert (coarse.status, coarse.is_right) == ("failed", False)
     assert "'steps'" in coarse.message
     assert (fine.status, fine.is_right) == ("optimal", True), fine.checks
     assert {check.name for check in fine.checks} == {"end", "stationarity", "cost", "q", "qd"}
     # the controls of the coarse search miss the end by what its check states
-    motion = simulate(model, [0], (0, 2), inputs={"tau.x.q1": held(coarse)}, count=5)
+    motion = simulate(model, [0], (0, 2), inputs={"tau.x.q1": held(coarse)}, outputs=Outputs(count=5))
     missed = abs(float(motion.q[-1, 0]) - 0.5) / np.abs(motion.q).max()
     stated = next(check.relative for check in coarse.checks if check.name == "q")
     assert 0.5 * missed < stated < 5 * missed

@@ -12,12 +12,14 @@ from substructures import Definition, Model, TreeSpec, couple, derive, equilibri
 from substructures import simulate as motion
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.perturbation import state_space
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, sensitivity_formulas
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.errors import InvalidInput
 from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.evaluation import EvaluationOptions
 
 PENDULUM: dict[str, Any] = {
     "name": "pendulum",
@@ -55,7 +57,12 @@ def test_evaluations_take_them() -> None:
     given = {"q": START, "qd": [1.0], "parameters": PARAMETERS, "inputs": INPUTS}
     plain, found = evaluate(_model(), "forces", q=START, qd=[1.0]), evaluate(_model(), "forces", **given)
     assert np.array_equal(plain["forces"], found["forces"])
-    slope = evaluate(_model(), "forward_dynamics_derivative", q=START, along=Direction(inputs={"p.wind": 1.0}))
+    slope = evaluate(
+        _model(),
+        "forward_dynamics_derivative",
+        q=START,
+        options=EvaluationOptions(along=Direction(inputs={"p.wind": 1.0})),
+    )
     assert slope["forward_dynamics_derivative"] == [0.0]
 
 
@@ -84,7 +91,9 @@ def test_all_other_analyses_take_them() -> None:
     assert sensitivity_formulas(model, ["p.idle"], ["metric"]).outputs["metric:p.idle"].entries == ()
     assert adjoint_equations(model, ["p.wind"], Cost(running="p.wind^2"), ["spare"]).varied == ("spare",)
     given: dict[str, Any] = {"cost": Cost(terminal="p.q^2"), "parameters": PARAMETERS, "vary": ["p.idle"]}
-    gradient = cost_gradient(model, controls=["p.wind"], horizon=1.0, intervals=2, q=START, **given)
+    gradient = cost_gradient(
+        model, **control_arguments(controls=["p.wind"], horizon=1.0, intervals=2, q=START, **given)
+    )
     assert not np.any(gradient.controls)
 
 

@@ -14,9 +14,10 @@ from catalogue_entries import shipped_part
 from closed_trees import four_bar
 from exported_models import tree_of
 from run_code import STRICT, tool
+from simulated import simulated
 
 from substructures import Model
-from substructures.analysis.simulate import FixedStep, simulate
+from substructures.analysis.simulate import FixedStep
 from substructures.errors import InvalidArgument, InvalidDocument, MissingValue
 from substructures.export import Exported, exported_model, exported_part, files, interface_of_model, interface_of_part
 from substructures.quantities.evaluation import Sources, evaluate
@@ -78,7 +79,7 @@ def test_simulated_it_moves_as_here(made: Any, name: str, version: str, kind: st
     )  # fmt: skip
     fine = {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12, "method": "DOP853"}
     values = list(start.values())
-    ours = simulate(model, q=values[:n], qd=values[n:], span=(0, 0.5), times=found["time"], **fine)
+    ours = simulated(model, q=values[:n], qd=values[n:], span=(0, 0.5), times=found["time"], **fine)
     expected = np.hstack([ours.q, ours.qd])
     shown = np.stack([found[each] for each in start], axis=1)
     assert np.abs(shown - expected).max() <= 1e-8 * np.abs(expected).max()
@@ -155,7 +156,7 @@ def test_inputs_and_parameters_are_those_of_the_tree(made: Any) -> None:
     )  # fmt: skip
     n, values = model.dof, list(start.values())
     fine = {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12, "method": "DOP853"}
-    ours = simulate(
+    ours = simulated(
         model, q=values[:n], qd=values[n:], span=(0, 1), inputs=push, parameters=heavy, times=[0, 1], **fine
     )
     shown = [found[each][-1] for each in start]
@@ -175,7 +176,7 @@ def test_fixed_steps_are_of_order_four(made: Any) -> None:
     assert 10 < errors[0] / errors[1] < 24
     fixed = FixedStep(0.01, "rk4")
     values = list(start.values())
-    ours = simulate(model, q=values[:2], qd=values[2:], span=(0, 0.4), times=[0, 0.4], fixed_step=fixed)
+    ours = simulated(model, q=values[:2], qd=values[2:], span=(0, 0.4), times=[0, 0.4], fixed_step=fixed)
     np.testing.assert_allclose(ends[1], [*ours.q[-1], *ours.qd[-1]], rtol=1e-11)
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from substructures.expr.corners import VanishingOnAllSides, corners, inner, on_side
+from substructures.expr.calculus.corners import VanishingOnAllSides, corners, inner, on_side
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 

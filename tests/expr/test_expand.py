@@ -12,10 +12,10 @@ import sympy
 from random_expressions import collected, sample
 
 from substructures.errors import TooLarge
-from substructures.expr.expand import Expander, expand, is_zero
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
+from substructures.expr.rings.expand import Expander, expand, is_zero
 from substructures.expr.trigonometry import cos, sin
 from substructures.printers import entries
 

@@ -13,7 +13,7 @@ from catalogue_entries import shipped_part
 
 import substructures
 from substructures import TreeSpec, couple
-from substructures.expr.exact import MAX_BITS, MAX_EXPONENT
+from substructures.expr.construction.exact import MAX_BITS, MAX_EXPONENT
 from substructures.expr.interpret import interpret
 from substructures.expr.operations import ARITY, KINDS, MAX_ELEMENTS, SYMMETRIES, VERSION
 from substructures.expr.program import Program

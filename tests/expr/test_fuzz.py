@@ -24,12 +24,12 @@ from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.bind import bind
 from substructures.expr.differentiate import gradient
 from substructures.expr.direct import ball
-from substructures.expr.expand import Expander
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import Expander
 from substructures.expr.syntax import ExpressionError
 from substructures.printers import entries
 

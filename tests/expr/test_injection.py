@@ -6,8 +6,9 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from substructures.export import render
 from substructures.expr.program import Output, Program, Symbol
-from substructures.printers import FORMATS, render
+from substructures.printers import FORMATS
 from substructures.printers.names import comment, formula_name, identifier, latex_names, prefix
 
 NASTY = [

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import pytest
 
+from substructures.expr.calculus.integrate import antiderivative, filtered, needed, potential
 from substructures.expr.differentiate import gradient
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.integrate import antiderivative, filtered, needed, potential
 from substructures.expr.parse import parse
+from substructures.expr.rings.expand import is_zero
 
 
 def read(graph: Graph, *texts: str) -> list[Expr]:

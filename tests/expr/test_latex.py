@@ -9,10 +9,10 @@ from typing import Any
 
 import pytest
 
+from substructures.export import render
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.printers import render
 
 POINT = {"x": 0.6, "v": -0.4, "m": 1.3, "arm.l": 0.8}
 WRITTEN = {"l": "arm.l", "x": "x", "v": "v", "m": "m", r"l_{\mathrm{arm}}": "arm.l", r"\pi": "pi"}

@@ -12,7 +12,6 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 
 from substructures.certificate.texts import slope
 from substructures.expr.differentiate import derivative
-from substructures.expr.dimensions import Dimensioned, DimensionError, Inference
 from substructures.expr.direct import ball, value
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
@@ -20,6 +19,7 @@ from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import array, program
 from substructures.expr.syntax import ExpressionError, read
+from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference
 
 X, Y = np.array([0.0, 0.5, 1.25, 2.0, 3.5, 4.0]), np.array([1.0, 3.0, 2.5, 2.5, 4.0, 7.0])
 KNOTS = ", ".join(f"{x}: {y}" for x, y in zip(X, Y, strict=True))

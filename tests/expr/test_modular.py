@@ -5,9 +5,9 @@ from __future__ import annotations
 import pytest
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.modular import Field, NoSquareRoot
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Symbol, program
+from substructures.expr.rings.modular import Field, NoSquareRoot
 
 
 def value(field: Field, text: str, values: dict[str, int]) -> int:

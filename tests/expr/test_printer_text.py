@@ -6,12 +6,13 @@ import pytest
 from random_expressions import collected, sample
 
 from substructures.errors import TooLarge
+from substructures.export import render
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Output, Program
 from substructures.expr.trigonometry import cos
-from substructures.printers import entries, render
+from substructures.printers import entries
 
 
 def test_text_is_read_back_as_the_same_formulas() -> None:

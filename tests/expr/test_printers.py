@@ -12,14 +12,13 @@ from mixed_program import POINT, mixed_program
 from random_expressions import collected
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.export import Interface
-from substructures.export import render as in_language
+from substructures.export import Interface, render
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.trigonometry import cos
-from substructures.printers import FORMATS, entries, render
+from substructures.printers import FORMATS, entries
 
 
 @pytest.fixture
@@ -114,7 +113,7 @@ def test_differences_are_turned_where_their_sign_is(format_: str) -> None:
     g = Graph()
     a, b, c = (g.symbol(name) for name in "abc")
     program = collected(g, x=-(a * b - c), y=-(a + b), z=-(b - c) + a * (b - c))
-    text = in_language(program, format_, interface=Interface.of_symbols(program.symbols), quantity="x")
+    text = render(program, format_, interface=Interface.of_symbols(program.symbols), quantity="x")
     assert text.count(" - ") == 3
     assert text.count("-(") == 1
     assert re.search(r"= [^*\n]+ - [^*\n]+\*", text)  # c - a*b, and not a*b - c

@@ -7,13 +7,13 @@ import math
 import pytest
 
 from substructures.errors import TooLarge
-from substructures.expr.exact import MAX_BITS
-from substructures.expr.expand import expand
+from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import expand
 
 
 def read(text: str, graph: Graph) -> Expr:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import pytest
 
+from substructures.expr.calculus.vanish import Vanishing
 from substructures.expr.differentiate import derivative, directional
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
-from substructures.expr.vanish import Vanishing
 
 
 def read(graph: Graph, text: str) -> Expr:

@@ -12,12 +12,13 @@ import pytest
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate, simulate
 from substructures.analysis.equations.velocity_constraints import Linear
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.simulate import ConstrainedMotion, Integrator
 from substructures.errors import InvalidDocument
+from substructures.export import render
 from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import Side
-from substructures.printers.render import render
 
 CASES = Path(__file__).parent / "cases"
 G = 9.81
@@ -118,7 +119,13 @@ def test_mimic_joints_are_told_of_wherever_they_are() -> None:
 def followed(model: Model, constraints: list[Linear], q_b: float) -> Trajectory:
     """A motion of a second with the constraints of the file, from a start in which c follows b."""
     q = {"x.a_joint": 0.3, "x.b_joint": q_b, "x.c_joint": 0.5 * q_b + 0.05}
-    return simulate(model, q, span=(0, 1), constraints=constraints, relative_tolerance=1e-11, absolute_tolerance=1e-12)
+    return simulate(
+        model,
+        q,
+        span=(0, 1),
+        kind=ConstrainedMotion(constraints=constraints),
+        integrator=Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-12),
+    )
 
 
 def test_impossible_inertias_are_read_and_told_with_their_moments() -> None:

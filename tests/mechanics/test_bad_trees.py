@@ -12,7 +12,7 @@ from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, c
 from substructures.documents.fields import LONGEST
 from substructures.errors import InvalidArgument
 from substructures.expr.syntax import MAX_LENGTH
-from substructures.quantities.evaluation import Sources, check, evaluate
+from substructures.quantities.evaluation import EvaluationOptions, Sources, check, evaluate
 from substructures.quantities.regressor import regressor
 
 INSTANCE: Path = ("instances", 1)
@@ -151,7 +151,7 @@ def test_a_parameter_without_a_value_is_named() -> None:
 
 def test_too_many_states() -> None:
     with pytest.raises(InvalidArgument) as raised:
-        evaluate(cell(), **request(q=np.zeros((11, 10)), qd=None), limit=10)
+        evaluate(cell(), **request(q=np.zeros((11, 10)), qd=None), options=EvaluationOptions(limit=10))
     assert [(f.pointer, f.code) for f in raised.value.faults] == [("/q", "too-many-states")]
 
 

@@ -169,7 +169,7 @@ def test_reactions_are_those_of_a_spring() -> None:
         spec, parts = tree_of(arm(), load)
         model, transmitted = couple(spec, parts), reactions(spec, parts)
         sources = Sources(model, of_parts=lambda _, given=transmitted: given)
-        found.append(evaluate(model, [*QUANTITIES, "reactions"], sources=sources, **STATE))
+        found.append(evaluate(sources, [*QUANTITIES, "reactions"], **STATE))
     same(*found, QUANTITIES)
     same(*(each["reactions"] for each in found), ["force", "moment"])
 

@@ -10,7 +10,7 @@ import sympy as sp
 from catalogue_entries import shipped_part
 
 from substructures import Definition, InvalidArgument, Model, TreeSpec, couple, derive
-from substructures.certificate.served import SERVED
+from substructures.certificate.derived.model_formulas import SERVED
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.quantities import canonical

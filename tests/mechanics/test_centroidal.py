@@ -41,7 +41,7 @@ def test_against_an_engine(seed: int) -> None:
     sources = sources_of(definition)
     model = sources.model
     states = random_states(np.random.default_rng(seed), 2, model.dof)
-    answer = evaluate(model, ["mass_centre", "centroidal_momentum_matrix"], **states, sources=sources)
+    answer = evaluate(sources, ["mass_centre", "centroidal_momentum_matrix"], **states)
     found, matrix = answer["mass_centre"], answer["centroidal_momentum_matrix"]
     engine = engine_of(definition, GRAVITY)
     order = engine.order([c.removeprefix("x.") for c in model.coordinates])
@@ -64,8 +64,8 @@ def test_theorems(seed: int) -> None:
     model, rng = sources.model, np.random.default_rng(seed)
     q, qd = rng.uniform(-1, 1, (2, model.dof))
     names = ["mass_centre", "momentum", "gravity", "inertial_parameters", "centroidal_momentum_matrix"]
-    found, h = evaluate(model, names, q, qd, sources=sources), 1e-6
-    sides = [evaluate(model, "mass_centre", q + s * h * qd, sources=sources)["mass_centre"] for s in (1, -1)]
+    found, h = evaluate(sources, names, q, qd), 1e-6
+    sides = [evaluate(sources, "mass_centre", q + s * h * qd)["mass_centre"] for s in (1, -1)]
     velocity = found["mass_centre"]["velocity"]
     np.testing.assert_allclose((sides[0]["position"] - sides[1]["position"]) / (2 * h), velocity, atol=1e-7)
     m = found["inertial_parameters"][::10].sum()
@@ -89,12 +89,12 @@ def test_two_masses_on_a_rod() -> None:
     tip = {"name": "tip", "parent": "rod", "joint": {"type": "fixed"}, "mass": 3, "com": [2, 0, 0]}
     still = {"name": "stand", "parent": "base", "joint": {"type": "fixed"}, "mass": 50, "com": [7, 8, 9]}
     sources = sources_of({"name": "pendulum", "bodies": [rod, tip, still]})
-    found = evaluate(sources.model, "mass_centre", [0.5], [2], sources=sources)["mass_centre"]
+    found = evaluate(sources, "mass_centre", [0.5], [2])["mass_centre"]
     r = 7 / 4
     np.testing.assert_allclose(found["position"], [r * np.cos(0.5), r * np.sin(0.5), 0], atol=1e-15)
     np.testing.assert_allclose(found["velocity"], [-2 * r * np.sin(0.5), 2 * r * np.cos(0.5), 0], atol=1e-15)
     # about the mass centre: m1 (r - l1)^2 + m2 (l2 - r)^2
-    matrix = evaluate(sources.model, "centroidal_momentum_matrix", [0.5], sources=sources)["centroidal_momentum_matrix"]
+    matrix = evaluate(sources, "centroidal_momentum_matrix", [0.5])["centroidal_momentum_matrix"]
     expected = [-4 * r * np.sin(0.5), 4 * r * np.cos(0.5), 0, 0, 0, (r - 1) ** 2 + 3 * (2 - r) ** 2]
     np.testing.assert_allclose(matrix[:, 0], expected, atol=1e-14)
 
@@ -127,7 +127,7 @@ def test_of_several_parts() -> None:
     )
     parts = {name: derive(Definition.read(each)) for name, each in (("x", one), ("y", two))}
     pieces, alone = Sources(couple(spec, parts), of_parts=of_parts(spec, parts)), sources_of(whole)
-    a, b = (evaluate(s.model, "mass_centre", [0.4, -0.7], [1, 2], sources=s)["mass_centre"] for s in (pieces, alone))
+    a, b = (evaluate(s, "mass_centre", [0.4, -0.7], [1, 2])["mass_centre"] for s in (pieces, alone))
     for name in ("position", "velocity"):
         np.testing.assert_allclose(a[name], b[name], rtol=1e-13, atol=1e-13)
 
@@ -136,7 +136,7 @@ def test_nothing_that_moves_has_mass() -> None:
     body = {"name": "b", "parent": "base", "joint": {"type": "revolute", "coordinate": "q", "armature": 1}}
     sources = sources_of({"name": "rotor", "bodies": [body]})
     with pytest.raises(InvalidArgument, match="no mass centre"):
-        evaluate(sources.model, "mass_centre", [0.5], sources=sources)
+        evaluate(sources, "mass_centre", [0.5])
 
 
 def test_wrong_formulas_are_not_served(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -147,4 +147,4 @@ def test_wrong_formulas_are_not_served(monkeypatch: pytest.MonkeyPatch) -> None:
     bodies = [{"name": "a", "parent": "base", **rod}, {"name": "b", "parent": "a", **rod}]
     sources = sources_of({"name": "two", "bodies": bodies})
     with pytest.raises(VerificationFailed, match="mass centre"):
-        evaluate(sources.model, "mass_centre", [0.1, 0.2], sources=sources)
+        evaluate(sources, "mass_centre", [0.1, 0.2])

@@ -19,6 +19,7 @@ from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.perturbation import state_space
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, variational
 from substructures.quantities.evaluation import evaluate
@@ -109,7 +110,7 @@ def refused() -> list[tuple[str, Callable[[Model], Any]]]:
         ("perturbation", state_space),
         ("first integrals", routh),
         ("simulations", lambda m: variational(m, [])),
-        ("simulations", lambda m: sensitivities(m, **span, by=[])),
+        ("simulations", lambda m: sensitivities(m, **sensitivity_arguments(**span, by=[]))),
         ("'type': 'closure'", lambda m: quasi_velocity_equations(m, [])),
     ]
 

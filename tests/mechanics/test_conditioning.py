@@ -16,7 +16,7 @@ from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import condition, definite_solve
 from substructures.quantities.derivatives import forward_dynamics
-from substructures.quantities.evaluation import Direction, Sources, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, Sources, evaluate
 from substructures.quantities.formulas import derived
 
 FD = "forward_dynamics"
@@ -76,10 +76,16 @@ def test_one_state_of_many_is_solved_anew_and_the_others_are_what_they_were() ->
 def test_derivatives_out_of_range_have_no_result() -> None:
     model = three_links()
     along = Direction(q=[1, 0, 0])
-    found = evaluate(model, f"{FD}_derivative", **Q, along=along, parameters={f"L{k}": 1e-90 for k in range(3)})
+    found = evaluate(
+        model,
+        f"{FD}_derivative",
+        **Q,
+        parameters={f"L{k}": 1e-90 for k in range(3)},
+        options=EvaluationOptions(along=along),
+    )
     (failure,) = found.failures
     assert failure.code == "out-of-range"
-    assert not evaluate(model, f"{FD}_derivative", **Q, along=along).failures
+    assert not evaluate(model, f"{FD}_derivative", **Q, options=EvaluationOptions(along=along)).failures
 
 
 def ball() -> Model:
@@ -158,7 +164,7 @@ def test_accelerations_by_numbers_are_judged_like_those_by_formulas() -> None:
 
     model, q = ball(), [[0.3, 0.2, 0.1], [0.3, np.pi / 2 - 1e-6, 0.4], [0.3, np.pi / 2, 0.4]]
     for sources in (None, Sources(model, small)):
-        found = evaluate(model, FD, q=q, qd=[0.1, 0.2, 0.3], sources=sources)
+        found = evaluate(sources or model, FD, q=q, qd=[0.1, 0.2, 0.3])
         assert [warning["state"] for warning in found.warnings] == [1]
         assert [failure.state for failure in found.failures] == [2]
 

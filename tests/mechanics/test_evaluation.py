@@ -7,7 +7,8 @@ import pytest
 from analysis_models import catalogue_model
 
 from substructures import InvalidArgument, InvalidInput
-from substructures.quantities.evaluation import QUANTITIES, Direction, Evaluation, evaluate
+from substructures.documents.grouped import take
+from substructures.quantities.evaluation import QUANTITIES, Direction, Evaluation, EvaluationOptions, evaluate
 from substructures.quantities.quantity import needs_parts
 
 
@@ -66,8 +67,9 @@ def test_failures_are_values() -> None:
 )
 def test_what_is_wrong_is_an_argument(arguments: dict[str, object], pointer: str) -> None:
     given = {"quantities": "metric", "q": [0, 0], **arguments}
+    options = take(EvaluationOptions, given)
     with pytest.raises(InvalidArgument) as error:
-        evaluate(catalogue_model("planar-2r"), **given)
+        evaluate(catalogue_model("planar-2r"), **given, options=options)
     assert isinstance(error.value, InvalidInput)
     assert [fault.pointer for fault in error.value.faults] == [pointer]
 
@@ -75,6 +77,7 @@ def test_what_is_wrong_is_an_argument(arguments: dict[str, object], pointer: str
 def test_every_quantity_of_a_tree_has_an_array() -> None:
     model = catalogue_model("planar-2r")
     names = [name for name in QUANTITIES if not needs_parts(name)]
-    found = evaluate(model, names, np.zeros((2, 2)), qdd=np.zeros((2, 2)), along=Direction(q=[1, 0]))
+    options = EvaluationOptions(along=Direction(q=[1, 0]))
+    found = evaluate(model, names, np.zeros((2, 2)), qdd=np.zeros((2, 2)), options=options)
     assert list(found.quantities) == names
     assert not found.failures

@@ -18,7 +18,7 @@ from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
 from substructures.quantities.derivatives import SingularMetric, forward_dynamics
-from substructures.quantities.evaluation import Direction, Sources, cost, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, Sources, cost, evaluate
 from substructures.quantities.formulas import DERIVED, derived
 
 N = 5
@@ -114,7 +114,7 @@ def test_singular_in_every_state() -> None:
     with pytest.raises(SingularMetric, match="singular"):
         derived(model, "forward_dynamics")
     quantities = ["forward_dynamics", "forward_dynamics_derivative", "metric"]
-    request = {"quantities": quantities, "q": np.zeros((2, 2)), "along": Direction(q=[1, 0])}
+    request = {"quantities": quantities, "q": np.zeros((2, 2)), "options": EvaluationOptions(along=Direction(q=[1, 0]))}
     answer = evaluate(model, **request)
     assert [f.quantity for f in answer.failures] == [q for q in quantities[:2] for _ in range(2)]
     assert issubclass(SingularMetric, InvalidDocument)
@@ -154,18 +154,14 @@ def test_numbers_where_the_formulas_are_too_large(monkeypatch: pytest.MonkeyPatc
         return forward_dynamics(model, 3) if name == "forward_dynamics" else derived(model, name)
 
     monkeypatch.setattr("substructures.quantities.accelerations.BLOCK", 2 * model.dof**2)
-    found = evaluate(model, **request, sources=Sources(model, small))
+    found = evaluate(Sources(model, small), **request)
     np.testing.assert_allclose(found["forward_dynamics"], expected, rtol=1e-9, atol=1e-9 * np.abs(expected).max())
     assert cost(Sources(model, small), ["forward_dynamics"])[1] == model.dof
     for name in DERIVED:
         with pytest.raises(TooLarge):
             derived(model, name, 3)
     with pytest.raises(TooLarge, match="kinetic_energy"):
-        evaluate(
-            model,
-            **(request | {"quantities": ["kinetic_energy"]}),
-            sources=Sources(model, lambda m, n: derived(m, n, 3)),
-        )
+        evaluate(Sources(model, lambda m, n: derived(m, n, 3)), **request | {"quantities": ["kinetic_energy"]})
 
 
 def test_cholesky_leaves_the_other_states_alone() -> None:
@@ -212,7 +208,7 @@ def test_models_stored_before_inverse_dynamics_was_an_output() -> None:
     older = Model.load(model.summary(), model.program.select(kept).to_bytes())
     x = random_states(np.random.default_rng(4), N, model.dof)
     names = ["inverse_dynamics", "forward_dynamics", "inverse_dynamics_derivative", "forward_dynamics_derivative"]
-    request = x | {"quantities": names, "along": Direction(q=x["qd"]), "t": 0.3}
+    request = x | {"quantities": names, "options": EvaluationOptions(along=Direction(q=x["qd"])), "t": 0.3}
     found, expected = evaluate(older, **request), evaluate(model, **request)
     for name in names:
         atol = 1e-9 * max(1, np.abs(expected[name]).max())

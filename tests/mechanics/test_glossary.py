@@ -12,10 +12,10 @@ from catalogue_entries import shipped_part
 from in_depth import deep
 
 from substructures import Model, TreeSpec, couple, evaluate
+from substructures.export import render
 from substructures.expr.hoist import hoisted
 from substructures.expr.interpret import interpret
 from substructures.part.part import Part
-from substructures.printers import render
 from substructures.printers.meanings import Label
 from substructures.quantities.formulas import DERIVED, derived
 from substructures.tree.glossary import glossary

@@ -18,6 +18,7 @@ from substructures.quantities.evaluation import (
     QUANTITIES,
     Direction,
     Evaluation,
+    EvaluationOptions,
     Evaluator,
     Sources,
     cost,
@@ -70,12 +71,15 @@ def test_one_position_stands_for_all(engine: Evaluator, batched: str) -> None:
     model = sources.model
     x = random_states(np.random.default_rng(1), N, model.dof)
     given = {"t": np.arange(N) / 7, "inputs": {f"tau.{model.coordinates[0]}": np.arange(N) - 2.0}}
-    one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES, "sources": sources}
-    one["along"] = Direction(q=x["qd"][1], inputs={f"tau.{model.coordinates[0]}": 1.0})
+    one = {"q": x["q"][0], "qd": x["qd"][0], "qdd": x["qdd"][0], "t": 0.3, "quantities": NAMES}
+    along = Direction(q=x["qd"][1], inputs={f"tau.{model.coordinates[0]}": 1.0})
+    options = EvaluationOptions(along=along, evaluator=engine)
     one |= {name: (x | given)[name] for name in batched.split()}
-    found = evaluate(model, **one, evaluator=engine)
-    rows = evaluate(model, **(one | {"q": x["q"][:1]}), evaluator=engine)
-    repeated = evaluate(model, **(one | {"q": np.repeat(x["q"][:1], N, axis=0)}))
+    found = evaluate(sources, **one, options=options)
+    rows = evaluate(sources, **one | {"q": x["q"][:1]}, options=options)
+    repeated = evaluate(
+        sources, **one | {"q": np.repeat(x["q"][:1], N, axis=0)}, options=EvaluationOptions(along=along)
+    )
     assert found.count == rows.count == N
     for name, expected in leaves(repeated).items():
         scale = max(1.0, np.abs(expected).max(initial=0))
@@ -96,9 +100,10 @@ def test_the_size_of_an_answer_is_known_before() -> None:
     sources = random_sources(78)
     model = sources.model
     x = random_states(np.random.default_rng(1), 1, model.dof)
-    state: dict[str, Any] = {key: rows[0] for key, rows in x.items()} | {"along": Direction(q=x["q"][0])}
+    state: dict[str, Any] = {key: rows[0] for key, rows in x.items()}
+    options = EvaluationOptions(along=Direction(q=x["q"][0]))
     for name in QUANTITIES:
-        found = evaluate(model, **(state | {"quantities": [name]}), sources=sources)[name]
+        found = evaluate(sources, name, **state, options=options)[name]
         size = sum(np.size(array) for array in (found.values() if isinstance(found, dict) else [found]))
         assert cost(sources, [name])[1] == size <= numbers_per_state([name], model.dof, len(model.frames)), name
     assert cost(sources, ["metric", "momentum"])[1] == model.dof**2 + 6

@@ -11,7 +11,7 @@ from catalogue_entries import shipped_part
 from substructures import TreeSpec, couple
 from substructures.client import unpack
 from substructures.compile import compile_program
-from substructures.quantities.evaluation import Sources, evaluate, evaluate_in_parts, interpreted
+from substructures.quantities.evaluation import EvaluationOptions, Sources, evaluate, evaluate_in_parts, interpreted
 from substructures.quantities.from_parts import NumericTree
 from substructures.tree.model import Model
 
@@ -61,7 +61,7 @@ def test_packed_is_the_independent_elements(given: tuple[Model, NumericTree], en
     evaluator, rng = engines(model, numeric)[engine], np.random.default_rng(3)
     q, qd = rng.uniform(-3, 3, (2, 11, model.dof))
     dense = evaluate(model, NAMES, q, qd)
-    packed = evaluate(model, NAMES, q, qd, packed=True, evaluator=evaluator)
+    packed = evaluate(model, NAMES, q, qd, options=EvaluationOptions(packed=True, evaluator=evaluator))
     for k in range(11):
         metric, gamma = independent(dense["metric"][k], dense["christoffel"][k])
         np.testing.assert_allclose(packed["metric"][k], metric, rtol=1e-10, atol=1e-11)
@@ -75,11 +75,14 @@ def test_packed_is_the_independent_elements(given: tuple[Model, NumericTree], en
 def test_one_state_and_no_state(given: tuple[Model, NumericTree]) -> None:
     model, _ = given
     n = model.dof
-    one = evaluate(model, ["metric", "christoffel"], np.zeros(n), packed=True, float32=True)
+    one = evaluate(model, ["metric", "christoffel"], np.zeros(n), options=EvaluationOptions(packed=True, float32=True))
     assert one["metric"].shape == (n * (n + 1) // 2,)
     assert one["christoffel"].shape == (n * (n * n - 1) // 3,)
     assert one["metric"].dtype == np.float32
-    assert evaluate(model, ["metric"], np.zeros((0, n)), packed=True)["metric"].shape == (0, n * (n + 1) // 2)
+    assert evaluate(model, ["metric"], np.zeros((0, n)), options=EvaluationOptions(packed=True))["metric"].shape == (
+        0,
+        n * (n + 1) // 2,
+    )
 
 
 def test_unpack_refuses_what_does_not_fit() -> None:
@@ -116,8 +119,8 @@ def test_single_precision(given: tuple[Model, NumericTree], engine: str) -> None
     tau = np.zeros(7)
     tau[4] = 1e39
     arguments: dict[str, Any] = {"q": q, "inputs": {f"tau.{model.coordinates[0]}": tau}}
-    arguments["evaluator"] = engines(model, numeric)[engine]
-    double, single = (evaluate(model, ["metric", "forces"], **arguments, float32=x) for x in (False, True))
+    ways = [EvaluationOptions(float32=x, evaluator=engines(model, numeric)[engine]) for x in (False, True)]
+    double, single = (evaluate(model, ["metric", "forces"], **arguments, options=way) for way in ways)
     np.testing.assert_array_equal(single["metric"], double["metric"].astype(np.float32))
     assert double.failures == ()
     assert [(x.state, x.quantity, x.code) for x in single.failures] == [(4, "forces", "overflow")]

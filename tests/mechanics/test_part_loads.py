@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from in_depth import deep
 from random_trees import Kind, Plain, random_definition, random_states, vector
+from simulated import simulated
 
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, couple, derive
-from substructures.analysis.simulate import simulate
 from substructures.pictures.tree import picture
 from substructures.quantities.evaluation import Sources, evaluate
 from substructures.quantities.from_parts import NumericTree
@@ -166,7 +166,7 @@ def test_reactions_are_those_of_the_same_loads_of_a_tree() -> None:
         model, transmitted = couple(spec, parts), reactions(spec, parts)
         sources = Sources(model, of_parts=lambda _, given=transmitted: given)
         state = {name: x[0] for name, x in random_states(np.random.default_rng(2), 1, model.dof).items()}
-        found.append(evaluate(model, ["reactions"], sources=sources, inputs={"x.u": 0.6}, t=0.8, **state)["reactions"])
+        found.append(evaluate(sources, ["reactions"], inputs={"x.u": 0.6}, t=0.8, **state)["reactions"])
     for field in ("force", "moment", "force_world", "moment_world"):
         assert np.allclose(found[0][field], found[1][field], rtol=0, atol=1e-10), field
 
@@ -244,7 +244,7 @@ def test_friction_is_the_same_wherever_it_is_given() -> None:
         model = couple(*block(where))
         assert "friction" in model.program.outputs
         forces = evaluate(model, "forces", q=[[0.0]] * 3, qd=[[-0.2], [1e-4], [0.3]])["forces"]
-        motion = simulate(model, q=[0], qd=[1], span=(0, 1), friction="exact")
+        motion = simulated(model, q=[0], qd=[1], span=(0, 1), friction="exact")
         assert motion.is_right, motion.checks
         assert motion.series["friction"][-1] == pytest.approx([2.0], abs=1e-12)
         found.append((forces, motion.q))

@@ -9,12 +9,13 @@ import pytest
 from catalogue_entries import shipped_part
 from closed_trees import slider_crank
 from random_trees import Kind, random_definition, tree_of
+from simulated import simulated
 
 from substructures import Definition, InvalidArgument, Model, Part, TreeSpec, couple, derive
 from substructures.analysis.motion import load_powers
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import Geodesic, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.part import load_forces as by_load
 from substructures.quantities import powers as module
@@ -55,7 +56,7 @@ def slide(**more: Any) -> tuple[Model, PowerModel]:
 
 
 def answered(model: Model, by: PowerModel, *others: str, **state: Any) -> Evaluation:
-    return evaluate(model, ["powers", *others], sources=Sources(model, of_parts=lambda _: by), **state)
+    return evaluate(Sources(model, of_parts=lambda _: by), ["powers", *others], **state)
 
 
 def rows_of(found: Evaluation) -> dict[str, float]:
@@ -121,7 +122,7 @@ def test_the_rows_add_up_to_the_power(seed: int) -> None:
 def test_along_a_motion_they_are_the_rate_of_the_energy() -> None:
     model, by = slide()
     inputs: Plain = {"tau.s.z": "3*sin(5*t)", "s.pull": 20}
-    motion = simulate(model, [-0.3], (0, 1), inputs=inputs, count=2001, powers=by)
+    motion = simulate(model, [-0.3], (0, 1), inputs=inputs, outputs=Outputs(count=2001, powers=by))
     assert motion.is_right
     check = motion.checks[-1]
     assert (check.name, check.rule, check.unit, check.holds) == ("power", "zero", "W", True)
@@ -147,7 +148,7 @@ def test_friction_that_sticks_exactly() -> None:
     body = {"name": "mass", "parent": "base", "mass": 3, "joint": joint}
     one = {"name": "s", "definition": {**plain, "inputs": {}, "bodies": [body]}}
     model, by = made({"gravity": [0, 0, -9.81], "instances": [one]})
-    motion = simulate(model, [0], (0, 1), qd=[1], friction="exact", count=51, powers=by)
+    motion = simulated(model, [0], (0, 1), qd=[1], friction="exact", count=51, powers=by)
     assert motion.is_right
     found = dict(zip(motion.loads, motion.series["powers"].T, strict=True))
     # up against the weight and 40 N, until it rests
@@ -163,7 +164,7 @@ def driven_crank(**given: Any) -> tuple[PowerModel, Trajectory]:
     spec = TreeSpec.read({"name": "l", "gravity": [0, -9.81, 0], "instances": [one], "closures": [closure]})
     by = powers(spec, {"x": shipped_part("slider-crank")})
     model = slider_crank((0, -9.81, 0))
-    return by, simulate(model, [0.3, -0.1, 0.17], (0, 0.1), count=11, powers=by, **given)
+    return by, simulated(model, [0.3, -0.1, 0.17], (0, 0.1), count=11, powers=by, **given)
 
 
 def test_closures_do_no_work() -> None:
@@ -203,7 +204,7 @@ def test_a_power_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
         return found
 
     monkeypatch.setattr(load_powers, "interpret_in_blocks", without_gravity)
-    motion = simulate(model, [-0.3], (0, 0.2), powers=by)
+    motion = simulate(model, [-0.3], (0, 0.2), outputs=Outputs(powers=by))
     assert motion.is_right is False
     assert motion.checks[-1].holds is False
 
@@ -213,7 +214,7 @@ def test_where_they_mean_nothing() -> None:
     with pytest.raises(InvalidArgument, match="'powers' needs the parts"):
         evaluate(model, "powers", [0])
     with pytest.raises(InvalidArgument, match="'powers' means nothing"):
-        simulate(model, [0], (0, 1), geodesic=True, powers=by)
+        simulate(model, [0], (0, 1), kind=Geodesic(), outputs=Outputs(powers=by))
 
 
 @pytest.mark.parametrize("fault", ["joint", "load", "wrench"])

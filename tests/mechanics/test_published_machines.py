@@ -11,10 +11,10 @@ from formulas import alone
 from random_trees import Plain
 
 from substructures import catalogue
-from substructures.expr.expand import is_zero
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import is_zero
 from substructures.quantities.evaluation import evaluate
 
 #: P. Corke, Robotics Toolbox for Python, models/DH/Puma560.py and tests/test_DHRobot.py

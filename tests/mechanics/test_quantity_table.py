@@ -11,7 +11,7 @@ from closed_trees import four_bar, slider_crank
 from random_trees import Kind, random_definition, random_states, tree_of
 
 from substructures import Definition, Model, couple, derive
-from substructures.certificate.served import SERVED
+from substructures.certificate.derived.model_formulas import SERVED
 from substructures.client.numbers import Evaluation as Answer
 from substructures.errors import InvalidArgument
 from substructures.export import exported_model, interface_of_model, render
@@ -19,7 +19,7 @@ from substructures.export.fmu.variables import layout_of
 from substructures.export.interface import Interface, signature
 from substructures.printers.names import LETTERS, RAISED
 from substructures.quantities import quantity as table
-from substructures.quantities.evaluation import Direction, Evaluation, evaluate
+from substructures.quantities.evaluation import Direction, Evaluation, EvaluationOptions, evaluate
 from substructures.quantities.quantity import DERIVED, QUANTITIES, TABLE, askable, labels_of
 from substructures.quantities.sources import Sources, of_parts
 
@@ -54,7 +54,7 @@ def sources(seed: int, dof: int = 3) -> Sources:
 
 def answer(given: Sources, names: list[str]) -> Evaluation:
     state = random_states(np.random.default_rng(3), 2, given.model.dof)
-    return evaluate(given.model, names, **state, along=Direction(q=state["q"]), sources=given)
+    return evaluate(given, names, **state, options=EvaluationOptions(along=Direction(q=state["q"])))
 
 
 @pytest.mark.parametrize("name", SIGNATURES)
@@ -152,7 +152,7 @@ def test_a_rod_has_its_textbook_moments() -> None:
     body["inertia"] = inertia
     spec, parts = tree_of(definition), {"x": derive(Definition.read(definition))}
     given = Sources(couple(spec, parts), of_parts=of_parts(spec, parts))
-    found = evaluate(given.model, ["moments_of_inertia"], [0.3], sources=given)
+    found = evaluate(given, ["moments_of_inertia"], [0.3])
     np.testing.assert_allclose(found["moments_of_inertia"], [np.diag([0, 4, 4])], rtol=1e-14, atol=1e-14)
 
 

@@ -9,10 +9,11 @@ import pytest
 from catalogue_entries import shipped_part
 from closed_trees import slider_crank
 from random_trees import Kind, random_definition, random_states, tree_of
+from simulated import simulated
 
 from substructures import Definition, InvalidArgument, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import simulate
+from substructures.analysis.simulate import ClosedMotion, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.quantities import reactions as module
 from substructures.quantities.evaluation import Evaluation, Sources, evaluate
@@ -30,7 +31,7 @@ def made(tree: Plain) -> tuple[Model, ReactionModel]:
 
 def answered(tree: Plain, joints: tuple[str, ...] | None = None, **given: Any) -> Evaluation:
     model, transmitted = made(tree)
-    return evaluate(model, "reactions", sources=Sources(model, of_parts=lambda _: transmitted, joints=joints), **given)
+    return evaluate(Sources(model, of_parts=lambda _: transmitted, joints=joints), "reactions", **given)
 
 
 def rod(mass: float, length: float, joint: Plain | None = None, **more: Any) -> Plain:
@@ -81,7 +82,7 @@ def test_the_third_component_is_what_acts_in_the_joint() -> None:
         model, transmitted = made(tree)
         sources = Sources(model, of_parts=lambda _, given=transmitted: given)
         state = {"q": [0.5], "qd": [1.3], "inputs": {"tau.p.q": 0.9}}
-        found = evaluate(model, ["reactions", "forward_dynamics"], sources=sources, **state)
+        found = evaluate(sources, ["reactions", "forward_dynamics"], **state)
         law_of_joint = 0.9 - 3 * (0.5 - 0.2) - 0.4 * 1.3
         expected = law_of_joint - 0.7 * found["forward_dynamics"][0]
         assert found["reactions"][field][0, 2] == pytest.approx(expected, abs=1e-12)
@@ -122,7 +123,7 @@ def test_a_joint_cut_as_a_closure_has_the_same_reactions() -> None:
     model, transmitted = made(two_links(True))
     c, s = 0.5 * np.cos(q1), 0.5 * np.sin(q1)
     q, qd = [q1, c, s, 0, q1 + q2, 0, 0], [w1, -s * w1, c * w1, 0, w1 + w2, 0, 0]
-    found = evaluate(model, "reactions", q, qd, sources=Sources(model, of_parts=lambda _: transmitted))
+    found = evaluate(Sources(model, of_parts=lambda _: transmitted), "reactions", q, qd)
     row = {name: k for k, name in enumerate(found.joints)}
     for field in ("force", "moment", "force_world", "moment_world"):
         # the hinge of the first link, which carries both
@@ -148,7 +149,7 @@ def test_along_a_motion_with_a_closure() -> None:
     spec = TreeSpec.read({"name": "l", "gravity": DOWN, "instances": [one], "closures": [closure]})
     transmitted = reactions(spec, {"x": derive(definition)})
     given: Plain = {"qd": [40, 0, 0], "inputs": {"tau.x.crank": "2*sin(20*t)"}, "fixed": ["x.crank"]}
-    motion = simulate(model, [0.3, -0.1, 0.17], (0, 0.1), **given, count=11, reactions=transmitted)
+    motion = simulated(model, [0.3, -0.1, 0.17], (0, 0.1), **given, count=11, reactions=transmitted)
     row = {name: k for k, name in enumerate(motion.joints)}
     torque = motion.series["reaction_moment"][:, row["x.crank"], 2]
     assert np.allclose(torque, 2 * np.sin(20 * motion.t), atol=1e-7)
@@ -172,7 +173,13 @@ def test_a_motion_that_does_not_begin_has_none() -> None:
     spec = TreeSpec.read({"name": "l", "gravity": DOWN, "instances": [one], "closures": [closure]})
     transmitted = reactions(spec, {"x": shipped_part("slider-crank")})
     far = {"x.crank": "0.3", "x.piston": "9"}
-    motion = simulate(slider_crank((0, -9.81, 0)), [0, 0, 0], (0, 1), prescribed=far, reactions=transmitted)
+    motion = simulate(
+        slider_crank((0, -9.81, 0)),
+        [0, 0, 0],
+        (0, 1),
+        kind=ClosedMotion(prescribed=far),
+        outputs=Outputs(reactions=transmitted),
+    )
     assert motion.status == "failed"
     assert "reaction_force" not in motion.series
 

@@ -71,7 +71,7 @@ def compare_tree(seed: int) -> float:
     transmitted = reactions(spec, parts)
     states = random_states(rng, 2, model.dof)
     sources = Sources(model, of_parts=lambda _: transmitted)
-    answer = evaluate(model, "reactions", **states, inputs={"u": 0.6}, t=0.8, sources=sources)
+    answer = evaluate(sources, "reactions", **states, inputs={"u": 0.6}, t=0.8)
     worst = 0.0
     for i in range(2):
         hand = Released(tree, list(model.coordinates), states["q"][i], states["qd"][i], {"k": 1.7, "u": 0.6, "t": 0.8})

@@ -211,10 +211,10 @@ def test_parameters_that_the_motion_does_not_feel() -> None:
     sources = Sources(model, of_parts=lambda _: regressor(spec, parts))
     assert "x.a" not in model.effective
     request = {"quantities": ["inertial_parameters"], "q": [0], "parameters": {"x.a": 0.5}}
-    found = evaluate(model, **request, sources=sources)
+    found = evaluate(sources, **request)
     assert found["inertial_parameters"][4] == 0.75
     assert [warning["code"] for warning in found.warnings] == ["gravity-not-given"]
-    found = evaluate(model, **request | {"quantities": ["metric"]}, sources=sources)
+    found = evaluate(sources, **request | {"quantities": ["metric"]})
     assert [warning["code"] for warning in found.warnings] == ["gravity-not-given", "no-effect"]
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from inspect import Parameter, signature
+from inspect import Parameter
 from typing import Any
 
 import pytest
+from flat_arguments import flat_arguments
 
 from service.analyses.numbers import ANALYSES
 from service.analyses.requests import arguments, read_request
@@ -43,11 +44,11 @@ CONTROL = {"controls": ["u"], "horizon": 1, "intervals": 2, "q": [0]}
 @pytest.mark.parametrize("name", FUNCTIONS)
 def test_fields_are_arguments(name: str) -> None:
     function, others = FUNCTIONS[name]
-    parameters = {key: value for key, value in signature(function).parameters.items() if key not in others}
+    parameters = {key: value for key, value in flat_arguments(function).items() if key not in others}
     fields = {key: value for key, value in ANALYSES[name].schema.model_fields.items() if key not in OF_BASE}
     assert fields.keys() == parameters.keys()
     for key, field in fields.items():
-        default = parameters[key].default
+        default = parameters[key]
         if field.is_required():
             assert default is Parameter.empty
         elif default is not Parameter.empty:

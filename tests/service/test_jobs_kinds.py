@@ -12,8 +12,8 @@ from service.settings import Limits
 from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
+from substructures.export import render
 from substructures.part.part import derive
-from substructures.printers import render
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 

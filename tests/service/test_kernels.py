@@ -20,7 +20,7 @@ from service.settings import Settings
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
 from substructures.part.part import Part
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.from_parts import NumericTree
 
 
@@ -37,7 +37,7 @@ def request(states: int) -> dict[str, object]:
 
 def agree(model: Model, engine: Kernels, states: int) -> None:
     wanted = request(states)
-    found, expected = evaluate(model, **wanted, evaluator=engine), evaluate(model, **wanted)
+    found, expected = evaluate(model, **wanted, options=EvaluationOptions(evaluator=engine)), evaluate(model, **wanted)
     for name in wanted["quantities"]:
         np.testing.assert_allclose(found[name], expected[name], rtol=1e-9, atol=1e-9)
 
@@ -122,7 +122,11 @@ def test_one_state_comes_from_warm_parts(tmp_path: Path, monkeypatch: pytest.Mon
     monkeypatch.setattr("service.kernels.interpret_entries", None)
     q = np.random.default_rng(1).uniform(-1, 1, 4)
     wanted = {"quantities": ["metric", "christoffel", "forces", "kinematics"], "q": q, "qd": q[::-1]}
-    found = evaluate(model, **wanted, evaluator=engine.of_tree(model.program, parts.values(), lambda: tree))
+    found = evaluate(
+        model,
+        **wanted,
+        options=EvaluationOptions(evaluator=engine.of_tree(model.program, parts.values(), lambda: tree)),
+    )
     expected = evaluate(model, **wanted)
     for name in ("metric", "christoffel", "forces"):
         np.testing.assert_allclose(found[name], expected[name], rtol=0, atol=1e-12)

@@ -11,13 +11,13 @@ from closed_trees import tree_parts
 from in_depth import deep
 
 from substructures import Program, catalogue, couple
+from substructures.export import render
 from substructures.expr.graph import Graph
 from substructures.expr.hoist import hoisted
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
-from substructures.printers import render
 from substructures.printers.mathml import named
 from substructures.printers.names import latex_names, short_names
 from substructures.quantities.formulas import DERIVED, derived

@@ -19,12 +19,13 @@ from written_formula import formula
 
 from substructures import Model, Program, catalogue
 from substructures.errors import TooLarge
+from substructures.export import render
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
-from substructures.printers import entries, render
+from substructures.printers import entries
 from substructures.quantities.formulas import derived
 from substructures.textbook import AT_ONCE, LIMITS, Sum, Trig, read
 

@@ -13,9 +13,9 @@ import numpy as np
 import pytest
 from textbook_models import program
 
+from substructures.export import render
 from substructures.expr.direct import ball
 from substructures.expr.syntax import read
-from substructures.printers import render
 
 
 class Line(NamedTuple):

@@ -10,8 +10,8 @@ from closed_trees import tree_model
 from written_formula import formula
 
 from substructures import catalogue
+from substructures.export import render
 from substructures.expr.bind import bind
-from substructures.printers import render
 from substructures.printers.numbers import shortest_decimal
 
 

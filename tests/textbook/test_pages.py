@@ -14,12 +14,13 @@ from closed_trees import tree_model
 from substructures import Model, Program, catalogue
 from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.export import render
 from substructures.expr.graph import Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
-from substructures.printers import entries, render
+from substructures.printers import entries
 from substructures.printers.mathml import named
 from substructures.printers.names import latex_names
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, width

@@ -13,13 +13,13 @@ from random_trees import Kind, random_definition, with_parameters
 
 from substructures import Definition, Model, Program, TreeSpec, couple, derive
 from substructures.errors import TooLarge
+from substructures.export import render
 from substructures.expr.graph import Graph
 from substructures.expr.hoist import hoisted
 from substructures.expr.interpret import interpret
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, array, program
 from substructures.expr.trigonometry import cos, sin
-from substructures.printers.render import render
 from substructures.printers.textbook import at_once
 from substructures.quantities.formulas import DERIVED, derived
 from substructures.textbook import LIMITS, Limits, read

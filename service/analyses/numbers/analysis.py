@@ -12,7 +12,7 @@ from service.analyses.requests import read_request
 from service.analyses.results import PLAIN, Answered, trajectory_of
 from service.analyses.source import Source
 from service.analyses.warnings import warnings_of
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.errors import TooLarge
 from substructures.tree.model import Model
 

@@ -10,8 +10,9 @@ from service.analyses.results import TRAJECTORY
 from service.analyses.source import Source
 from service.schemas.control import GradientRequest, OptimalControlRequest
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.optimal_control import optimal_control
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 
 
 def _optimal_control(source: Source, read: OptimalControlRequest, report: ProgressReport) -> Any:
@@ -19,13 +20,13 @@ def _optimal_control(source: Source, read: OptimalControlRequest, report: Progre
         """The share of the iterations that are done at most."""
         report(min(1.0, iteration / read.iterations))
 
-    return optimal_control(source.model, **arguments(read), progress=told)
+    return optimal_control(source.model, **control_arguments(**arguments(read)), progress=told)
 
 
 ANALYSES = {
     "cost-gradients": Analysis(
         GradientRequest,
-        lambda source, read, _: cost_gradient(source.model, **arguments(read)),
+        lambda source, read, _: cost_gradient(source.model, **control_arguments(**arguments(read))),
         "The cost of a motion under given controls and its gradient by the adjoint",
         TRAJECTORY,
     ),

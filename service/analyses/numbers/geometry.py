@@ -10,7 +10,7 @@ from service.analyses.requests import arguments
 from service.analyses.source import Source
 from service.schemas.measurements import CurvatureRequest
 from substructures.analysis.equations.curvature import curvature_values
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.quantities.states import read_states
 
 

@@ -9,7 +9,7 @@ from service.analyses.numbers.analysis import Analysis
 from service.analyses.source import Source
 from service.schemas.measurements import ExcitationRequest, IdentificationRequest
 from substructures.analysis.identification.fit import excitation, identify
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 
 
 def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> Any:

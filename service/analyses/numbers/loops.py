@@ -9,7 +9,7 @@ from service.analyses.requests import arguments
 from service.analyses.source import Source
 from service.schemas.motions import LoopRequest
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 
 
 def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:

@@ -15,8 +15,9 @@ from service.schemas.motions import (
     SpanRequest,
     WithReactions,
 )
+from substructures.analysis.from_fields import motion_arguments, sensitivity_arguments
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
-from substructures.analysis.motion.progress import ProgressReport
 from substructures.analysis.simulate import simulate
 from substructures.errors import Fault, InvalidArgument
 from substructures.quantities.powers import PowerModel
@@ -39,7 +40,8 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
     if isinstance(request, SimulationRequest) and request.friction == "loaded":
         rest["bearings"] = _reactions(source, "/friction")
     tools: dict[str, Any] = {"progress": report, "folder": source.folder}
-    return simulate(model, request.q, **rest, reactions=transmitted, powers=by_load, **tools)
+    rest = motion_arguments(model, **rest, reactions=transmitted, powers=by_load, **tools)
+    return simulate(model, request.q, **rest)
 
 
 def _powers(source: Source, request: SpanRequest) -> PowerModel | None:
@@ -87,7 +89,8 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     columns = len(request.by) + (2 * n if request.of_start else 0)
     check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
     rest = without(given, "q", "events", "fixed_step", "series", "reactions", "powers", "friction", "geodesic")
-    return sensitivities(source.model, request.q, **rest, progress=report, folder=source.folder)
+    rest = sensitivity_arguments(**rest, progress=report, folder=source.folder)
+    return sensitivities(source.model, request.q, **rest)
 
 
 ANALYSES = {

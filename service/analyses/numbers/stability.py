@@ -14,7 +14,7 @@ from service.schemas.stability import (
     RootLocusRequest,
     SteadyMotionsRequest,
 )
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus

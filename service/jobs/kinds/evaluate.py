@@ -33,11 +33,13 @@ from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.compile.kernel import NO_PLACES, Places
 from substructures.documents import pointer_step
+from substructures.documents.grouped import take
 from substructures.errors import Fault, InvalidDocument, meant
 from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
 from substructures.quantities.evaluation import (
+    EvaluationOptions,
     evaluate,
     interpreted,
     numbers_per_state,
@@ -190,7 +192,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     columns = _columns(item)
     request = EvaluationRequest.read(_with_columns(model, _uploaded(item, blobs), columns))
     first = item["range"][0] if "range" in item else 0
-    found = evaluate(model, **request.arguments(), evaluator=_evaluator, sources=sources, first=first)
+    given = {**request.arguments(), "evaluator": _evaluator, "first": first}
+    found = evaluate(sources, options=take(EvaluationOptions, given), **given)
     answer = found.plain()
     progress(0.9)
     data = _written({**answer, "states": columns} if columns else answer, item["format"], "range" in item)

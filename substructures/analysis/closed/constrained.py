@@ -25,11 +25,11 @@ from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import read_conditions, state_names
 from substructures.analysis.motion.corners import Laws, follow
-from substructures.analysis.motion.events import Event
-from substructures.analysis.motion.problem import Start
-from substructures.analysis.motion.signals import Signal
+from substructures.analysis.motion.integrators.zeros import Watch
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.errors import InvalidArgument, among

@@ -26,7 +26,7 @@ from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.closed.sticking_forces import RANK, bounded, holding, unit_rows
 from substructures.analysis.motion.dry_friction import EDGE, REST, FrictionLaws, Signs, friction_laws
 from substructures.analysis.motion.dry_run import DryRun
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 
 #: a joint has no lever where it moves by less than this part of the motion
@@ -205,11 +205,6 @@ class ClosedDryMotion:
     def watches(self) -> list[Watch]:
         """A joint that slips comes to rest; one at rest has a rate; those that stick need more than they can have."""
 
-        def stops(k: int) -> Watch:
-            """Its rate against its way; a start the wrong way counts, too."""
-            place, sign, least = self.n + int(self.laws.places[k]), int(self.signs[k]), REST * self.laws.velocity[k]
-            return Watch("rest", lambda _, x: float(sign * x[place] + least), -1)
-
         def starts(k: int) -> Watch:
             """One without a lever, by itself; of others that is rounding."""
             place, most = self.n + int(self.laws.places[k]), 4 * REST * self.laws.velocity[k]
@@ -220,7 +215,9 @@ class ClosedDryMotion:
             self.moved(t, x, self.signs)
             return float(1 + EDGE - min(self.s.used, 2.0))
 
-        found = [starts(k) if sign == 0 else stops(k) for k, sign in enumerate(self.signs)]
+        found = [
+            starts(k) if sign == 0 else self.laws.rest(k, self.n, sign) for k, sign in enumerate(self.signs.tolist())
+        ]
         return [*found, Watch("slip", left, -1)] if (self.signs == 0).any() else found
 
 

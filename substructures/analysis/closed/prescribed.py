@@ -10,12 +10,12 @@ import scipy
 
 from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.closed.kinks import require_smooth, require_smooth_table
-from substructures.analysis.motion.signals import Signal, Table, polynomials, require_covered
+from substructures.analysis.motion.problems.signals import Signal, Table, polynomials, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
 from substructures.errors import among
-from substructures.expr.corners import corners, inner, on_side
+from substructures.expr.calculus.corners import corners, inner, on_side
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret

@@ -2,32 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
-from substructures.analysis.closed.doubt import energy_doubt
 from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
+from substructures.analysis.closed.energy_uncertainty import energy_uncertainty
 from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.dry_friction import friction_laws
 from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import energy_balance, unbalanced
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem
-from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
-from substructures.analysis.motion.signals import Signal
-from substructures.analysis.motion.single_steps import steps_again
+from substructures.analysis.motion.problems.kinds import ClosedMotion
+from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.second_judges import computed_again
+from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
 from substructures.array import Array
@@ -46,31 +45,17 @@ ADVICE = "look for very stiff springs, for masses or lengths near zero and for j
 
 @dataclass(frozen=True, kw_only=True)
 class ClosedProblem(MotionProblem):
-    """A motion with closures from the closed state nearest to the start; the coordinates ``fixed`` keep their values
-    while the loops are closed, ``prescribed`` ones move as given [rad, m].
+    """A motion with closures from the closed state nearest to the start."""
 
-    ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
-    ``friction``: by the smooth law of the formulas, or set-valued at rest.
-    """
-
-    prescribed: Mapping[str, Signal] = field(default_factory=dict)
-    fixed: Sequence[str] = ()
-    reduction: Literal["projection", "partitioning"] = "projection"
-    friction: Literal["regularised", "exact"] = "regularised"
+    kind: ClosedMotion = field(default_factory=ClosedMotion)
 
     def __post_init__(self) -> None:
         super().__post_init__()
         one_of(self.integrator.method, "method", METHODS)
-        one_of(self.reduction, "reduction", tuple(REDUCTIONS))
-        one_of(self.friction, "friction", ("regularised", "exact"))
 
 
-def simulate_closed(
-    problem: ClosedProblem, progress: ProgressReport | None = None, folder: Path | None = None
-) -> Trajectory:
+def simulate_closed(problem: ClosedProblem) -> Trajectory:
     """Integrate the equations of motion with closures from the closed state nearest to the given one.
-
-    ``progress`` is told the finished share of the span and cancels by False. ``folder``: a cache of compiled kernels.
 
     The series of the result: ``qdd`` (K, n), ``multipliers`` (K, m; of least norm), ``kinetic_energy``,
     ``potential_energy``, ``work`` (K,), ``position_residual``, ``velocity_residual`` (K,), ``actuation`` (K, p; forces
@@ -82,10 +67,11 @@ def simulate_closed(
     span that cannot be finished are ``failed``, with advice and the motion up to there. Raises InvalidInput (pointers
     start with names of arguments of ``simulate``) and MissingValue.
     """
-    require_fixed(problem.model, problem.fixed)
+    progress, folder = problem.integrator.progress, problem.integrator.folder
+    require_fixed(problem.model, problem.kind.fixed)
     s, start = _constrained(problem, folder), problem.span[0]
     s.inputs.enter(*problem.span)
-    state = consistent_state(s, start, s.conditions.q, s.conditions.qd, problem.fixed)
+    state = consistent_state(s, start, s.conditions.q, s.conditions.qd, problem.kind.fixed)
     place = mobility(s, start, state.q)
     message = state.message or (f"the start is singular: {SINGULAR}" if place.singular else "")
     if message:
@@ -96,8 +82,15 @@ def simulate_closed(
     motion = _moved(s, problem, x, place.rank, progress, folder)
     found = _judged(s, problem, motion, place.rank)
     found = replace(found, message=". ".join(filter(None, (found.message, _stiff(s, motion)))))
-    more = _repeated if s.conditions.varied_potential() else _steps_again
-    return replace(found, checks=(*found.checks, *more(s, problem, x, place.rank, motion, progress)))
+    s.conditions = replace(s.conditions, events=())
+
+    def move(other: ClosedProblem, y: Array, told: ProgressReport | None, turning: bool) -> IntegratedMotion:
+        """The motion once more."""
+        return _moved(s, other, y, place.rank, told, None, turning)
+
+    is_whole, groups = bool(s.conditions.varied_potential()), state_groups(s.n, s.n)
+    again = computed_again(problem, motion, groups, move, is_whole=is_whole)
+    return replace(found, checks=(*found.checks, *again))
 
 
 def _stiff(s: Constrained, motion: IntegratedMotion) -> str:
@@ -116,43 +109,10 @@ def _stiff(s: Constrained, motion: IntegratedMotion) -> str:
     )
 
 
-def _repeated(
-    s: Constrained,
-    problem: ClosedProblem,
-    x: Array,
-    rank: int,
-    first: IntegratedMotion,
-    progress: ProgressReport | None,
-) -> tuple[Check, ...]:
-    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
-    s.conditions = replace(s.conditions, events=())
-
-    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """The same motion more carefully."""
-        other = replace(problem, times=OutputTimes(span, times), integrator=choice, events=())
-        return _moved(s, other, x, rank, at_end(progress), None)
-
-    return accurate(second_run(first, problem.integrator, again), state_groups(s.n, s.n), problem.drift_limit)
-
-
-def _steps_again(
-    s: Constrained, problem: ClosedProblem, _: Array, rank: int, first: IntegratedMotion, __: ProgressReport | None
-) -> tuple[Check, ...]:
-    """Some steps once more, where the balance of energy judges the whole."""
-    s.conditions = replace(s.conditions, events=())
-
-    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """From a state of the motion."""
-        other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
-        return _moved(s, other, x, rank, None, None, turning=False)
-
-    return steps_again(first, problem.integrator, state_groups(s.n, s.n), problem.drift_limit, again)
-
-
 def _constrained(problem: ClosedProblem, folder: Path | None) -> Constrained:
     notes: dict[str, Any] = {"events": problem.events, "series": problem.series}
-    kind = DryConstrained if problem.friction == "exact" else Constrained
-    return kind(problem.model, problem.start, problem.span, problem.prescribed, **notes, folder=folder)
+    kind = DryConstrained if problem.kind.friction == "exact" else Constrained
+    return kind(problem.model, problem.start, problem.span, problem.kind.prescribed, **notes, folder=folder)
 
 
 def _moved(
@@ -165,7 +125,7 @@ def _moved(
     turning: bool = True,
 ) -> IntegratedMotion:
     """The motion. ``turning``: it begins anew at corners of force laws."""
-    reduction: Reduction = REDUCTIONS[problem.reduction](s, rank)
+    reduction: Reduction = REDUCTIONS[problem.kind.reduction](s, rank)
     inner, span, breaks = problem.integrator.stepper(), problem.span, s.conditions.breaks(problem.span)
     s.inputs.enter(span[0], [*breaks, span[1]][0])
 
@@ -196,7 +156,7 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
     if names:
         balance = unbalanced(names)
     else:
-        doubt = energy_doubt(s, rank, t, x[:, :-1], np.array(motion.step_t))
+        doubt = energy_uncertainty(s, rank, t, x[:, :-1], np.array(motion.step_t))
         balance = energy_balance(t, judged | {"effort": effort}, s.conservative, problem.drift_limit, doubt)
     forces: Callable[[Constrained], dict[str, Any]] = _forces
     checks: tuple[Check, ...] = (*residuals, balance)

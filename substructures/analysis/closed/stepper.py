@@ -14,7 +14,7 @@ import numpy as np
 from substructures.analysis.closed.branches import FAR, change, singular_part
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
-from substructures.analysis.motion.steppers import Stepper, within
+from substructures.analysis.motion.integrators.steppers import Stepper, within
 from substructures.array import Array
 
 #: how often a step that ran into a singular position is begun again, each time a quarter as long

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from substructures.certificate import served
+from substructures.certificate.derived import model_formulas
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Graph
 from substructures.expr.program import Program, array, program
@@ -37,4 +37,6 @@ def with_power(model: Model, outputs: Sequence[str], inputs: Collection[str]) ->
     symbols = Workspace(model).symbols
     needs = (*outputs, "forces", "potential_energy")
     result = program(graph, found | {POWER: array((), lambda: total)}, symbols)
-    return certified(result, model, served.with_power(outputs), "equations of closed motions", needs=needs, zero=absent)
+    return certified(
+        result, model, model_formulas.with_power(outputs), "equations of closed motions", needs=needs, zero=absent
+    )

@@ -11,17 +11,14 @@ import numpy as np
 from substructures.analysis.arguments import positive
 from substructures.analysis.control.problem import (
     ERROR_LIMIT,
-    NO_COST,
     ControlProblem,
-    Cost,
-    Hold,
     initial_state,
     per_node,
     require_solvable,
 )
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.analysis.control.step_error import gradient_checks
-from substructures.analysis.given import StateArray, require_known
+from substructures.analysis.given import require_known
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict
@@ -80,18 +77,8 @@ class CostGradient:
 
 def cost_gradient(
     model: Model,
+    problem: ControlProblem,
     *,
-    controls: Sequence[str],
-    horizon: float,
-    intervals: int,
-    q: StateArray,
-    cost: Cost = NO_COST,
-    steps: int = 1,
-    hold: Hold = "linear",
-    qd: StateArray | None = None,
-    t: float = 0.0,
-    inputs: Mapping[str, float] | None = None,
-    parameters: Mapping[str, float] | None = None,
     values: Mapping[str, Any] | None = None,
     vary: Sequence[str] = (),
     error_limit: float = ERROR_LIMIT,
@@ -100,29 +87,15 @@ def cost_gradient(
 
         J = integral of l(q, q', u, t, p) dt + phi(q, q', t, p) at the end,        g q'' + Gamma q' q' = Q
 
-    ``controls`` to ``parameters``: see :class:`substructures.analysis.control.problem.ControlProblem`. ``values``: by
-    control one number, or one for each node [N m, N], default 0: nodes are the ends of the ``intervals`` (``hold``:
-    linear, intervals + 1 of them) or the intervals (constant). ``vary``: parameters by which the cost is
-    differentiated. The gradient is that of the discrete adjoint of the Runge-Kutta scheme, exact to rounding, for about
-    three times the run. A second run with steps half as long judges them: its relative differences, the stated errors
-    of cost, motion and gradient, may reach ``error_limit``; with it all takes three times as long. A motion that leaves
-    the range of numbers is a result with status ``failed``. Raises InvalidInput (``/controls/i``, ``/cost/running``,
-    ``/values/name``, ``/vary/i``, ...) and MissingValue.
+    ``values``: by control one number, or one for each node [N m, N], default 0: nodes are the ends of the intervals of
+    the ``problem`` (``hold``: linear, intervals + 1 of them) or the intervals (constant). ``vary``: parameters by which
+    the cost is differentiated. The gradient is that of the discrete adjoint of the Runge-Kutta scheme, exact to
+    rounding, for about three times the run. A second run with steps half as long judges them: its relative differences,
+    the stated errors of cost, motion and gradient, may reach ``error_limit``; with it all takes three times as long. A
+    motion that leaves the range of numbers is a result with status ``failed``. Raises InvalidInput (``/controls/i``,
+    ``/cost/running``, ``/values/name``, ``/vary/i``, ...) and MissingValue.
     Source: W. W. Hager, Numerische Mathematik 87, 2000; notation.md, section 7.
     """
-    problem = ControlProblem(
-        controls=controls,
-        horizon=horizon,
-        intervals=intervals,
-        q=q,
-        cost=cost,
-        steps=steps,
-        hold=hold,
-        qd=qd,
-        t=t,
-        inputs=inputs,
-        parameters=parameters,
-    )
     require_solvable(model, problem)
     require_known("vary", "parameter", vary, model.parameters)
     own = {name: x for name, x in input_defaults(model).items() if name in problem.controls}

@@ -46,17 +46,20 @@ class End:
 
 @dataclass(frozen=True)
 class Demands:
-    """Demands, bounds and a guess; see :func:`substructures.analysis.control.optimal_control.optimal_control`.
+    """What an optimum must meet, and how it is searched for.
 
-    Raises InvalidArgument.
+    ``end``: demands on the last state; ``bounds``: least and largest value by control [N m, N], None for none;
+    ``guess``: controls to begin with, by name one number or one for each node; ``segments``: divides the intervals
+    (default: the largest such up to 10); ``tolerance``: change of the cost at which the search ends, after
+    ``iterations`` at the latest. Raises InvalidArgument.
     """
 
-    end: End
-    bounds: Mapping[str, tuple[float | None, float | None]]
-    guess: Mapping[str, Any]
-    segments: int | None
-    iterations: int
-    tolerance: float
+    end: End = field(default_factory=End)
+    bounds: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
+    guess: Mapping[str, Any] = field(default_factory=dict)
+    segments: int | None = None
+    iterations: int = 500
+    tolerance: float = 1e-8
 
     def __post_init__(self) -> None:
         if self.segments is not None:

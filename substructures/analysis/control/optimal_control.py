@@ -11,15 +11,15 @@ Hamiltonian is constant along the motion up to the discretisation of the control
 
 Example, a cart pendulum swung up in two seconds by a force of at most 20 N::
 
-    optimal_control(
-        model, controls=["tau.x.q0"], cost=Cost("tau.x.q0^2"), horizon=2, intervals=40, steps=2,
-        q={"x.q0": 0, "x.q1": math.pi}, end=End([0, 0], [0, 0]), bounds={"tau.x.q0": (-20, 20)},
+    problem = ControlProblem(
+        controls=["tau.x.q0"], cost=Cost("tau.x.q0^2"), horizon=2, intervals=40, steps=2, q={"x.q0": 0, "x.q1": math.pi}
     )
+    optimal_control(model, problem, Demands(End([0, 0], [0, 0]), {"tau.x.q0": (-20, 20)}))
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, Literal
 
@@ -28,11 +28,10 @@ import scipy
 
 from substructures.analysis.arguments import positive
 from substructures.analysis.control.cost_gradient import trajectory
-from substructures.analysis.control.nonlinear_program import BEYOND, Demands, End, ShootingProgram
-from substructures.analysis.control.problem import ERROR_LIMIT, NO_COST, ControlProblem, Cost, Hold, require_solvable
+from substructures.analysis.control.nonlinear_program import BEYOND, Demands, ShootingProgram
+from substructures.analysis.control.problem import ERROR_LIMIT, ControlProblem, require_solvable
 from substructures.analysis.control.shooting import Rollout
 from substructures.analysis.control.step_error import motion_checks
-from substructures.analysis.given import StateArray
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import About, Check, verdict
@@ -40,6 +39,8 @@ from substructures.array import Array
 from substructures.tree.model import Model
 
 STEPS = "the motion is not as accurate as 'error_limit' asks for: take more 'steps' or 'intervals'"
+#: no demands
+FREE = Demands()
 #: called with the number of an iteration, the cost and the violation
 IterationReport = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
@@ -94,55 +95,22 @@ class Optimum:
 
 def optimal_control(
     model: Model,
+    problem: ControlProblem,
+    demands: Demands = FREE,
     *,
-    controls: Sequence[str],
-    horizon: float,
-    intervals: int,
-    q: StateArray,
-    cost: Cost = NO_COST,
-    steps: int = 1,
-    hold: Hold = "linear",
-    qd: StateArray | None = None,
-    t: float = 0.0,
-    inputs: Mapping[str, float] | None = None,
-    parameters: Mapping[str, float] | None = None,
-    end: End | None = None,
-    bounds: Mapping[str, tuple[float | None, float | None]] | None = None,
-    guess: Mapping[str, Any] | None = None,
-    segments: int | None = None,
-    iterations: int = 500,
-    tolerance: float = 1e-8,
     error_limit: float = ERROR_LIMIT,
     progress: IterationReport | None = None,
 ) -> Optimum:
     """Controls of least cost J (see above) under demands on the end and bounds, by multiple shooting.
 
-    ``controls`` to ``parameters``: see :class:`substructures.analysis.control.problem.ControlProblem`. ``end``: demands
-    on the last state; ``bounds``: least and largest value by control [N m, N], None for none; ``guess``: controls to
-    begin with, by name one number or one for each node; ``segments``: divides ``intervals`` (default: the largest such
-    up to 10); ``tolerance``: change of the cost at which the search ends, after ``iterations`` at the latest.
     ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
     search. The motion under the controls that were found is judged by a second run with steps half as long, from the
     start to the end in one piece: it may differ by ``error_limit``, relative. Demands that are not met are a result
     with status ``failed`` and advice. Raises InvalidInput (``/controls/i``, ``/end/q``, ``/bounds/name``,
     ``/segments``, ...) and MissingValue. Source: see above.
     """
-    problem = ControlProblem(
-        controls=controls,
-        horizon=horizon,
-        intervals=intervals,
-        q=q,
-        cost=cost,
-        steps=steps,
-        hold=hold,
-        qd=qd,
-        t=t,
-        inputs=inputs,
-        parameters=parameters,
-    )
-    wanted = Demands(end or End(), bounds or {}, guess or {}, segments, iterations, tolerance)
     require_solvable(model, problem)
-    return _searched(ShootingProgram(model, problem, wanted), positive(error_limit, "error_limit"), progress)
+    return _searched(ShootingProgram(model, problem, demands), positive(error_limit, "error_limit"), progress)
 
 
 def _searched(search: ShootingProgram, limit: float, progress: IterationReport | None) -> Optimum:

@@ -26,7 +26,7 @@ import numpy as np
 
 from substructures.analysis.given import StateArray
 from substructures.array import Array
-from substructures.certificate.perturbed import curved
+from substructures.certificate.derived.perturbed import curved
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr

@@ -2,9 +2,9 @@
 
 Columns F_1(q), ..., F_m(q) are given as rows of formulas for exact values of q. These are combined:
 
-* over a prime field (:mod:`substructures.expr.modular`) the rank of samples at random points is that of the functions,
-  with an error probability of about degree / 2**100; so are the reduced echelon form, the columns that take part in
-  each dependency, and the values of their coefficients at one point;
+* over a prime field (:mod:`substructures.expr.rings.modular`) the rank of samples at random points is that of the
+  functions, with an error probability of about degree / 2**100; so are the reduced echelon form, the columns that take
+  part in each dependency, and the values of their coefficients at one point;
 * the coefficients themselves, functions of whatever symbols are not coordinates, follow from relations that are known
   beforehand, by elimination in sparse rows (:mod:`.relations`). Where these do not suffice, they follow from samples at
   exact points (angles that are multiples of a quarter turn, then of an eighth), where every row is a small formula in
@@ -21,8 +21,8 @@ import numpy as np
 from substructures.analysis.equations.relations import Entry, Relations
 from substructures.errors import TooLarge
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.modular import Field
 from substructures.expr.program import Formulas, Symbol, program
+from substructures.expr.rings.modular import Field
 
 #: exact samples after which the search for rows ends
 MAX_SAMPLES = 400

@@ -10,7 +10,7 @@ import numpy as np
 
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
-from substructures.expr.corners import VanishingOnAllSides, corners, inner, on_side
+from substructures.expr.calculus.corners import VanishingOnAllSides, corners, inner, on_side
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret

@@ -6,7 +6,8 @@ Momenta of the whole: the derivative of p . e or L . e along the equations of mo
 exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
 Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
 g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0.
-What is zero is decided by the graph, where equal formulas are one node, and by :mod:`substructures.expr.vanish`.
+What is zero is decided by the graph, where equal formulas are one node, and by
+:mod:`substructures.expr.calculus.vanish`.
 """
 
 from __future__ import annotations
@@ -20,9 +21,9 @@ from substructures.analysis.equations.energy import EnergyRule, closures_of, dep
 from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.symmetries import Direction, directions
-from substructures.certificate.integrals import constant
+from substructures.certificate.derived.integrals import constant
 from substructures.errors import Fault, InvalidArgument, among, listed
-from substructures.expr.corners import VanishingOnAllSides
+from substructures.expr.calculus.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program

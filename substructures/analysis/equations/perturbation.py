@@ -20,7 +20,7 @@ from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import ModelFormulas, inputs_of, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.given import require_known
-from substructures.certificate.perturbed import first_order, perturbed
+from substructures.certificate.derived.perturbed import first_order, perturbed
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr

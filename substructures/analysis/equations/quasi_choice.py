@@ -11,10 +11,10 @@ from substructures.analysis.arguments import require_read
 from substructures.analysis.equations.cofactors import determinant
 from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
 from substructures.errors import InvalidArgument, among
+from substructures.export import render
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
-from substructures.printers.render import render
 from substructures.quantities.workspace import Workspace
 
 MatrixRows = list[list[Expr]]

@@ -38,7 +38,7 @@ from substructures.analysis.arguments import exact
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows, vanishing
 from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
-from substructures.certificate.quasi import Quasi
+from substructures.certificate.derived.quasi import Quasi
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr

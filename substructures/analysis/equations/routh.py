@@ -20,7 +20,7 @@ from dataclasses import dataclass
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.analysis.equations.first_integrals import FirstIntegrals, acting_inputs, first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.certificate.integrals import reduced
+from substructures.certificate.derived.integrals import reduced
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program

@@ -20,9 +20,9 @@ from functools import lru_cache
 from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.certificate.perturbed import steady
+from substructures.certificate.derived.perturbed import steady
 from substructures.errors import InvalidArgument
-from substructures.expr.corners import VanishingOnAllSides
+from substructures.expr.calculus.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.program import Program, array, program
 from substructures.expr.walk import transfer

@@ -22,14 +22,14 @@ import numpy as np
 from substructures.analysis.equations.dependencies import Functions, dependencies
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.errors import TooLarge
-from substructures.expr.corners import corners
-from substructures.expr.expand import Expanded, expand
-from substructures.expr.generators import times_power
+from substructures.expr.calculus.corners import corners
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
-from substructures.expr.modular import Field, NoSquareRoot
 from substructures.expr.program import Entries, Formulas, Program, program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import Expanded, expand
+from substructures.expr.rings.generators import times_power
+from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
 
 X = TypeVar("X", int, Expr)

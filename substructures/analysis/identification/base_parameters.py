@@ -33,18 +33,18 @@ from flint import arb, ctx
 
 from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.certificate.compare import compare
+from substructures.certificate.derived.regressed import base_outputs
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.regressed import base_outputs
 from substructures.certificate.states import states_between
 from substructures.certificate.stored import operations_in_balls
 from substructures.errors import InvalidArgument, TooLarge, VerificationFailed, meant
 from substructures.expr.bind import bind
 from substructures.expr.direct import ball
-from substructures.expr.expand import expand
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.modular import Field, NoSquareRoot
 from substructures.expr.program import Formulas, Program, Symbol, array, operands, program
 from substructures.expr.replay import replay
+from substructures.expr.rings.expand import expand
+from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel

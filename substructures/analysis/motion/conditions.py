@@ -11,12 +11,12 @@ import numpy as np
 from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.equations.expressions import Given, read_expressions
 from substructures.analysis.equations.kernels import program_kernel
-from substructures.analysis.motion.events import DIRECTIONS, Event
-from substructures.analysis.motion.problem import Start
-from substructures.analysis.motion.signals import Curve, Signal, Table, require_covered
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.integrators.zeros import Watch
+from substructures.analysis.motion.problems.events import DIRECTIONS, Event
+from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.signals import Curve, Signal, Table, require_covered
 from substructures.array import Array
-from substructures.certificate.powers import OUTPUT as POWERS
+from substructures.certificate.derived.powers import OUTPUT as POWERS
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks

@@ -22,8 +22,8 @@ from numpy.typing import NDArray
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.right_hand_side import RightHandSide
-from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
@@ -58,6 +58,13 @@ class FrictionLaws:
     def smooth(self, rates: Array) -> Array:
         """What the formulas of the model have, (..., k)."""
         return np.asarray(-self.slipping(rates) * np.tanh(rates / self.velocity))
+
+    def rest(self, k: int, n: int, sign: int) -> Watch:
+        """Where a joint of a motion (q, q', ...) of n coordinates that slips comes to rest: its rate against its way,
+        so that a start the wrong way counts, too.
+        """
+        place, least = n + int(self.places[k]), REST * self.velocity[k]
+        return Watch("rest", lambda _, x: float(sign * x[place] + least), -1)
 
 
 def friction_laws(model: Model, values: dict[str, float]) -> FrictionLaws:
@@ -137,17 +144,15 @@ class DryMotion:
     def watches(self) -> list[Watch]:
         """A joint that slips comes to rest; one that sticks needs more than it can have."""
 
-        def stops(k: int) -> Watch:
-            """Its rate against its way; a start the wrong way counts, too."""
-            place, sign, least = self.n + int(self.laws.places[k]), int(self.signs[k]), REST * self.laws.velocity[k]
-            return Watch("rest", lambda _, x: float(sign * x[place] + least), -1)
-
         def breaks_away(k: int) -> Watch:
             """What is left of its static friction."""
             most = (1 + EDGE) * self.laws.static[k]
             return Watch("slip", lambda t, x: float(most - abs(self.moved(t, x, self.signs)[1][k])), -1)
 
-        return [breaks_away(k) if sign == 0 else stops(k) for k, sign in enumerate(self.signs)]
+        return [
+            breaks_away(k) if sign == 0 else self.laws.rest(k, self.n, sign)
+            for k, sign in enumerate(self.signs.tolist())
+        ]
 
     def instead(self, force: Array, x: Array) -> Array:
         """What the power (K,) of these forces (K, n) is more than that of the smooth law, at states x (K, ...)."""

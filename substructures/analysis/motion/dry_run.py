@@ -9,8 +9,13 @@ from typing import Protocol
 import numpy as np
 
 from substructures.analysis.motion.dry_friction import FrictionLaws, Signs
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, TimeReport, integrate
-from substructures.analysis.motion.zeros import Watch
+from substructures.analysis.motion.integrators.integration import (
+    IntegratedMotion,
+    IntegratorSettings,
+    TimeReport,
+    integrate,
+)
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 
@@ -101,7 +106,7 @@ def integrate_dry(
     breaks: Sequence[float],
     progress: TimeReport | None,
 ) -> DryRun:
-    """As :func:`substructures.analysis.motion.integration.integrate`; joints slip and stick as friction lets them."""
+    """As :func:`~substructures.analysis.motion.integrators.integration.integrate`; joints slip and stick."""
     run, t, still = DryRun(), span[0], 0
     while True:
         try:

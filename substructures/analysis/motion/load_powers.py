@@ -14,13 +14,13 @@ import numpy as np
 
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.dry_friction import friction_laws
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.second_run import ROUNDING
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.transmitted import accelerations, has_not_begun, state_values
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.certificate.powers import OUTPUT
+from substructures.certificate.derived.powers import OUTPUT
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_in_blocks

@@ -14,26 +14,26 @@ from pathlib import Path
 
 import numpy as np
 
-from substructures.analysis.arguments import Numbers
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas, require_tree
 from substructures.analysis.equations.kernels import Known, program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import Conditions, state_names
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge
 from substructures.analysis.motion.limits import with_limits
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem, Start, StateVector
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
+from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.second_run import accurate, halves, second_run
-from substructures.analysis.motion.signals import Signal
 from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.certificate.perturbed import by_parameters, varied
+from substructures.certificate.derived.perturbed import by_parameters, varied
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
@@ -42,6 +42,7 @@ from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
+DEFAULT, PLAIN = Integrator(), SensitivityOutputs()
 QUANTITIES = ("metric", "christoffel", "forces")
 
 
@@ -119,28 +120,18 @@ def sensitivities(
     span: tuple[float, float],
     by: Sequence[str] = (),
     *,
-    of_start: bool = False,
     qd: StateVector | None = None,
-    parameters: Mapping[str, float] | None = None,
     inputs: Mapping[str, Signal] | None = None,
-    times: Numbers | None = None,
-    step: float | None = None,
-    count: int | None = None,
-    method: str = "DOP853",
-    relative_tolerance: float = 1e-10,
-    absolute_tolerance: float = 1e-12,
-    max_step: float | None = None,
-    max_steps: int = 1_000_000,
-    drift_limit: float = 1e-7,
-    progress: ProgressReport | None = None,
-    folder: Path | None = None,
+    parameters: Mapping[str, float] | None = None,
+    integrator: Integrator = DEFAULT,
+    outputs: SensitivityOutputs = PLAIN,
 ) -> Trajectory:
     """The motion of a tree and its derivatives by the parameters ``by``: series ``d.<parameter>`` (K, 2n), dx/dp of
     x = (q, q') [rad, m, rad/s, m/s; per unit of the parameter].
 
-    ``of_start``: also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
-    :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, ``method``
-    is any but Taylor.
+    With ``outputs.of_start`` also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
+    :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, the method
+    is any but Taylor and FixedStep.
 
     Checks: first integrals of the motion, and a second run with tighter tolerances and shorter steps, whose relative
     difference is the stated error of the motion and of each derivative and may reach ``drift_limit``; both runs take
@@ -151,19 +142,19 @@ def sensitivities(
     problem = MotionProblem(
         model=model,
         start=Start(q, qd, parameters or {}, inputs or {}),
-        times=OutputTimes(span, times, step, count),
-        integrator=IntegratorChoice(method, relative_tolerance, absolute_tolerance, max_step, max_steps),
-        drift_limit=drift_limit,
+        times=OutputTimes(span, outputs),
+        integrator=integrator,
     )
     conditions = tree_conditions(problem)
-    _require_plain(conditions, method)
-    return _varied(problem, _Variation(conditions, by, of_start, folder), by, progress)
+    _require_plain(conditions, integrator)
+    variation = _Variation(conditions, by, outputs.of_start, integrator.folder)
+    return _varied(problem, variation, by, integrator.progress)
 
 
-def _require_plain(conditions: Conditions, method: str) -> None:
+def _require_plain(conditions: Conditions, integrator: Integrator) -> None:
     """Raises InvalidArgument for what has no place in the variational equations."""
     faults = []
-    if method == TAYLOR:
+    if integrator.method == TAYLOR or integrator.fixed_step is not None:
         faults.append(Fault("/method", "not-supported", "sensitivities are computed by the other methods"))
     named = {s.name for s in conditions.expressions.symbols if s.kind != "time"}
     if named:
@@ -203,7 +194,7 @@ def _integrated(
     f: _Variation,
     span: tuple[float, float],
     times: Array,
-    choice: IntegratorChoice,
+    choice: Integrator,
     progress: ProgressReport | None = None,
 ) -> IntegratedMotion:
     return integrate(

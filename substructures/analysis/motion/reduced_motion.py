@@ -10,8 +10,8 @@ import scipy
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.corners import Laws, follow
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
 from substructures.compile import compile_program
 

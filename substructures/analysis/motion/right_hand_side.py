@@ -16,10 +16,10 @@ from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.corners import Laws, follow
+from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.motion.zeros import Watch
 from substructures.array import Array
-from substructures.certificate.served import simulated
+from substructures.certificate.derived.model_formulas import simulated
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified

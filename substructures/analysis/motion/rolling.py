@@ -5,25 +5,24 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
-from substructures.analysis.equations.velocity_constraints import Constraint
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import IntegratorChoice, MotionProblem, StateVector
-from substructures.analysis.motion.progress import ProgressReport, share_of
-from substructures.analysis.motion.reduced_motion import FORMS, ReducedMotion
-from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
-from substructures.analysis.motion.single_steps import steps_again
-from substructures.analysis.motion.steppers import METHODS
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion
+from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.reduced_motion import ReducedMotion
+from substructures.analysis.motion.second_judges import computed_again
+from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.velocity_choices import VelocityChoices
 from substructures.analysis.verdict import Check
@@ -43,44 +42,32 @@ ADVICE = "the quasi-velocities may not describe the motion there (take others), 
 
 @dataclass(frozen=True, kw_only=True)
 class RollingProblem(MotionProblem):
-    """A motion with ``constraints`` from ``start.q`` and quasi-velocities ``v`` (0 by default), or from velocities
-    ``start.qd`` that meet them.
+    """A motion with constraints from ``start.q`` and quasi-velocities, or velocities ``start.qd`` that meet them."""
 
-    ``velocities``, ``independent``: see :func:`quasi_velocity_equations`; where neither is given velocities of
-    coordinates are chosen, and others on the way where these fail. ``form``: of the equations of motion.
-    """
-
-    constraints: Sequence[Constraint] = ()
-    velocities: Mapping[str, str] | None = None
-    independent: Sequence[str] | None = None
-    v: StateVector | None = None
-    form: Literal["voronets", "boltzmann-hamel"] = "voronets"
+    kind: ConstrainedMotion
 
     def __post_init__(self) -> None:
         super().__post_init__()
         one_of(self.integrator.method, "method", METHODS)
-        one_of(self.form, "form", tuple(FORMS))
 
 
-def simulate_rolling(
-    problem: RollingProblem, progress: ProgressReport | None = None, folder: Path | None = None
-) -> Trajectory:
+def simulate_rolling(problem: RollingProblem) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
-    ``progress`` is told the finished share of the span and cancels by False. ``folder``: a cache of compiled kernels.
     Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``,
     ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' is zero, gaps are
     constant, and T + V - work is, but where springs depend on an input that varies. A span that cannot be finished is
     ``failed``. Raises InvalidInput (also for closures of the model that are not among the constraints; pointers start
     with names of arguments of ``simulate``), MissingValue and TooLarge.
     """
-    model, start = problem.model, problem.span[0]
+    model, start, kind = problem.model, problem.span[0], problem.kind
+    progress, folder = problem.integrator.progress, problem.integrator.folder
     conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
     place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True))
     equations = quasi_velocity_equations(
-        model, problem.constraints, velocities=problem.velocities, independent=problem.independent, near=place
+        model, kind.constraints, velocities=kind.velocities, independent=kind.independent, near=place
     )
-    rolling = ReducedMotion(equations, conditions, problem.form, folder)
+    rolling = ReducedMotion(equations, conditions, problem.kind.form, folder)
     rolling.inputs.enter(*problem.span)
     choices = _choices(rolling, problem, folder)
     y = np.concatenate((*_start(rolling, problem), (0.0,)))
@@ -91,57 +78,31 @@ def simulate_rolling(
     else:
         motion = _moved(choices, problem, x, progress, folder)
     found = _judged(choices, problem, motion)
-    more = _repeated if conditions.varied_potential() else _steps_again
-    return replace(found, checks=(*found.checks, *more(choices, problem, x, motion, progress)))
+    is_whole = bool(conditions.varied_potential())
+    choices.first.conditions = replace(choices.first.conditions, events=())
+
+    def move(other: RollingProblem, y: Array, told: ProgressReport | None, turning: bool) -> IntegratedMotion:
+        """The motion once more."""
+        return _moved(choices, other, y, told, None, turning)
+
+    groups = state_groups(rolling.n, choices.rates, "v" if choices.make is None else "qd")
+    again = computed_again(problem, motion, groups, move, is_whole=is_whole)
+    return replace(found, checks=(*found.checks, *again))
 
 
 def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | None) -> VelocityChoices:
     """Velocities that the program chose are changed on the way, but where a corner of a force law is followed."""
     equations, conditions = rolling.equations, rolling.conditions
-    given = problem.velocities is not None or problem.independent is not None
+    given = problem.kind.velocities is not None or problem.kind.independent is not None
     if given or not equations.singular or has_corners(equations.program) or has_corners(conditions.expressions):
         return VelocityChoices(rolling, None)
 
     def make(chosen: Sequence[str]) -> ReducedMotion:
         """The motion in the velocities of these coordinates."""
-        other = quasi_velocity_equations(problem.model, problem.constraints, independent=chosen)
-        return ReducedMotion(other, conditions, problem.form, folder)
+        other = quasi_velocity_equations(problem.model, problem.kind.constraints, independent=chosen)
+        return ReducedMotion(other, conditions, problem.kind.form, folder)
 
     return VelocityChoices(rolling, make)
-
-
-def _repeated(
-    choices: VelocityChoices,
-    problem: RollingProblem,
-    x: Array,
-    first: IntegratedMotion,
-    progress: ProgressReport | None,
-) -> tuple[Check, ...]:
-    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
-    choices.first.conditions = replace(choices.first.conditions, events=())
-
-    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """The same motion more carefully."""
-        other = replace(problem, times=OutputTimes(span, times), integrator=choice, events=())
-        return _moved(choices, other, x, at_end(progress), None)
-
-    groups = state_groups(choices.first.n, choices.rates, "v" if choices.make is None else "qd")
-    return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
-
-
-def _steps_again(
-    choices: VelocityChoices, problem: RollingProblem, _: Array, first: IntegratedMotion, __: ProgressReport | None
-) -> tuple[Check, ...]:
-    """Some steps once more, where the balance of energy judges the whole."""
-    choices.first.conditions = replace(choices.first.conditions, events=())
-
-    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """From a state of the motion."""
-        other = replace(problem, times=OutputTimes(span, [span[1]]), integrator=choice, events=())
-        return _moved(choices, other, x, None, None, turning=False)
-
-    groups = state_groups(choices.first.n, choices.rates, "v" if choices.make is None else "qd")
-    return steps_again(first, problem.integrator, groups, problem.drift_limit, again)
 
 
 def _moved(
@@ -178,7 +139,7 @@ def _start(rolling: ReducedMotion, problem: RollingProblem) -> tuple[Array, Arra
     """q and v at the start."""
     model, names = rolling.equations.model, rolling.equations.velocities
     q, qd = rolling.conditions.q, rolling.conditions.qd
-    if problem.v is not None and problem.start.qd is not None:
+    if problem.kind.v is not None and problem.start.qd is not None:
         raise InvalidArgument.at("/v", "two-velocities", "give either 'v' or 'qd'")
     place = rolling.conditions.values | dict(zip(model.coordinates, q, strict=True))
     T = interpret(rolling.equations.program, place, ["T"])["T"]
@@ -186,7 +147,7 @@ def _start(rolling: ReducedMotion, problem: RollingProblem) -> tuple[Array, Arra
         message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
         raise InvalidArgument.at("/q", "singular-start", message)
     if problem.start.qd is None:
-        return q, _by_name(problem.v, names)
+        return q, _by_name(problem.kind.v, names)
     # q' = T v, in the sense of least squares, and exact for velocities that meet B q' = 0
     v = np.asarray(np.linalg.lstsq(T, qd)[0], dtype=np.float64)
     left = np.abs(T @ v - qd).max(initial=0)

@@ -13,9 +13,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from substructures.analysis.motion.integration import IntegratedMotion
-from substructures.analysis.motion.problem import IntegratorChoice
-from substructures.analysis.motion.progress import ProgressReport
+from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 
@@ -26,7 +26,7 @@ ROUNDING = 1e-12
 #: so many more steps than the first run may take
 MORE = 10
 #: integrates anew: (span, times of results, integrator)
-Again = Callable[[tuple[float, float], Array, IntegratorChoice], IntegratedMotion]
+Again = Callable[[tuple[float, float], Array, Integrator], IntegratedMotion]
 
 
 @dataclass(frozen=True)
@@ -42,7 +42,7 @@ class TwoRuns:
     message: str = ""
 
 
-def second_run(first: IntegratedMotion, choice: IntegratorChoice, again: Again) -> TwoRuns:
+def second_run(first: IntegratedMotion, choice: Integrator, again: Again) -> TwoRuns:
     """The states of a first run at its results and at its end, and those of a second, more careful run."""
     t, x, results = first.judged()
     places = np.append(results, len(t) - 1)
@@ -58,7 +58,7 @@ def second_run(first: IntegratedMotion, choice: IntegratorChoice, again: Again) 
     return TwoRuns(times, one, np.array(second.x), about)
 
 
-def _careful(first: IntegratedMotion, choice: IntegratorChoice) -> tuple[IntegratorChoice, str]:
+def _careful(first: IntegratedMotion, choice: Integrator) -> tuple[Integrator, str]:
     """Other tolerances and shorter steps, in words, too."""
     tight = choice.relative_tolerance >= LEAST
     factor = TIGHTER if tight else 1 / TIGHTER
@@ -67,9 +67,15 @@ def _careful(first: IntegratedMotion, choice: IntegratorChoice) -> tuple[Integra
     relative, absolute = factor * choice.relative_tolerance, min(factor * choice.absolute_tolerance, 0.1)
     most = min(MORE * choice.max_steps, 100_000_000)
     limited = half if choice.max_step is None or half is None else min(half, choice.max_step / 2)
+    fixed = choice.fixed_step
     words = f"a second run with tolerances {'ten times tighter' if tight else 'ten times looser'}"
     changed = replace(
-        choice, relative_tolerance=relative, absolute_tolerance=absolute, max_step=limited, max_steps=most
+        choice,
+        method=choice.method if fixed is None else fixed.halved(),
+        relative_tolerance=relative,
+        absolute_tolerance=absolute,
+        max_step=limited if fixed is None else None,
+        max_steps=most,
     )
     return changed, f"{words} and steps at most half as long"
 

@@ -3,30 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
-from typing import Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import one_of
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.fixed_step import FixedStep, march
-from substructures.analysis.motion.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.fixed_step import march
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
 from substructures.analysis.motion.loaded_friction import LoadedRightHandSide
-from substructures.analysis.motion.output_times import OutputTimes
-from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice, MotionProblem
-from substructures.analysis.motion.progress import ProgressReport, share_of
+from substructures.analysis.motion.problems.kinds import TreeMotion
+from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
-from substructures.analysis.motion.second_run import accurate, at_end, second_run, state_groups
-from substructures.analysis.motion.single_steps import steps_again
-from substructures.analysis.motion.steppers import Stepper
+from substructures.analysis.motion.second_judges import computed_again
+from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
@@ -36,9 +34,12 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
 from substructures.quantities.limits import reached
-from substructures.quantities.reactions import ReactionModel
 
-FrictionMode = Literal["regularised", "exact", "loaded"]
+#: laws of friction that neither steps of a fixed size nor Taylor series take
+WHY_NOT = {
+    "exact": "joints that stick exactly need steps of any size",
+    "loaded": "friction by the load of joints is iterated",
+}
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
@@ -48,41 +49,26 @@ SINGULAR = (
 
 @dataclass(frozen=True, kw_only=True)
 class TreeProblem(MotionProblem):
-    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q'); ``fixed_step``: in real-time mode;
-    ``friction``: by the smooth law of the formulas, set-valued at rest, or by the smooth law with the load of joints,
-    which needs ``bearings``: the reactions of the tree.
-    """
+    """A motion of a tree without closures, q'' = g^-1 (Q - Gamma q' q')."""
 
-    fixed_step: FixedStep | None = None
-    friction: FrictionMode = "regularised"
-    bearings: ReactionModel | None = None
+    kind: TreeMotion = field(default_factory=TreeMotion)
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        one_of(self.friction, "friction", ("regularised", "exact", "loaded"))
-        if self.friction == "exact" and (self.fixed_step is not None or self.integrator.method == TAYLOR):
-            message = "joints that stick exactly need steps of any size: leave 'fixed_step' and the method Taylor out"
+        if self.kind.friction in WHY_NOT and (self.integrator.fixed_step or self.integrator.method == TAYLOR):
+            message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' and the method Taylor out"
             raise InvalidArgument.at("/friction", "not-supported", message)
-        if self.friction == "loaded" and (self.fixed_step is not None or self.integrator.method == TAYLOR):
-            message = "friction by the load of joints is iterated: leave 'fixed_step' and the method Taylor out"
-            raise InvalidArgument.at("/friction", "not-supported", message)
-        if self.friction == "loaded" and self.bearings is None:
-            message = "friction by the load of joints needs the reactions of the tree, 'bearings'"
-            raise InvalidArgument.at("/friction", "needs-parts", message)
 
 
-def simulate_tree(
-    problem: TreeProblem, progress: ProgressReport | None = None, folder: Path | None = None
-) -> Trajectory:
+def simulate_tree(problem: TreeProblem) -> Trajectory:
     """The motion of a tree from a start over a span of time, with the drift of all its first integrals.
 
-    ``progress`` is told the finished share of the span and stops the integration by False. ``folder``: where compiled
-    kernels are kept. ``series`` of the result, (K,) each: ``energy`` [J], momenta and other first integrals, ``power``
+    ``series`` of the result, (K,) each: ``energy`` [J], momenta and other first integrals, ``power``
     [W], ``work`` [J], varying inputs under their names, and those of the problem. What goes wrong on the way is a
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (``has-closures``;
     pointers start with names of arguments of ``simulate``) and MissingValue.
     """
-    conditions = tree_conditions(problem)
+    conditions, progress, folder = tree_conditions(problem), problem.integrator.progress, problem.integrator.folder
     _check_method(conditions, problem)
     try:
         f = _right_hand_side(conditions, problem, folder)
@@ -97,18 +83,23 @@ def simulate_tree(
         return _failed(conditions, problem, message)
     motion, figures = _moved(conditions, problem, f, x, progress, folder)
     found = _judged(conditions, problem, f, motion, figures)
-    if any(check.name.startswith("energy") for check in found.checks):
-        return replace(found, checks=(*found.checks, *_steps_again(conditions, problem, f, motion)))
-    instead = unbalanced(conditions.in_potential(list(problem.start.inputs)))
-    repeated = _repeated(conditions, problem, f, x, motion, at_end(progress))
-    return replace(found, checks=(*found.checks, instead, *repeated))
+    is_whole = not any(check.name.startswith("energy") for check in found.checks)
+    instead = [unbalanced(conditions.in_potential(list(problem.start.inputs)))] if is_whole else []
+    quiet = replace(conditions, events=())
+
+    def move(other: TreeProblem, y: Array, told: ProgressReport | None, turning: bool) -> IntegratedMotion:
+        """The motion once more."""
+        return _moved(quiet, other, f, y, told, None, turning)[0]
+
+    again = computed_again(problem, motion, state_groups(f.n, f.n), move, is_whole=is_whole)
+    return replace(found, checks=(*found.checks, *instead, *again))
 
 
 def _right_hand_side(conditions: Conditions, problem: TreeProblem, folder: Path | None) -> RightHandSide:
     """x' = f(t, x), with friction by the load of joints where that is asked for."""
     given = problem.model, conditions.values, conditions.zero, conditions
-    if problem.friction == "loaded" and problem.bearings is not None:
-        return LoadedRightHandSide(*given, problem.bearings, folder)
+    if problem.kind.friction == "loaded" and problem.kind.bearings is not None:
+        return LoadedRightHandSide(*given, problem.kind.bearings, folder)
     return RightHandSide(*given, folder)
 
 
@@ -142,7 +133,7 @@ def tree_conditions(problem: MotionProblem) -> Conditions:
 
 
 def _check_method(conditions: Conditions, problem: TreeProblem) -> None:
-    if problem.fixed_step is None:
+    if problem.integrator.fixed_step is None:
         if problem.integrator.method == TAYLOR:
             require_taylor(list(conditions.curves), problem.integrator.max_step)
     elif problem.events:
@@ -164,14 +155,14 @@ def _moved(
     span, most, outputs = problem.span, problem.integrator.max_steps, problem.times.grid()
     told = share_of(span, progress)
     figures: dict[str, float] = {}
-    if problem.fixed_step is not None:
-        motion, pace = march(f, f.n, x, span, outputs, problem.fixed_step, most, told)
+    if problem.integrator.fixed_step is not None:
+        motion, pace = march(f, f.n, x, span, outputs, problem.integrator.fixed_step, most, told)
         figures |= {"real_time_factor": pace.factor, "longest_step": pace.longest}
     else:
         settings = IntegratorSettings(_stepper(conditions, problem, f), most)
         watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)
         breaks = conditions.breaks(span)
-        if problem.friction == "exact":
+        if problem.kind.friction == "exact":
             motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
         else:
             if turning and problem.integrator.method != TAYLOR:
@@ -258,40 +249,6 @@ def _with_loads(
     whole[:, smooth.places] += smooth.smooth(states.qd[:, smooth.places])
     series |= {"qdd": second, "friction": whole}
     return f.check(states, force, limit)
-
-
-def _repeated(
-    conditions: Conditions,
-    problem: TreeProblem,
-    f: RightHandSide,
-    x: Array,
-    first: IntegratedMotion,
-    progress: ProgressReport | None,
-) -> tuple[Check, ...]:
-    """Where an input that varies is part of the potential, no balance of energy judges: a second run does."""
-
-    def again(span: tuple[float, float], times: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """The same motion more carefully."""
-        fixed = problem.fixed_step and FixedStep(problem.fixed_step.step / 2, problem.fixed_step.method)
-        other = replace(problem, times=OutputTimes(span, times), integrator=choice, fixed_step=fixed, events=())
-        return _moved(replace(conditions, events=()), other, f, x, progress, None)[0]
-
-    groups = state_groups(f.n, f.n)
-    return accurate(second_run(first, problem.integrator, again), groups, problem.drift_limit)
-
-
-def _steps_again(
-    conditions: Conditions, problem: TreeProblem, f: RightHandSide, first: IntegratedMotion
-) -> tuple[Check, ...]:
-    """Some steps once more, where first integrals judge the whole."""
-
-    def again(span: tuple[float, float], x: Array, choice: IntegratorChoice) -> IntegratedMotion:
-        """From a state of the motion."""
-        times = OutputTimes(span, [span[1]])
-        other = replace(problem, times=times, integrator=choice, fixed_step=None, events=())
-        return _moved(replace(conditions, events=()), other, f, x, None, None, turning=False)[0]
-
-    return steps_again(first, problem.integrator, state_groups(f.n, f.n), problem.drift_limit, again)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:

@@ -13,8 +13,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from substructures.analysis.motion.integration import IntegratedMotion
-from substructures.analysis.motion.problem import TAYLOR, IntegratorChoice
+from substructures.analysis.motion.integrators.fixed_step import FixedStep
+from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
@@ -28,13 +29,13 @@ State = tuple[float, Array]
 #: from where to where
 Way = tuple[State, State]
 #: begins anew from a state: (span, state, integrator)
-From = Callable[[tuple[float, float], Array, IntegratorChoice], IntegratedMotion]
+From = Callable[[tuple[float, float], Array, Integrator], IntegratedMotion]
 #: by name: columns of the states, unit, columns whose rounding is in them
 Groups = Mapping[str, tuple[slice, str, slice]]
 
 
 def steps_again(
-    first: IntegratedMotion, choice: IntegratorChoice, groups: Groups, limit: float, again: From
+    first: IntegratedMotion, choice: Integrator, groups: Groups, limit: float, again: From
 ) -> tuple[Check, ...]:
     """One check; none of a motion that was not finished.
 
@@ -86,10 +87,11 @@ def _spread(count: int, most: int) -> list[int]:
     return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())) if count > 0 else []
 
 
-def _careful(choice: IntegratorChoice, length: float) -> IntegratorChoice:
+def _careful(choice: Integrator, length: float) -> Integrator:
     """Other tolerances, and at least two steps; by a method that begins at full order."""
     factor = TIGHTER if choice.relative_tolerance >= LEAST else 1 / TIGHTER
-    method = {TAYLOR: "DOP853", "BDF": "Radau", "LSODA": "Radau"}.get(choice.method, choice.method)
+    like = {TAYLOR: "DOP853", "BDF": "Radau", "LSODA": "Radau"}
+    method = "DOP853" if isinstance(choice.method, FixedStep) else like.get(choice.method, choice.method)
     return replace(
         choice,
         method=method,

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Literal
 
-from substructures.analysis.motion.events import Event
+from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.errors import listed

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.motion.conditions import read_conditions
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks

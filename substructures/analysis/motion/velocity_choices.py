@@ -14,8 +14,8 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from substructures.analysis.motion.integrators.steppers import Stepper, within
 from substructures.analysis.motion.reduced_motion import ReducedMotion
-from substructures.analysis.motion.steppers import Stepper, within
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
-from substructures.certificate.powers import OUTPUT as POWERS
+from substructures.certificate.derived.powers import OUTPUT as POWERS
 
 
 def to_npz(trajectory: Trajectory) -> bytes:

@@ -14,7 +14,7 @@ import scipy
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import multipliers_of
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.stability.equilibrium_search import (
     RESIDUAL,
     STEPS,

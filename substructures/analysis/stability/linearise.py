@@ -51,6 +51,13 @@ def linearise(
     Numerical failures (a singular metric, loops that cannot be closed) are results with status ``failed`` and advice.
     Raises InvalidInput (``/q``, ``/outputs/y``, ``/of_inputs/i``, ...; ``not-smooth`` for forces without derivative)
     and MissingValue. Source: P. C. Mueller and W. O. Schiehlen, Linear Vibrations, 1985; notation.md, section 7.
+
+    >>> from substructures import couple, derive
+    >>> tree = {"name": "clock", "gravity": [0, 0, "-9.81"]}
+    >>> tree["instances"] = [{"name": "p", "substructure": "simple-pendulum"}]
+    >>> hanging = linearise(couple(tree, {"p": derive("simple-pendulum")}), [0.0])
+    >>> float(hanging.K[0, 0]), hanging.stability.verdict
+    (9.81, 'stable')
     """
     require_moving(model)
     point = OperatingPoint(

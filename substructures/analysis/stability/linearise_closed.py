@@ -26,7 +26,7 @@ from substructures.analysis.closed.loops import independent_coordinates, least_m
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.motion.problem import Start
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation
 from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small

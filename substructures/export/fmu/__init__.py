@@ -21,7 +21,7 @@ from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
 from substructures.export.fmu.variables import layout_of
 from substructures.quantities.quantity import FORWARD
 
-_SHARED = ("simulation.h", "simulation.c")
+_SHARED = ("simulation.h", "simulation.c", "fmi.h")
 
 
 def fmu(exported: Exported, version: str, limit: int) -> bytes:

@@ -4,14 +4,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(_WIN32)
-#define FMI2_EXPORT __declspec(dllexport)
-#elif defined(__GNUC__)
-#define FMI2_EXPORT __attribute__((visibility("default")))
-#else
-#define FMI2_EXPORT
-#endif
-
 typedef enum { fmi2OK, fmi2Warning, fmi2Discard, fmi2Error, fmi2Fatal, fmi2Pending } fmi2Status;
 typedef enum { fmi2ModelExchange, fmi2CoSimulation } fmi2Type;
 typedef void *fmi2Component;
@@ -55,25 +47,26 @@ static fmi2Status say(const Model *m, fmi2Status status, const char *message)
     return status;
 }
 
-FMI2_EXPORT const char *fmi2GetTypesPlatform(void)
+#define FMI(NAME) fmi2##NAME
+#define FMI_STATE(VERB) fmi2##VERB##FMUstate
+#define FMI_STATE_SIZE fmi2SerializedFMUstateSize
+#define FMI_DESERIALIZE fmi2DeSerializeFMUstate
+#define FMI_RATES fmi2GetDerivatives
+#include "fmi.h"
+
+EXPORT const char *fmi2GetTypesPlatform(void)
 {
     return "default";
 }
 
-FMI2_EXPORT const char *fmi2GetVersion(void)
+EXPORT const char *fmi2GetVersion(void)
 {
     return "2.0";
 }
 
-FMI2_EXPORT fmi2Status fmi2SetDebugLogging(fmi2Component c, fmi2Boolean on, size_t n, const fmi2String categories[])
-{
-    (void)c, (void)on, (void)n, (void)categories;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
-                                          const fmi2CallbackFunctions *functions, fmi2Boolean visible,
-                                          fmi2Boolean logging)
+EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2String guid, fmi2String resources,
+                                     const fmi2CallbackFunctions *functions, fmi2Boolean visible,
+                                     fmi2Boolean logging)
 {
     Model *m = calloc(1, sizeof *m);
     (void)type, (void)resources, (void)visible, (void)logging;
@@ -89,13 +82,8 @@ FMI2_EXPORT fmi2Component fmi2Instantiate(fmi2String name, fmi2Type type, fmi2St
     return m;
 }
 
-FMI2_EXPORT void fmi2FreeInstance(fmi2Component c)
-{
-    free(c);
-}
-
-FMI2_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
-                                           fmi2Real start, fmi2Boolean has_stop, fmi2Real stop)
+EXPORT fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tolerance, fmi2Real tolerance,
+                                      fmi2Real start, fmi2Boolean has_stop, fmi2Real stop)
 {
     Model *m = c;
     (void)has_stop, (void)stop;
@@ -105,31 +93,13 @@ FMI2_EXPORT fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean has_tole
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c)
+EXPORT fmi2Status fmi2EnterInitializationMode(fmi2Component c)
 {
     ((Model *)c)->s.phase = PHASE_INITIALISING;
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2ExitInitializationMode(fmi2Component c)
-{
-    ((Model *)c)->s.phase = PHASE_READY;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2Terminate(fmi2Component c)
-{
-    ((Model *)c)->s.phase = PHASE_ENDED;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2Reset(fmi2Component c)
-{
-    state_reset(&((Model *)c)->s);
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference references[], size_t n, fmi2Real values[])
+EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference references[], size_t n, fmi2Real values[])
 {
     Model *m = c;
     for (size_t i = 0; i < n; ++i) {
@@ -139,8 +109,8 @@ FMI2_EXPORT fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference ref
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference references[], size_t n,
-                                   const fmi2Real values[])
+EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference references[], size_t n,
+                              const fmi2Real values[])
 {
     Model *m = c;
     for (size_t i = 0; i < n; ++i)
@@ -149,79 +119,26 @@ FMI2_EXPORT fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference ref
 }
 
 /* There are no variables of other types. */
-#define NONE(TYPE)                                                                                                      \
-    FMI2_EXPORT fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t n,              \
-                                         fmi2##TYPE values[])                                                           \
-    {                                                                                                                   \
-        (void)references, (void)values;                                                                                 \
-        return n ? say(c, fmi2Error, "there is no variable of this type") : fmi2OK;                                     \
-    }                                                                                                                   \
-    FMI2_EXPORT fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t n,              \
-                                         const fmi2##TYPE values[])                                                     \
-    {                                                                                                                   \
-        (void)references, (void)values;                                                                                 \
-        return n ? say(c, fmi2Error, "there is no variable of this type") : fmi2OK;                                     \
+#define NONE(TYPE)                                                                                                     \
+    EXPORT fmi2Status fmi2Get##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t n,                  \
+                                         fmi2##TYPE values[])                                                          \
+    {                                                                                                                  \
+        (void)references, (void)values;                                                                                \
+        return n ? say(c, fmi2Error, "there is no variable of this type") : fmi2OK;                                    \
+    }                                                                                                                  \
+    EXPORT fmi2Status fmi2Set##TYPE(fmi2Component c, const fmi2ValueReference references[], size_t n,                  \
+                                         const fmi2##TYPE values[])                                                    \
+    {                                                                                                                  \
+        (void)references, (void)values;                                                                                \
+        return n ? say(c, fmi2Error, "there is no variable of this type") : fmi2OK;                                    \
     }
 NONE(Integer)
 NONE(Boolean)
 NONE(String)
 
-FMI2_EXPORT fmi2Status fmi2GetFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    Model *m = c;
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return say(m, fmi2Error, "there is no memory for the state");
-    memcpy(*state, &m->s, sizeof(State));
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SetFMUstate(fmi2Component c, fmi2FMUstate state)
-{
-    Model *m = c;
-    if (state == NULL) return say(m, fmi2Error, "there is no state");
-    memcpy(&m->s, state, sizeof(State));
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2FreeFMUstate(fmi2Component c, fmi2FMUstate *state)
-{
-    (void)c;
-    if (state != NULL) {
-        free(*state);
-        *state = NULL;
-    }
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SerializedFMUstateSize(fmi2Component c, fmi2FMUstate state, size_t *size)
-{
-    (void)c, (void)state;
-    *size = sizeof FMU_TOKEN + sizeof(State);
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SerializeFMUstate(fmi2Component c, fmi2FMUstate state, fmi2Byte bytes[], size_t size)
-{
-    if (size < sizeof FMU_TOKEN + sizeof(State)) return say(c, fmi2Error, "there is too little room for the state");
-    memcpy(bytes, FMU_TOKEN, sizeof FMU_TOKEN);
-    memcpy(bytes + sizeof FMU_TOKEN, state, sizeof(State));
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2DeSerializeFMUstate(fmi2Component c, const fmi2Byte bytes[], size_t size,
-                                               fmi2FMUstate *state)
-{
-    if (size < sizeof FMU_TOKEN + sizeof(State) || memcmp(bytes, FMU_TOKEN, sizeof FMU_TOKEN) != 0)
-        return say(c, fmi2Error, "this is no state of this model");
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return say(c, fmi2Error, "there is no memory for the state");
-    memcpy(*state, bytes + sizeof FMU_TOKEN, sizeof(State));
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[],
-                                                    size_t n_unknowns, const fmi2ValueReference knowns[],
-                                                    size_t n_knowns, const fmi2Real seed[], fmi2Real sensitivity[])
+EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueReference unknowns[],
+                                               size_t n_unknowns, const fmi2ValueReference knowns[],
+                                               size_t n_knowns, const fmi2Real seed[], fmi2Real sensitivity[])
 {
     Model *m = c;
     if (state_tangent(&m->s, unknowns, n_unknowns, knowns, n_knowns, seed, sensitivity))
@@ -229,95 +146,28 @@ FMI2_EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2V
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2EnterEventMode(fmi2Component c)
-{
-    (void)c;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
+EXPORT fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 {
     (void)c;
     memset(info, 0, sizeof *info);
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2EnterContinuousTimeMode(fmi2Component c)
-{
-    (void)c;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2CompletedIntegratorStep(fmi2Component c, fmi2Boolean no_return, fmi2Boolean *event,
-                                                   fmi2Boolean *ends)
-{
-    (void)c, (void)no_return;
-    *event = *ends = 0;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SetTime(fmi2Component c, fmi2Real time)
-{
-    Model *m = c;
-    m->s.v[AT_T] = time;
-    m->s.has_rates = m->s.has_outputs = 0;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SetContinuousStates(fmi2Component c, const fmi2Real x[], size_t n)
-{
-    Model *m = c;
-    if (n != STATES) return say(m, fmi2Error, "the wrong number of states");
-    memcpy(m->s.v + AT_Q, x, STATES * sizeof *x);
-    m->s.has_rates = m->s.has_outputs = 0;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetDerivatives(fmi2Component c, fmi2Real rates[], size_t n)
-{
-    Model *m = c;
-    if (n != STATES) return say(m, fmi2Error, "the wrong number of states");
-    if (state_rates(&m->s)) return say(m, fmi2Discard, "the accelerations are not finite");
-    memcpy(rates, m->s.v + AT_DQ, STATES * sizeof *rates);
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetEventIndicators(fmi2Component c, fmi2Real indicators[], size_t n)
-{
-    (void)indicators;
-    return n ? say(c, fmi2Error, "there are no event indicators") : fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetContinuousStates(fmi2Component c, fmi2Real x[], size_t n)
-{
-    Model *m = c;
-    if (n != STATES) return say(m, fmi2Error, "the wrong number of states");
-    memcpy(x, m->s.v + AT_Q, STATES * sizeof *x);
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2GetNominalsOfContinuousStates(fmi2Component c, fmi2Real nominals[], size_t n)
-{
-    if (n != STATES) return say(c, fmi2Error, "the wrong number of states");
-    for (size_t i = 0; i < n; ++i) nominals[i] = 1.0;
-    return fmi2OK;
-}
-
-FMI2_EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t n,
-                                                   const fmi2Integer orders[], const fmi2Real values[])
+EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t n,
+                                              const fmi2Integer orders[], const fmi2Real values[])
 {
     (void)references, (void)orders, (void)values;
     return n ? say(c, fmi2Error, "inputs are constant during a step") : fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t n,
-                                                    const fmi2Integer orders[], fmi2Real values[])
+EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t n,
+                                               const fmi2Integer orders[], fmi2Real values[])
 {
     (void)references, (void)orders, (void)values;
     return n ? say(c, fmi2Error, "there are no derivatives of outputs") : fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean no_return)
+EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean no_return)
 {
     Model *m = c;
     (void)no_return;
@@ -328,16 +178,16 @@ FMI2_EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real step, f
     return fmi2OK;
 }
 
-FMI2_EXPORT fmi2Status fmi2CancelStep(fmi2Component c)
+EXPORT fmi2Status fmi2CancelStep(fmi2Component c)
 {
     return say(c, fmi2Error, "steps end before they can be cancelled");
 }
 
-#define NO_STATUS(TYPE, OF)                                                                                             \
-    FMI2_EXPORT fmi2Status fmi2Get##TYPE##Status(fmi2Component c, int kind, OF *value)                                  \
-    {                                                                                                                   \
-        (void)c, (void)kind, (void)value;                                                                               \
-        return fmi2Discard;                                                                                             \
+#define NO_STATUS(TYPE, OF)                                                                                            \
+    EXPORT fmi2Status fmi2Get##TYPE##Status(fmi2Component c, int kind, OF *value)                                      \
+    {                                                                                                                  \
+        (void)c, (void)kind, (void)value;                                                                              \
+        return fmi2Discard;                                                                                            \
     }
 NO_STATUS(, fmi2Status)
 NO_STATUS(Real, fmi2Real)

@@ -6,14 +6,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-#if defined(_WIN32)
-#define FMI3_EXPORT __declspec(dllexport)
-#elif defined(__GNUC__)
-#define FMI3_EXPORT __attribute__((visibility("default")))
-#else
-#define FMI3_EXPORT
-#endif
-
 typedef enum { fmi3OK, fmi3Warning, fmi3Discard, fmi3Error, fmi3Fatal } fmi3Status;
 typedef void *fmi3Instance;
 typedef void *fmi3InstanceEnvironment;
@@ -43,6 +35,13 @@ static fmi3Status say(const Model *m, fmi3Status status, const char *message)
     return status;
 }
 
+#define FMI(NAME) fmi3##NAME
+#define FMI_STATE(VERB) fmi3##VERB##FMUState
+#define FMI_STATE_SIZE fmi3SerializedFMUStateSize
+#define FMI_DESERIALIZE fmi3DeserializeFMUState
+#define FMI_RATES fmi3GetContinuousStateDerivatives
+#include "fmi.h"
+
 static fmi3Instance instantiate(fmi3String token, fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
 {
     Model *m;
@@ -58,55 +57,44 @@ static fmi3Instance instantiate(fmi3String token, fmi3InstanceEnvironment enviro
     return m;
 }
 
-FMI3_EXPORT const char *fmi3GetVersion(void)
+EXPORT const char *fmi3GetVersion(void)
 {
     return "3.0";
 }
 
-FMI3_EXPORT fmi3Status fmi3SetDebugLogging(fmi3Instance instance, fmi3Boolean on, size_t n, const fmi3String categories[])
-{
-    (void)instance, (void)on, (void)n, (void)categories;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
-                                                      fmi3Boolean visible, fmi3Boolean logging,
-                                                      fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
+EXPORT fmi3Instance fmi3InstantiateModelExchange(fmi3String name, fmi3String token, fmi3String resources,
+                                                 fmi3Boolean visible, fmi3Boolean logging,
+                                                 fmi3InstanceEnvironment environment, fmi3LogMessageCallback log)
 {
     (void)name, (void)resources, (void)visible, (void)logging;
     return instantiate(token, environment, log);
 }
 
-FMI3_EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
-                                                     fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events,
-                                                     fmi3Boolean early, const fmi3ValueReference intermediate[],
-                                                     size_t n, fmi3InstanceEnvironment environment,
-                                                     fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update)
+EXPORT fmi3Instance fmi3InstantiateCoSimulation(fmi3String name, fmi3String token, fmi3String resources,
+                                                fmi3Boolean visible, fmi3Boolean logging, fmi3Boolean events,
+                                                fmi3Boolean early, const fmi3ValueReference intermediate[],
+                                                size_t n, fmi3InstanceEnvironment environment,
+                                                fmi3LogMessageCallback log, fmi3IntermediateUpdateCallback update)
 {
     (void)name, (void)resources, (void)visible, (void)logging, (void)events, (void)early, (void)intermediate, (void)n;
     (void)update;
     return instantiate(token, environment, log);
 }
 
-FMI3_EXPORT fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
-                                                           fmi3Boolean visible, fmi3Boolean logging,
-                                                           fmi3InstanceEnvironment environment,
-                                                           fmi3LogMessageCallback log, void *update, void *lock,
-                                                           void *unlock)
+EXPORT fmi3Instance fmi3InstantiateScheduledExecution(fmi3String name, fmi3String token, fmi3String resources,
+                                                      fmi3Boolean visible, fmi3Boolean logging,
+                                                      fmi3InstanceEnvironment environment,
+                                                      fmi3LogMessageCallback log, void *update, void *lock,
+                                                      void *unlock)
 {
     (void)name, (void)token, (void)resources, (void)visible, (void)logging, (void)update, (void)lock, (void)unlock;
     if (log) log(environment, fmi3Error, "logStatusError", "there is no scheduled execution");
     return NULL;
 }
 
-FMI3_EXPORT void fmi3FreeInstance(fmi3Instance instance)
-{
-    free(instance);
-}
-
-FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_tolerance,
-                                                   fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean has_stop,
-                                                   fmi3Float64 stop)
+EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Boolean has_tolerance,
+                                              fmi3Float64 tolerance, fmi3Float64 start, fmi3Boolean has_stop,
+                                              fmi3Float64 stop)
 {
     Model *m = instance;
     (void)has_stop, (void)stop;
@@ -117,32 +105,8 @@ FMI3_EXPORT fmi3Status fmi3EnterInitializationMode(fmi3Instance instance, fmi3Bo
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3ExitInitializationMode(fmi3Instance instance)
-{
-    ((Model *)instance)->s.phase = PHASE_READY;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3EnterEventMode(fmi3Instance instance)
-{
-    (void)instance;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3Terminate(fmi3Instance instance)
-{
-    ((Model *)instance)->s.phase = PHASE_ENDED;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3Reset(fmi3Instance instance)
-{
-    state_reset(&((Model *)instance)->s);
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                      fmi3Float64 values[], size_t n_values)
+EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                 fmi3Float64 values[], size_t n_values)
 {
     Model *m = instance;
     size_t k = 0;
@@ -156,8 +120,8 @@ FMI3_EXPORT fmi3Status fmi3GetFloat64(fmi3Instance instance, const fmi3ValueRefe
     return k == n_values ? fmi3OK : say(m, fmi3Error, "the wrong number of values");
 }
 
-FMI3_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                      const fmi3Float64 values[], size_t n_values)
+EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                 const fmi3Float64 values[], size_t n_values)
 {
     Model *m = instance;
     size_t k = 0;
@@ -172,18 +136,18 @@ FMI3_EXPORT fmi3Status fmi3SetFloat64(fmi3Instance instance, const fmi3ValueRefe
 }
 
 /* There are no variables of other types. */
-#define NONE(TYPE)                                                                                                      \
-    FMI3_EXPORT fmi3Status fmi3Get##TYPE(fmi3Instance instance, const fmi3ValueReference references[], size_t n,        \
-                                         fmi3##TYPE values[], size_t n_values)                                          \
-    {                                                                                                                   \
-        (void)references, (void)values, (void)n_values;                                                                 \
-        return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;                              \
-    }                                                                                                                   \
-    FMI3_EXPORT fmi3Status fmi3Set##TYPE(fmi3Instance instance, const fmi3ValueReference references[], size_t n,        \
-                                         const fmi3##TYPE values[], size_t n_values)                                    \
-    {                                                                                                                   \
-        (void)references, (void)values, (void)n_values;                                                                 \
-        return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;                              \
+#define NONE(TYPE)                                                                                                     \
+    EXPORT fmi3Status fmi3Get##TYPE(fmi3Instance instance, const fmi3ValueReference references[], size_t n,            \
+                                         fmi3##TYPE values[], size_t n_values)                                         \
+    {                                                                                                                  \
+        (void)references, (void)values, (void)n_values;                                                                \
+        return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;                             \
+    }                                                                                                                  \
+    EXPORT fmi3Status fmi3Set##TYPE(fmi3Instance instance, const fmi3ValueReference references[], size_t n,            \
+                                         const fmi3##TYPE values[], size_t n_values)                                   \
+    {                                                                                                                  \
+        (void)references, (void)values, (void)n_values;                                                                \
+        return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;                             \
     }
 
 typedef int8_t fmi3Int8;
@@ -206,100 +170,47 @@ NONE(UInt64)
 NONE(Boolean)
 NONE(String)
 
-FMI3_EXPORT fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                     size_t sizes[], fmi3Binary values[], size_t n_values)
+EXPORT fmi3Status fmi3GetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                size_t sizes[], fmi3Binary values[], size_t n_values)
 {
     (void)references, (void)sizes, (void)values, (void)n_values;
     return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                     const size_t sizes[], const fmi3Binary values[], size_t n_values)
+EXPORT fmi3Status fmi3SetBinary(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                const size_t sizes[], const fmi3Binary values[], size_t n_values)
 {
     (void)references, (void)sizes, (void)values, (void)n_values;
     return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                    fmi3Clock values[])
+EXPORT fmi3Status fmi3GetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                               fmi3Clock values[])
 {
     (void)references, (void)values;
     return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                    const fmi3Clock values[])
+EXPORT fmi3Status fmi3SetClock(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                               const fmi3Clock values[])
 {
     (void)references, (void)values;
     return n ? say(instance, fmi3Error, "there is no variable of this type") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference reference,
-                                                           size_t *n)
+EXPORT fmi3Status fmi3GetNumberOfVariableDependencies(fmi3Instance instance, fmi3ValueReference reference,
+                                                      size_t *n)
 {
     (void)reference, (void)n;
     return say(instance, fmi3Error, "dependencies are those of modelDescription.xml");
 }
 
-FMI3_EXPORT fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
-                                                   size_t elements[], fmi3ValueReference independents[],
-                                                   size_t elements_of[], int kinds[], size_t n)
+EXPORT fmi3Status fmi3GetVariableDependencies(fmi3Instance instance, fmi3ValueReference dependent,
+                                              size_t elements[], fmi3ValueReference independents[],
+                                              size_t elements_of[], int kinds[], size_t n)
 {
     (void)dependent, (void)elements, (void)independents, (void)elements_of, (void)kinds, (void)n;
     return say(instance, fmi3Error, "dependencies are those of modelDescription.xml");
-}
-
-FMI3_EXPORT fmi3Status fmi3GetFMUState(fmi3Instance instance, fmi3FMUState *state)
-{
-    Model *m = instance;
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return say(m, fmi3Error, "there is no memory for the state");
-    memcpy(*state, &m->s, sizeof(State));
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3SetFMUState(fmi3Instance instance, fmi3FMUState state)
-{
-    Model *m = instance;
-    if (state == NULL) return say(m, fmi3Error, "there is no state");
-    memcpy(&m->s, state, sizeof(State));
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3FreeFMUState(fmi3Instance instance, fmi3FMUState *state)
-{
-    (void)instance;
-    if (state != NULL) {
-        free(*state);
-        *state = NULL;
-    }
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3SerializedFMUStateSize(fmi3Instance instance, fmi3FMUState state, size_t *size)
-{
-    (void)instance, (void)state;
-    *size = sizeof FMU_TOKEN + sizeof(State);
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3SerializeFMUState(fmi3Instance instance, fmi3FMUState state, fmi3Byte bytes[], size_t size)
-{
-    if (size < sizeof FMU_TOKEN + sizeof(State)) return say(instance, fmi3Error, "there is too little room for the state");
-    memcpy(bytes, FMU_TOKEN, sizeof FMU_TOKEN);
-    memcpy(bytes + sizeof FMU_TOKEN, state, sizeof(State));
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3DeserializeFMUState(fmi3Instance instance, const fmi3Byte bytes[], size_t size,
-                                               fmi3FMUState *state)
-{
-    if (size < sizeof FMU_TOKEN + sizeof(State) || memcmp(bytes, FMU_TOKEN, sizeof FMU_TOKEN) != 0)
-        return say(instance, fmi3Error, "this is no state of this model");
-    if (*state == NULL) *state = malloc(sizeof(State));
-    if (*state == NULL) return say(instance, fmi3Error, "there is no memory for the state");
-    memcpy(*state, bytes + sizeof FMU_TOKEN, sizeof(State));
-    return fmi3OK;
 }
 
 /* All elements of variables; their number, or VALUES + 1 for a variable that is none. */
@@ -314,10 +225,10 @@ static size_t elements(const fmi3ValueReference references[], size_t n, unsigned
     return k;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
-                                                    size_t n_unknowns, const fmi3ValueReference knowns[],
-                                                    size_t n_knowns, const fmi3Float64 seed[], size_t n_seed,
-                                                    fmi3Float64 sensitivity[], size_t n_sensitivity)
+EXPORT fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                               size_t n_unknowns, const fmi3ValueReference knowns[],
+                                               size_t n_knowns, const fmi3Float64 seed[], size_t n_seed,
+                                               fmi3Float64 sensitivity[], size_t n_sensitivity)
 {
     Model *m = instance;
     unsigned of[VALUES], by[VALUES];
@@ -328,75 +239,75 @@ FMI3_EXPORT fmi3Status fmi3GetDirectionalDerivative(fmi3Instance instance, const
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
-                                                size_t n_unknowns, const fmi3ValueReference knowns[], size_t n_knowns,
-                                                const fmi3Float64 seed[], size_t n_seed, fmi3Float64 sensitivity[],
-                                                size_t n_sensitivity)
+EXPORT fmi3Status fmi3GetAdjointDerivative(fmi3Instance instance, const fmi3ValueReference unknowns[],
+                                           size_t n_unknowns, const fmi3ValueReference knowns[], size_t n_knowns,
+                                           const fmi3Float64 seed[], size_t n_seed, fmi3Float64 sensitivity[],
+                                           size_t n_sensitivity)
 {
     (void)unknowns, (void)n_unknowns, (void)knowns, (void)n_knowns, (void)seed, (void)n_seed, (void)sensitivity;
     (void)n_sensitivity;
     return say(instance, fmi3Error, "there are no adjoint derivatives");
 }
 
-FMI3_EXPORT fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
+EXPORT fmi3Status fmi3EnterConfigurationMode(fmi3Instance instance)
 {
     return say(instance, fmi3Error, "there are no structural parameters");
 }
 
-FMI3_EXPORT fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance)
+EXPORT fmi3Status fmi3ExitConfigurationMode(fmi3Instance instance)
 {
     return say(instance, fmi3Error, "there are no structural parameters");
 }
 
-#define NO_CLOCK(NAME, ...)                                                                                             \
-    FMI3_EXPORT fmi3Status fmi3##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t n,           \
-                                      __VA_ARGS__)                                                                      \
-    {                                                                                                                   \
-        (void)references, (void)a, (void)b;                                                                             \
-        return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;                                            \
+#define NO_CLOCK(NAME, ...)                                                                                            \
+    EXPORT fmi3Status fmi3##NAME(fmi3Instance instance, const fmi3ValueReference references[], size_t n,               \
+                                      __VA_ARGS__)                                                                     \
+    {                                                                                                                  \
+        (void)references, (void)a, (void)b;                                                                            \
+        return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;                                           \
     }
 NO_CLOCK(GetIntervalDecimal, fmi3Float64 a[], int b[])
 NO_CLOCK(SetIntervalFraction, const fmi3UInt64 a[], const fmi3UInt64 b[])
 NO_CLOCK(GetShiftFraction, fmi3UInt64 a[], fmi3UInt64 b[])
 NO_CLOCK(SetShiftFraction, const fmi3UInt64 a[], const fmi3UInt64 b[])
 
-FMI3_EXPORT fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                               fmi3UInt64 counters[], fmi3UInt64 resolutions[], int qualifiers[])
+EXPORT fmi3Status fmi3GetIntervalFraction(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                          fmi3UInt64 counters[], fmi3UInt64 resolutions[], int qualifiers[])
 {
     (void)references, (void)counters, (void)resolutions, (void)qualifiers;
     return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                           fmi3Float64 shifts[])
+EXPORT fmi3Status fmi3GetShiftDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                      fmi3Float64 shifts[])
 {
     (void)references, (void)shifts;
     return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                              const fmi3Float64 intervals[])
+EXPORT fmi3Status fmi3SetIntervalDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                         const fmi3Float64 intervals[])
 {
     (void)references, (void)intervals;
     return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                           const fmi3Float64 shifts[])
+EXPORT fmi3Status fmi3SetShiftDecimal(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                      const fmi3Float64 shifts[])
 {
     (void)references, (void)shifts;
     return n ? say(instance, fmi3Error, "there are no clocks") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance)
+EXPORT fmi3Status fmi3EvaluateDiscreteStates(fmi3Instance instance)
 {
     (void)instance;
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *again, fmi3Boolean *ends,
-                                                fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *has_event,
-                                                fmi3Float64 *event)
+EXPORT fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *again, fmi3Boolean *ends,
+                                           fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *has_event,
+                                           fmi3Float64 *event)
 {
     (void)instance;
     *again = *ends = *nominals = *values = *has_event = false;
@@ -404,96 +315,35 @@ FMI3_EXPORT fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boole
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3EnterContinuousTimeMode(fmi3Instance instance)
-{
-    (void)instance;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3CompletedIntegratorStep(fmi3Instance instance, fmi3Boolean no_return, fmi3Boolean *event,
-                                                   fmi3Boolean *ends)
-{
-    (void)instance, (void)no_return;
-    *event = *ends = false;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3SetTime(fmi3Instance instance, fmi3Float64 time)
-{
-    Model *m = instance;
-    m->s.v[AT_T] = time;
-    m->s.has_rates = m->s.has_outputs = 0;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3SetContinuousStates(fmi3Instance instance, const fmi3Float64 x[], size_t n)
-{
-    Model *m = instance;
-    if (n != STATES) return say(m, fmi3Error, "the wrong number of states");
-    memcpy(m->s.v + AT_Q, x, STATES * sizeof *x);
-    m->s.has_rates = m->s.has_outputs = 0;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetContinuousStateDerivatives(fmi3Instance instance, fmi3Float64 rates[], size_t n)
-{
-    Model *m = instance;
-    if (n != STATES) return say(m, fmi3Error, "the wrong number of states");
-    if (state_rates(&m->s)) return say(m, fmi3Discard, "the accelerations are not finite");
-    memcpy(rates, m->s.v + AT_DQ, STATES * sizeof *rates);
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetEventIndicators(fmi3Instance instance, fmi3Float64 indicators[], size_t n)
-{
-    (void)indicators;
-    return n ? say(instance, fmi3Error, "there are no event indicators") : fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetContinuousStates(fmi3Instance instance, fmi3Float64 x[], size_t n)
-{
-    Model *m = instance;
-    if (n != STATES) return say(m, fmi3Error, "the wrong number of states");
-    memcpy(x, m->s.v + AT_Q, STATES * sizeof *x);
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetNominalsOfContinuousStates(fmi3Instance instance, fmi3Float64 nominals[], size_t n)
-{
-    if (n != STATES) return say(instance, fmi3Error, "the wrong number of states");
-    for (size_t i = 0; i < n; ++i) nominals[i] = 1.0;
-    return fmi3OK;
-}
-
-FMI3_EXPORT fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *n)
+EXPORT fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *n)
 {
     (void)instance;
     *n = 0;
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *n)
+EXPORT fmi3Status fmi3GetNumberOfContinuousStates(fmi3Instance instance, size_t *n)
 {
     (void)instance;
     *n = STATES;
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance instance)
+EXPORT fmi3Status fmi3EnterStepMode(fmi3Instance instance)
 {
     (void)instance;
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
-                                                const int32_t orders[], fmi3Float64 values[], size_t n_values)
+EXPORT fmi3Status fmi3GetOutputDerivatives(fmi3Instance instance, const fmi3ValueReference references[], size_t n,
+                                           const int32_t orders[], fmi3Float64 values[], size_t n_values)
 {
     (void)references, (void)orders, (void)values, (void)n_values;
     return n ? say(instance, fmi3Error, "there are no derivatives of outputs") : fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 at, fmi3Float64 step, fmi3Boolean no_return,
-                                  fmi3Boolean *event, fmi3Boolean *ends, fmi3Boolean *early, fmi3Float64 *reached)
+EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 at, fmi3Float64 step, fmi3Boolean no_return,
+                             fmi3Boolean *event, fmi3Boolean *ends, fmi3Boolean *early, fmi3Float64 *reached)
 {
     Model *m = instance;
     (void)no_return;
@@ -507,7 +357,7 @@ FMI3_EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 at, fmi3Flo
     return fmi3OK;
 }
 
-FMI3_EXPORT fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clock, fmi3Float64 time)
+EXPORT fmi3Status fmi3ActivateModelPartition(fmi3Instance instance, fmi3ValueReference clock, fmi3Float64 time)
 {
     (void)clock, (void)time;
     return say(instance, fmi3Error, "there is no scheduled execution");

@@ -1,0 +1,148 @@
+"""The command ``evaluate``: numbers at one state, of a tree document here or of a tree on a server."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Annotated, Any
+
+import numpy as np
+import orjson
+import typer
+
+from service.cli import completion
+from service.cli.documents import is_document
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, tell_warnings, waiting
+from service.cli.tree_files import local_source
+from service.cli.values import values
+from substructures.client.steps import step
+from substructures.documents.grouped import take
+from substructures.quantities.evaluation import EvaluationOptions
+from substructures.quantities.evaluation import evaluate as evaluated
+from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
+from substructures.quantities.states import STATE, wrong_length
+
+Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
+
+
+@with_server
+def evaluate(
+    server: Server,
+    tree: Annotated[
+        str,
+        typer.Argument(
+            help="Tree document (JSON or YAML), or the name of a tree on a server.", autocompletion=completion.trees
+        ),
+    ],
+    quantities: Annotated[
+        list[str],
+        typer.Argument(
+            metavar="QUANTITY...", help=f"{', '.join(QUANTITIES)}.", autocompletion=completion.words(QUANTITIES)
+        ),
+    ],
+    q: Numbers = None,
+    qd: Numbers = None,
+    qdd: Numbers = None,
+    t: Annotated[float, typer.Option(help="Time, s.")] = 0.0,
+    set: Annotated[  # noqa: A002 -- name of the option
+        list[str] | None,
+        typer.Option("--set", metavar="NAME=VALUE", help="A parameter, also '500 mm'; may be repeated."),
+    ] = None,
+    input: Annotated[  # noqa: A002 -- name of the option
+        list[str] | None, typer.Option("--input", metavar="NAME=VALUE", help="An input, also '5 N'; may be repeated.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Numbers at a state: metric, christoffel, forces, inverse dynamics, ..."""
+    states = {name: _numbers(text) for name, text in (("q", q), ("qd", qd), ("qdd", qdd)) if text is not None}
+    request: dict[str, Any] = {"quantities": quantities, "t": t, **states}
+    request |= {"parameters": _by_name(set), "inputs": _by_name(input)}
+    with waiting("evaluating"):
+        found = _here(Path(tree), request) if is_document(tree) else _there(server, tree, request)
+    if json:
+        print_json(found)
+    else:
+        for name in quantities:
+            _print(name, found[name], found)
+            if TABLE[name].note:
+                print(f"  {TABLE[name].note}")
+    tell_warnings(found)
+    for failure in found.get("failures", ()):
+        print(f"no result: {failure['message']}")
+    return int(bool(found.get("failures")))
+
+
+def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
+    source = local_source(path)
+    _check_lengths(request, source.model.coordinates)
+    given = {"q": np.zeros(source.model.dof), **request}
+    quantities, options = given.pop("quantities"), take(EvaluationOptions, given)
+    result = evaluated(source.sources, quantities, **given, options=options)
+    plain: dict[str, Any] = orjson.loads(orjson.dumps(result.plain(), option=orjson.OPT_SERIALIZE_NUMPY))
+    return plain
+
+
+def _there(server: Server, tree: str, request: Mapping[str, Any]) -> dict[str, Any]:
+    with server.client() as client:
+        known = client.request("GET", f"/v1/trees/{step(tree)}").json()
+        _check_lengths(request, known["coordinates"])
+        return dict(client.evaluate(tree, **{"q": [0.0] * known["dof"], **request}))
+
+
+def _check_lengths(request: Mapping[str, Any], coordinates: Sequence[str]) -> None:
+    """One state is meant, also of one coordinate, where requests may have many. Raises BadParameter."""
+    for name in STATE:
+        if name in request and len(request[name]) != len(coordinates):
+            raise typer.BadParameter(f"--{name}: {wrong_length(len(request[name]), coordinates)}")
+
+
+def _numbers(text: str) -> list[float]:
+    try:
+        return [float(each) for each in text.split(",")]
+    except ValueError:
+        raise typer.BadParameter(f"numbers between commas are needed, found '{text}'") from None
+
+
+def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
+    """Numbers, and those that have one with their units."""
+    found: dict[str, Any] = {}
+    for name, value in values(given).items():
+        number, unit = (value["value"], value["unit"]) if isinstance(value, dict) else (value, None)
+        try:
+            found[name] = float(number) if unit is None else {"value": float(number), "unit": unit}
+        except ValueError:
+            message = f"a number is needed for '{name}', in SI units or with its unit, as in {name}='500 mm'"
+            raise typer.BadParameter(f"{message}; found '{number}'") from None
+    return found
+
+
+def _print(name: str, value: Any, told: Mapping[str, Any]) -> None:
+    """A number; a vector or matrix by the names of its rows; what has more axes by its elements that are not zero."""
+    if isinstance(value, dict):
+        for inner, each in value.items():
+            _print(f"{name}.{inner}", each, told)
+        return
+    numbers = np.asarray(value, dtype=np.float64)
+    if not numbers.ndim:
+        print(f"{name}  {numbers:.10g}")
+        return
+    if numbers.ndim > 2 and not numbers.any():
+        print(f"{name}  all 0")
+        return
+    print(name)
+    named = [
+        labels if len(labels) == n else [str(k + 1) for k in range(n)]
+        for labels, n in zip(labels_of(name, told), numbers.shape, strict=True)
+    ]
+    if numbers.ndim > 2:
+        for place in np.argwhere(numbers):
+            where = ", ".join(labels[k] for labels, k in zip(named, place, strict=True))
+            print(f"  [{where}]  {numbers[tuple(place)]:.10g}")
+        return
+    width = max(map(len, named[0]), default=0)
+    for label, row in zip(named[0], numbers.reshape(len(numbers), -1), strict=True):
+        print(f"  {label:<{width}}  {'  '.join(f'{x + 0.0:13.6g}' for x in row)}")
+
+
+COMMANDS = {"evaluate": evaluate}

@@ -1,0 +1,104 @@
+"""The command ``export``: a file here, or a stored tree or part on a server, as files for another tool."""
+
+from __future__ import annotations
+
+from errno import EISDIR
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
+from service.cli import completion
+from service.cli.choices import one_of
+from service.cli.documents import is_document
+from service.cli.options import Json, Server, with_server
+from service.cli.output import print_json, waiting
+from service.cli.tree_files import coupled_source, part_or_tree
+from service.settings import Limits
+from substructures.client.steps import step
+from substructures.part.part import Part
+
+
+@with_server
+def export(
+    server: Server,
+    tree: Annotated[
+        str,
+        typer.Argument(
+            help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.",
+            autocompletion=completion.trees,
+        ),
+    ],
+    target: Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")],
+    quantities: Annotated[
+        str, typer.Option(help="name,... (metric, christoffel, forces).", autocompletion=completion.exported)
+    ] = "",
+    name: Annotated[str, typer.Option(help="Prefix of functions (the name of the tree).")] = "",
+    bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
+    together: Annotated[
+        bool, typer.Option("--together", help="Also a function with all quantities, NAME_all.")
+    ] = False,
+    packed: Annotated[
+        bool, typer.Option("--packed", help="Of metric and christoffel the independent elements.")
+    ] = False,
+    fmi: Annotated[str, one_of(FMI, help="Of fmu: version of the interface.")] = FMI[0],
+    precision: Annotated[str, one_of(PRECISIONS, help="Of c: of the numbers.")] = PRECISIONS[0],
+    stages: Annotated[
+        bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
+    ] = False,
+    part: Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")] = False,
+    out: Annotated[
+        Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
+    ] = None,
+    json: Json = False,
+) -> int:
+    """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
+    names = tuple(text for text in quantities.split(",") if text)
+    if out is not None and out.is_dir():
+        raise IsADirectoryError(EISDIR, "a folder", str(out))
+    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages)
+    with waiting("writing"):
+        package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
+    path = out or Path(package.name)
+    path.write_bytes(package.data)
+    if json:
+        print_json({"file": str(path), "bytes": len(package.data)})
+    else:
+        print(f"{path}: {len(package.data)} bytes")
+    return 0
+
+
+def _is_file(given: str) -> bool:
+    return is_document(given) or ("." in given and Path(given).is_file())
+
+
+def _local(path: Path, request: ExportRequest) -> Package:
+    read, limit = part_or_tree(path), Limits().program_nodes
+    if isinstance(read, Part):
+        return part_package(read, path.name, read.definition.digest, request, limit)
+    source = coupled_source(*read)
+    sources = source.sources
+    return tree_package(sources, path.stem, path.name, source.digest, request, limit, lambda: read)
+
+
+def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) -> Package:
+    kind = "substructures" if is_part else "trees"
+    wanted = {
+        "target": request.target,
+        "quantities": ",".join(request.quantities),
+        "name": request.name,
+        "bind": request.bind,
+        "together": request.together,
+        "packed": request.packed,
+        "fmi": request.fmi,
+        "precision": request.precision,
+        "stages": request.stages,
+    }
+    with server.client() as client:
+        answer = client.request("GET", f"/v1/{kind}/{step(tree)}/export", params=wanted)
+    name = answer.headers["content-disposition"].partition('filename="')[2].rstrip('"')
+    return Package(Path(name).name, answer.headers["content-type"], answer.content)
+
+
+COMMANDS = {"export": export}

@@ -1,0 +1,286 @@
+"""Integration over a span by SciPy's steppers: outputs, events, breaks, limits; what goes wrong is a value.
+
+E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I (DOP853); II (Radau IIA, BDF).
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.motion.integrators.steppers import Stepper
+from substructures.analysis.motion.integrators.zeros import Dense, Watch, zeros_of
+from substructures.array import Array
+
+Function = Callable[[float, Array], Array]
+#: told the time reached; False stops
+TimeReport = Callable[[float], bool | None]
+
+#: accepted steps that are kept for the judges
+KEPT = 20_000
+#: so many steps in a row of less than this share of the span mean that the integrator is stuck
+PATIENCE, TINY = 200, 1e-12
+#: the level of a watch that is zero, with a sign
+LEAST = 1e-300
+#: of the largest level so far: what a level that jumps changes by at least
+JUMP = 1e-9
+STIFF = "try the method 'Radau' for stiff equations"
+
+
+@dataclass(frozen=True)
+class IntegratorSettings:
+    """``advice``: what to change when the integrator gives up, beside state, span and tolerances."""
+
+    stepper: Stepper
+    max_steps: int
+    advice: str = STIFF
+
+
+@dataclass
+class IntegratedMotion:
+    """Results at the wanted times, accepted steps for the judges, and (watch, t, x) of the zeros found."""
+
+    t: list[float] = field(default_factory=list)
+    x: list[Array] = field(default_factory=list)
+    step_t: list[float] = field(default_factory=list)
+    step_x: list[Array] = field(default_factory=list)
+    found: list[tuple[int, float, Array]] = field(default_factory=list)
+    status: Literal["finished", "stopped", "failed"] = "finished"
+    message: str = ""
+    steps: int = 0
+    evaluations: int = 0
+    stride: int = 1
+    cancelled: bool = False
+
+    def judged(self) -> tuple[Array, Array, NDArray[np.int64]]:
+        """Times (J,) and states (J, N), in order, of all that the judges see: steps that were kept, results and zeros;
+        and which of them are the results (K,).
+        """
+        t = np.array([*self.step_t, *self.t, *(t for _, t, _ in self.found)], dtype=np.float64)
+        x = np.array([*self.step_x, *self.x, *(x for _, _, x in self.found)], dtype=np.float64)
+        # results[k] = place of the k-th result after sorting, by the inverse of the permutation
+        order = np.argsort(t, kind="stable")
+        results = np.argsort(order)[len(self.step_t) : len(self.step_t) + len(self.t)]
+        return t[order], x[order], results
+
+    def end(self, status: Literal["stopped", "failed"], message: str) -> None:
+        """No further steps."""
+        self.status, self.message = status, message
+
+    def cancel(self, t: float) -> None:
+        """No further steps: whoever watches the progress has had enough."""
+        self.end("stopped", f"cancelled at t = {t:.9g} s")
+        self.cancelled = True
+
+    def keep(self, t: float, x: Array) -> None:
+        """Note an accepted step; every second one is dropped when there are too many."""
+        self.steps += 1
+        if self.steps % self.stride == 0:
+            self.step_t.append(t)
+            self.step_x.append(x)
+        if len(self.step_t) > KEPT:
+            self.step_t, self.step_x, self.stride = self.step_t[::2], self.step_x[::2], 2 * self.stride
+
+
+def integrate(
+    f: Function,
+    x: Array,
+    span: tuple[float, float],
+    outputs: Array,
+    settings: IntegratorSettings,
+    watches: Sequence[Watch] = (),
+    breaks: Sequence[float] = (),
+    progress: TimeReport | None = None,
+    enter: Callable[[float, float], None] | None = None,
+) -> IntegratedMotion:
+    """x(t) at the times ``outputs`` in the span; the integrator begins anew at the times ``breaks``.
+
+    A motion that ends early has the last state that was reached, too.
+
+    ``enter``: told the times between which f is called next, from break to break.
+    """
+    run = _Run(f, span, outputs, settings, watches, progress)
+    motion = run.motion
+    motion.step_t.append(span[0])
+    motion.step_x.append(x)
+    run.last = span[0], x
+    run.collect(span[0], lambda _: x)
+    run.levels = [w.function(span[0], x) for w in watches]
+    run.sizes = np.abs(run.levels).tolist()
+    # the method's order holds where the right-hand side is smooth: from break to break
+    ends = [*breaks, span[1]]
+    start = span[0]
+    with np.errstate(all="ignore"):
+        for end in ends:
+            if enter is not None:
+                enter(start, end)
+            if start > span[0]:
+                run.broken(start, x)
+            x = run.segment(start, x, end)
+            if motion.status != "finished":
+                break
+            start = end
+    if motion.status != "finished":
+        run.keep_last()
+    return motion
+
+
+class _Run:
+    def __init__(
+        self,
+        f: Function,
+        span: tuple[float, float],
+        outputs: Array,
+        settings: IntegratorSettings,
+        watches: Sequence[Watch],
+        progress: TimeReport | None,
+    ) -> None:
+        self.f, self.settings, self.watches, self.progress = f, settings, watches, progress
+        self.outputs = outputs.tolist()
+        self.next = 0
+        self.levels: list[float] = []
+        #: the largest that they were
+        self.sizes: list[float] = []
+        self.span, self.tiny = span[1] - span[0], 0
+        self.motion = IntegratedMotion()
+        self.last: tuple[float, Array] | None = None
+        #: where the integrator begins anew
+        self.corner: tuple[float, Array] | None = None
+
+    def keep_last(self) -> None:
+        """The last state that was reached, as a result."""
+        motion = self.motion
+        if self.last is not None and (not motion.t or motion.t[-1] < self.last[0]):
+            motion.t.append(self.last[0])
+            motion.x.append(self.last[1])
+
+    def segment(self, start: float, x: Array, end: float) -> Array:
+        """Integrate from start to end, from corner to corner; the last state."""
+        x = self._piece(start, x, end)
+        while self.corner is not None and self.motion.status == "finished":
+            start, x = self.corner
+            self.corner = None
+            if start < end:
+                x = self._piece(start, x, end)
+        return x
+
+    def _piece(self, start: float, x: Array, end: float) -> Array:
+        """Integrate from start to the next corner, or to the end."""
+        s, motion, solver = self.settings, self.motion, None
+        try:
+            solver = s.stepper(self.f, start, x, end)
+            while solver.status == "running" and motion.status == "finished" and self.corner is None:
+                message = solver.step()
+                if solver.status == "failed":
+                    motion.end("failed", self._advice(solver.t, str(message)))
+                    break
+                self._accepted(solver)
+        except (ValueError, ArithmeticError, np.linalg.LinAlgError) as error:
+            motion.end("failed", self._advice(start if self.last is None else self.last[0], str(error)))
+            return x
+        finally:
+            motion.evaluations += 0 if solver is None else solver.nfev
+        return np.asarray(solver.y, dtype=np.float64)
+
+    def _advice(self, t: float, message: str) -> str:
+        return (
+            f"the integrator could not go on at t = {t:.9g} s ({message.strip()}): the motion may be singular there; "
+            f"look at the state, end the span before it, loosen 'relative_tolerance', or {self.settings.advice}"
+        )
+
+    def _accepted(self, solver: Any) -> None:
+        motion = self.motion
+        if not np.isfinite(solver.y).all():
+            motion.end("failed", self._advice(solver.t_old, "the state is not finite"))
+            return
+        motion.keep(solver.t, solver.y.copy())
+        self.last = float(solver.t), solver.y.copy()
+        self.tiny = self.tiny + 1 if solver.t - solver.t_old < TINY * self.span else 0
+        if self.tiny > PATIENCE:
+            motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
+            return
+        dense = Dense(solver, self.settings.stepper)
+        last = self._watch(solver, dense)
+        self.collect(last, dense)
+        if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
+            advice = f"raise 'max_steps', loosen the tolerances, or {self.settings.advice}"
+            motion.end("failed", f"{motion.steps:,} steps reached only t = {solver.t:.9g} s: {advice}")
+        if self.progress is not None and self.progress(solver.t) is False and motion.status == "finished":
+            motion.cancel(solver.t)
+
+    def collect(self, last: float, dense: Callable[[float], Array]) -> None:
+        """Results at the wanted times up to ``last``."""
+        while self.next < len(self.outputs) and self.outputs[self.next] <= last:
+            t = self.outputs[self.next]
+            self.motion.t.append(t)
+            self.motion.x.append(np.array(dense(t), dtype=np.float64))
+            self.next += 1
+
+    def _watch(self, solver: Any, dense: Dense) -> float:
+        """Zeros in the last step, in the order of time, up to the first that stops; how far the motion goes."""
+        zeros, earlier = [], list(self.levels)
+        for k, watch in enumerate(self.watches):
+            before, after = self.levels[k], watch.function(solver.t, solver.y)
+            self.levels[k], self.sizes[k] = after, max(self.sizes[k], abs(after))
+            zeros += [(t, k) for t in zeros_of(watch, solver, dense, (before, after))]
+        zeros.sort()
+        for i, (t, k) in enumerate(zeros):
+            x = np.array(dense(t), dtype=np.float64)
+            if self.watches[k].corner is not None:
+                self.collect(t, dense)  # on the side that is left
+                signs = {j: earlier[j] for _, j in zeros[i:]} | {j: self.levels[j] for _, j in zeros[:i]}
+                self._turn(k, t, x, signs)
+                return t
+            self.motion.found.append((k, t, x))
+            if self.watches[k].stops:
+                self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
+                self.collect(t, dense)
+                self.last = t, x
+                self._drop(t)
+                return t
+        return float(solver.t)
+
+    def _drop(self, t: float) -> None:
+        """The end of the step lies beyond an event: no state of this motion."""
+        if self.motion.step_t[-1] > t:
+            del self.motion.step_t[-1], self.motion.step_x[-1]
+
+    def _turn(self, k: int, t: float, x: Array, signs: Mapping[int, float]) -> None:
+        """Begin anew at a corner, on its other side; ``signs`` of events that are before or after it."""
+        self._drop(t)
+        self.motion.keep(t, x)
+        self.last = self.corner = t, x
+        turned = self.watches[k].corner
+        if turned is not None:
+            before = [watch.function(t, x) for watch in self.watches]
+            turned.take(-turned.side)
+            self._jumped(t, x, before)
+            if not turned.stays(t, x):
+                kept = [i for i, watch in enumerate(self.watches) if watch.corner is None]
+                self.watches, self.sizes = [self.watches[i] for i in kept], [self.sizes[i] for i in kept]
+        self.levels = [watch.function(t, x) for watch in self.watches]
+        for i, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
+            side = signs.get(i, self.levels[i]) if watch.corner is None else watch.corner.side
+            self.levels[i] = math.copysign(max(abs(self.levels[i]), LEAST), side)
+
+    def broken(self, t: float, x: Array) -> None:
+        """Go on behind a break, where levels of corners may have jumped."""
+        self._jumped(t, x, self.levels)
+        for i, watch in enumerate(self.watches):
+            if watch.corner is not None:
+                self.levels[i] = math.copysign(max(abs(watch.function(t, x)), LEAST), watch.corner.side)
+
+    def _jumped(self, t: float, x: Array, before: Sequence[float]) -> None:
+        """Take the sides of corners that were jumped over; those that others depend on come first."""
+        for i, watch in enumerate(self.watches):
+            if watch.corner is None:
+                continue
+            after = watch.function(t, x)
+            self.sizes[i] = max(self.sizes[i], abs(after))
+            if abs(after - before[i]) > JUMP * self.sizes[i]:
+                watch.corner.take(math.copysign(1.0, after))

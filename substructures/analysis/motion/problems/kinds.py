@@ -1,0 +1,83 @@
+"""Kinds of motion: which equations are integrated, and what is to be said of each. One of them goes with a motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Literal
+
+from substructures.analysis.arguments import one_of
+from substructures.analysis.equations.velocity_constraints import Constraint
+from substructures.analysis.motion.problems.problem import StateVector
+from substructures.analysis.motion.problems.signals import Signal
+from substructures.errors import InvalidArgument
+from substructures.quantities.reactions import ReactionModel
+
+
+@dataclass(frozen=True)
+class TreeMotion:
+    """A tree without closures: q'' = g^-1 (Q - Gamma q' q').
+
+    ``friction`` of joints that have some: by the smooth law of the formulas; ``exact``, set-valued at rest, with joints
+    that stick; or ``loaded``, with what the reactions of joints add: ``bearings``, all reactions of the tree.
+    """
+
+    friction: Literal["regularised", "exact", "loaded"] = "regularised"
+    bearings: ReactionModel | None = None
+
+    def __post_init__(self) -> None:
+        one_of(self.friction, "friction", ("regularised", "exact", "loaded"))
+        if self.friction == "loaded" and self.bearings is None:
+            message = "friction by the load of joints needs the reactions of the tree, 'bearings'"
+            raise InvalidArgument.at("/friction", "needs-parts", message)
+        if self.friction != "loaded" and self.bearings is not None:
+            message = f"'bearings' go with 'loaded' friction, found '{self.friction}': leave them out"
+            raise InvalidArgument.at("/bearings", "not-supported", message)
+
+
+@dataclass(frozen=True)
+class ClosedMotion:
+    """On closures or with coordinates whose motion is given: phi(q, t) = 0, with multipliers.
+
+    ``prescribed`` coordinates move as given [rad, m]; ``fixed`` ones keep their values while the loops are closed at
+    the start; ``reduction``: the state is projected onto the closures after every step, or independent coordinates are
+    integrated. ``friction``: see TreeMotion; that of prescribed coordinates stays smooth.
+    """
+
+    prescribed: Mapping[str, Signal] = field(default_factory=dict)
+    fixed: Sequence[str] = ()
+    reduction: Literal["projection", "partitioning"] = "projection"
+    friction: Literal["regularised", "exact"] = "regularised"
+
+    def __post_init__(self) -> None:
+        one_of(self.reduction, "reduction", ("projection", "partitioning"))
+        one_of(self.friction, "friction", ("regularised", "exact"))
+
+
+@dataclass(frozen=True)
+class ConstrainedMotion:
+    """With ``constraints`` on the velocities (Linear, KnifeEdge, Rolling, Closed), B q' = 0, in quasi-velocities.
+
+    ``v``: these at the start, (p,) or by name, in place of velocities of the coordinates (default: 0). ``velocities``,
+    ``independent``: see quasi_velocity_equations; where neither is given velocities of coordinates are chosen, and
+    others on the way where these fail. ``form`` of the equations of motion.
+    """
+
+    constraints: Sequence[Constraint]
+    velocities: Mapping[str, str] | None = None
+    independent: Sequence[str] | None = None
+    v: StateVector | None = None
+    form: Literal["voronets", "boltzmann-hamel"] = "voronets"
+
+    def __post_init__(self) -> None:
+        if not self.constraints:
+            raise InvalidArgument.at("/constraints", "too-short", "at least one constraint is needed, found none")
+        one_of(self.form, "form", ("voronets", "boltzmann-hamel"))
+
+
+@dataclass(frozen=True)
+class Geodesic:
+    """A tree on which no force acts: q''^a + Gamma^a_bc q'^b q'^c = 0."""
+
+
+MotionKind = TreeMotion | ClosedMotion | ConstrainedMotion | Geodesic

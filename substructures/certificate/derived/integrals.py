@@ -1,0 +1,162 @@
+"""What first integrals and Routh's equations have to be, from a model's certified program.
+
+That a quantity is constant is checked with it: its derivative along the equations of motion vanishes.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from flint import arb, arb_mat
+
+from substructures.certificate.derived.model_at import Index, ModelAt, dot, solve, total
+from substructures.certificate.derived.model_formulas import Expectation, power, symmetric_of, vector_of
+from substructures.certificate.linear import Ball
+from substructures.certificate.numbers import Numbers
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.slopes import tangents
+from substructures.certificate.stored import Stored, operations_in_balls
+from substructures.errors import VerificationFailed
+
+AXES = "xyz"
+
+
+def constant(program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str]) -> Expectation:
+    """Energies, momenta and combinations of them, and the power; ``integrals``: name, kind, rule and direction of each.
+
+    ``program``: of the integrals, whose derivatives along the motion have to vanish. ``multipliers``: symbols of the
+    reactions of closures.
+    """
+    return partial(_constant, program, integrals, multipliers)
+
+
+def _constant(
+    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], m: ModelAt
+) -> Outputs:
+    result = Outputs()
+    found = {"linear_momentum": m.momentum("linear"), "angular_momentum": m.momentum("angular")}
+    for each in integrals:
+        name, kind = each["name"], each["kind"]
+        if kind == "energy":
+            value = m.kinetic_energy() + m.scalar("potential_energy")
+        elif kind == "cyclic":
+            value = m.momenta()[m.coordinates.index(name.removeprefix("momentum."))]
+        elif kind == "symmetry":
+            weights, momenta = Numbers(m.values), m.momenta()
+            pairs = ((text, momenta[m.coordinates.index(q)]) for q, text in each["direction"].items())
+            value = total(weights.read(text) * p for text, p in pairs)
+        else:
+            value = _component(m, found, kind, name.removeprefix(f"{kind}."))
+        result.scalar(name, value)
+    result.scalar("power", power(m))
+    _require_constant(program, [each for each in integrals if each["rule"] == "constant"], multipliers, m)
+    return result
+
+
+def _component(m: ModelAt, found: Mapping[str, list[Ball]], kind: str, label: str) -> Ball:
+    """A momentum of the whole along an axis of the world, the axis of a joint, a constant force, or across that."""
+    momentum = found[kind]
+    if label in AXES:
+        return momentum[AXES.index(label)]
+    if label.startswith("axis-of-"):
+        return dot(momentum, _axis(m, m.coordinates.index(label.removeprefix("axis-of-"))))
+    # p' along the motion is the force, of which components that are zero come as such, or as small balls
+    pull = _rate_of_momentum(m)
+    first = next(i for i, x in enumerate(pull) if not x.contains(0))
+    if label == "force":
+        return dot(momentum, [x / pull[first] for x in pull])
+    i = AXES.index(label.removesuffix("-normal-to-force"))
+    return momentum[i] - momentum[first] * (pull[i] / pull[first])
+
+
+def _axis(m: ModelAt, a: int) -> list[Ball]:
+    """The direction in the world of a joint's axis."""
+    rotation = m.elements("rotation")
+    for name in ("Omega", "U"):
+        columns = m.elements(name)
+        frame = min((k for k, b, _ in columns if b == a), default=None)
+        if frame is not None:
+            pairs = [[(rotation.get((frame, j, i)), columns.get((frame, a, i))) for i in range(3)] for j in range(3)]
+            return [total(r * c for r, c in some if r is not None and c is not None) for some in pairs]
+    raise VerificationFailed(f"no frame moves with {m.coordinates[a]}")
+
+
+def _rate_of_momentum(m: ModelAt) -> list[Ball]:
+    """d/dt of sum_a p_a q'^a along the equations of motion."""
+    second = m.accelerations()
+    moved, own = m.along(m.motion(second)).elements("linear_momentum"), m.elements("linear_momentum")
+    pairs = list(enumerate(zip(m.rates, second, strict=True)))
+    zero = arb(0)
+    return [total(moved.get((a, i), zero) * v + own.get((a, i), zero) * w for a, (v, w) in pairs) for i in range(3)]
+
+
+def _require_constant(
+    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], m: ModelAt
+) -> None:
+    """Raise VerificationFailed for an integral that changes along the motion, whatever the reactions of closures are;
+    they do no work."""
+    values = {**m.values, **dict.fromkeys(multipliers, arb(1))}
+    found = operations_in_balls(program, values)
+    free = tangents(program, found, m.motion(m.accelerations()))
+    held = free
+    if multipliers:
+        G = m.matrix("closure.jacobian")
+        beside = (arb_mat(1, len(multipliers), [k + 1 for k in range(len(multipliers))]) * G).entries()
+        held = tangents(program, found, m.motion(m.accelerations(beside)))
+    for each in integrals:
+        change = free if each["kind"] == "energy" else held
+        if any(not change.get(entry, arb(0)).contains(0) for entry in program.outputs[each["name"]].entries):
+            raise VerificationFailed(f"{each['name']} changes along the motion")
+
+
+def reduced(cyclic: Sequence[str], rest: Sequence[str]) -> Expectation:
+    """Routh's equations in the coordinates ``rest``; symbols ``p.*``: the momenta of those that are ``cyclic``."""
+    return partial(_reduced, cyclic, rest)
+
+
+def _reduced(cyclic: Sequence[str], rest: Sequence[str], m: ModelAt) -> Outputs:
+    c, r = ([m.coordinates.index(name) for name in names] for names in (cyclic, rest))
+    g, Q, n = m.matrix("metric"), m.vector("forces"), range(len(r))
+    block = arb_mat(len(c), len(c), [g[i, j] for i in c for j in c])
+    p = [m.values[f"p.{name}"] for name in cyclic]
+    # q' = P q'_r + w, P = (1, -g_cc^-1 g_cr), w = (0, g_cc^-1 p)
+    pushed = [dict(zip(c, solve(block, [-g[i, a] for i in c]), strict=True)) | {a: arb(1)} for a in r]
+    w = dict(zip(c, solve(block, p), strict=True))
+    gamma, v = m.elements("christoffel"), [m.rates[a] for a in r]
+    h = arb_mat(len(r), len(r), [_bilinear(g, pushed[a], pushed[b]) for a in n for b in n])
+    result = Outputs()
+    symmetric_of(result, "metric", h)
+    _velocity_terms(result, gamma, pushed, w)
+    vector_of(result, "forces", [Q[r[a]] - _trilinear(gamma, pushed[a], w, w) for a in n])
+    amended = m.scalar("potential_energy") + dot(p, [w[i] for i in c]) / 2
+    result.scalar("amended_potential", amended)
+    kinetic = total(h[a, b] * v[a] * v[b] for a in n for b in n) / 2
+    coupling = total(w[i] * g[i, a] * x for i in c for a, x in zip(r, v, strict=True))
+    result.scalar("routhian", kinetic + coupling - amended)
+    vector_of(result, "cyclic_velocities", [w[i] + total(pushed[a][i] * v[a] for a in n) for i in c])
+    return result
+
+
+def _velocity_terms(
+    result: Outputs, gamma: Mapping[Index, Ball], pushed: Sequence[Mapping[int, Ball]], w: Mapping[int, Ball]
+) -> None:
+    """Gamma of the coordinates that are left, and what is linear in their rates: 2 Gamma(P_a, P_b, w)."""
+    n = range(len(pushed))
+    christoffel, gyroscopic = result.array("christoffel", (len(n),) * 3), result.array("gyroscopic", (len(n),) * 2)
+    for a in n:
+        for b in n:
+            gyroscopic[a, b] = 2 * _trilinear(gamma, pushed[a], pushed[b], w)
+            christoffel |= {(a, b, k): _trilinear(gamma, pushed[a], pushed[b], pushed[k]) for k in n}
+
+
+def _bilinear(g: Any, x: Mapping[int, Ball], y: Mapping[int, Ball]) -> Ball:
+    return total(g[i, j] * s * t for i, s in x.items() for j, t in y.items())
+
+
+def _trilinear(
+    gamma: Mapping[Index, Ball], x: Mapping[int, Ball], y: Mapping[int, Ball], z: Mapping[int, Ball]
+) -> Ball:
+    """Gamma_ijk x_i y_j z_k."""
+    return total(value * x[i] * y[j] * z[k] for (i, j, k), value in gamma.items() if i in x and j in y and k in z)

@@ -1,0 +1,233 @@
+"""What perturbation equations, state spaces and sensitivities have to be, from a model's certified program."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
+
+from flint import arb, arb_mat, arb_series
+
+from substructures.certificate.derived.model_at import ModelAt, total
+from substructures.certificate.derived.model_formulas import (
+    Expectation,
+    columns_of,
+    inverse_dynamics_jacobians,
+    symmetric_of,
+    vector_of,
+)
+from substructures.certificate.linear import Ball
+from substructures.certificate.numbers import Numbers
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.stored import Pruned, operations_in_balls, pruned
+from substructures.certificate.texts import slope
+from substructures.expr.operations import Output
+
+
+def perturbed(inputs: Sequence[str], multipliers: Sequence[str]) -> Expectation:
+    """M, D, K, F and the residual; with closures also G and its derivatives along the motion."""
+    return partial(_perturbed, inputs, multipliers)
+
+
+def _perturbed(inputs: Sequence[str], multipliers: Sequence[str], m: ModelAt) -> Outputs:
+    result, found = Outputs(), inverse_dynamics_jacobians(m)
+    symmetric_of(result, "metric", m.matrix("metric"))
+    result["damping"], result["stiffness"] = found["inverse_dynamics_qd"], found["inverse_dynamics_q"]
+    # F = dQ/du
+    columns_of(result, "input", m.n, [m.by(name).vector("forces") for name in inputs])
+    result["residual"] = found["inverse_dynamics"]
+    if multipliers:
+        _closed(result, m, [m.values[name] for name in multipliers])
+    return result
+
+
+def _closed(result: Outputs, m: ModelAt, multipliers: Sequence[Ball]) -> None:
+    """K less lambda_k d_b G_ka, the residual less G^T lambda; G, G' and G''."""
+    names = "closure.residual", "closure.jacobian"
+    G, shape = m.matrix(names[1]), m.program.outputs[names[1]].shape
+    K, residual = result["stiffness"].entries, result["residual"].entries
+    weights = arb_mat(1, shape[0], list(multipliers))
+    for a, x in enumerate((weights * G).entries()):
+        residual[a,] = residual[a,] - x
+    for b, name in enumerate(m.coordinates):
+        for a, x in enumerate((weights * m.by(name).matrix(names[1])).entries()):
+            K[a, b] = K[a, b] - x
+    phi = m.elements(names[0])
+    vector_of(result, names[0], [phi.get((k,), arb(0)) for k in range(shape[0])])
+    result.matrix(names[1], shape, (), G)
+    # G at q + q' h + q'' h^2 / 2: the coefficients of h and h^2
+    series = {name: arb_series([x]) for name, x in m.values.items()}
+    series |= {
+        name: arb_series([q, v, w / 2]) for name, q, v, w in zip(m.coordinates, m.q, m.rates, m.second, strict=True)
+    }
+    found, output = _along(pruned(m.program, names[1:]), series)
+    for name, order, factor in (("closure.jacobian_rate", 1, 1), ("closure.jacobian_second", 2, 2)):
+        entries = result.array(name, shape)
+        for index, entry in zip(output.index, output.entries, strict=True):
+            entries[index] = _coefficient(found[entry], order) * factor
+
+
+def _along(program: Pruned, series: Mapping[str, Any]) -> tuple[list[Any], Output]:
+    """G as power series of the time, operations and all; nowhere else than in G is a root or a quotient looked at. Not
+    numbers where one of them has no series.
+    """
+    (output,) = program.outputs.values()
+    try:
+        return operations_in_balls(program, series), output
+    except ValueError:  # a divisor whose enclosure has 0 in it
+        return [arb_series([arb("nan")] * 3)] * len(program.operations), output
+
+
+def _coefficient(x: Any, order: int) -> Ball:
+    return x[order] if isinstance(x, arb_series) else arb(0)
+
+
+def first_order(texts: Sequence[Any], inputs: Sequence[str]) -> Expectation:
+    """A, B, C, D, x' and y; ``texts``: of y."""
+    return partial(_first_order, texts, inputs)
+
+
+def _first_order(texts: Sequence[Any], inputs: Sequence[str], m: ModelAt) -> Outputs:
+    result, found, states = Outputs(), m.accelerations(), [*m.coordinates, *(f"{name}'" for name in m.coordinates)]
+
+    def column(name: str) -> list[Ball]:
+        """Of A or B: d(q', q'')/dz."""
+        own = [arb(int(f"{q}'" == name)) for q in m.coordinates]
+        return [*own, *m.solved([-x for x in m.changed({name: arb(1)}, found)])]
+
+    columns_of(result, "A", 2 * m.n, [column(name) for name in states])
+    columns_of(result, "B", 2 * m.n, [column(name) for name in inputs])
+    for matrix, names in (("C", states), ("D", inputs)):
+        columns_of(result, matrix, len(texts), [[slope(text, m.values, name) for text in texts] for name in names])
+    vector_of(result, "derivative", [*m.rates, *found])
+    vector_of(result, "output", [Numbers(m.values).read(text) for text in texts])
+    return result
+
+
+def by_parameters(parameters: Sequence[str], quantities: Sequence[str]) -> Expectation:
+    """Outputs of the model differentiated by parameters."""
+    return partial(_by_parameters, parameters, quantities)
+
+
+def _by_parameters(parameters: Sequence[str], quantities: Sequence[str], m: ModelAt) -> Outputs:
+    result = Outputs()
+    for parameter in parameters:
+        moved = m.by(parameter)
+        for quantity in quantities:
+            output = m.program.outputs[quantity]
+            entries = result.array(f"{quantity}:{parameter}", tuple(output.shape), output.symmetry)
+            entries |= {i: moved.found[e] for i, e in zip(output.index, output.entries, strict=True)}
+    return result
+
+
+def varied(parameters: Sequence[str]) -> Expectation:
+    """Accelerations and their variation along the symbols ``d.*`` of states and parameters."""
+    return partial(_varied, parameters)
+
+
+def _varied(parameters: Sequence[str], m: ModelAt) -> Outputs:
+    result, found = Outputs(), m.accelerations()
+    names = [*m.coordinates, *(f"{name}'" for name in m.coordinates), *parameters]
+    change = m.changed({name: m.values[f"d.{name}"] for name in names}, found)
+    vector_of(result, "acceleration", found)
+    vector_of(result, "variation", m.solved([-x for x in change]))
+    return result
+
+
+def curved(m: ModelAt) -> Outputs:
+    """R_abcd = d_c Gamma_abd - d_d Gamma_abc + g^ef (Gamma_ead Gamma_fbc - Gamma_eac Gamma_fbd), R_bd, S, g^ab, and
+    Gamma^a_bc: every element of them.
+    """
+    result, n = Outputs(), range(m.n)
+    try:
+        inverse = m.matrix("metric").inv()
+    except ZeroDivisionError:
+        inverse = arb_mat(m.n, m.n, [arb("nan")] * m.n**2)
+    first = _blocks(m)
+    slopes = [_blocks(m.by(name)) for name in m.coordinates]
+    second = [[inverse * arb_mat(m.n, 1, first[b][c]) for c in n] for b in n]
+    riemann = result.array("riemann", (m.n,) * 4)
+    for a, b, c, d in ((a, b, c, d) for a in n for b in n for c in n for d in n):
+        turned = total(second[a][d][e, 0] * first[b][c][e] - second[a][c][e, 0] * first[b][d][e] for e in n)
+        riemann[a, b, c, d] = slopes[c][b][d][a] - slopes[d][b][c][a] + turned
+    ricci = arb_mat(m.n, m.n, [total(inverse[a, c] * riemann[a, b, c, d] for a in n for c in n) for b in n for d in n])
+    symmetric_of(result, "ricci", ricci)
+    result.scalar("scalar_curvature", total(inverse[b, d] * ricci[b, d] for b in n for d in n))
+    symmetric_of(result, "inverse_metric", inverse)
+    entries = result.array("christoffel_second", (m.n,) * 3)
+    entries |= {(a, b, c): second[b][c][a, 0] for a in n for b in n for c in n}
+    return result
+
+
+def _blocks(m: ModelAt) -> list[list[list[Ball]]]:
+    """Gamma_abc at [b][c][a]."""
+    found, n = m.elements("christoffel"), range(m.n)
+    return [[[found.get((a, b, c), arb(0)) for a in n] for c in n] for b in n]
+
+
+def steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[str]) -> Expectation:
+    """E_x and its derivatives, momenta g_ss w and theirs, at rest in the coordinates x = ``still``."""
+    return partial(_steady, still, moving, multipliers)
+
+
+def _steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[str], m: ModelAt) -> Outputs:
+    names, result, zero = m.coordinates, Outputs(), [arb(0)] * m.n
+    here = m.at({f"{names[a]}'": arb(0) for a in still})
+    weights = arb_mat(1, len(multipliers), [m.values[name] for name in multipliers])
+
+    def E(at: ModelAt) -> list[Ball]:
+        """Gamma_xbc q'^b q'^c - Q_x - lambda_k G_kx, or its change."""
+        held = (weights * at.matrix("closure.jacobian")).entries() if multipliers else zero
+        needed = at.needed(zero)
+        return [needed[a] - held[a] for a in still]
+
+    def p(g: ModelAt) -> list[Ball]:
+        """g_ss w."""
+        metric = g.matrix("metric")
+        return [total(metric[s, b] * m.rates[b] for b in moving) for s in moving]
+
+    metric = here.matrix("metric")
+    columns_of(result, "metric", m.n, [[metric[a, b] for a in range(m.n)] for b in range(m.n)])
+    vector_of(result, "residual", E(here))
+    for name, by in (("position", [names[a] for a in still]), ("velocity", [f"{names[a]}'" for a in still])):
+        columns_of(result, f"by_{name}", len(still), [E(here.by(x)) for x in by])
+    columns_of(result, "by_rate", len(still), [E(here.by(f"{names[s]}'")) for s in moving])
+    vector_of(result, "momenta", p(here))
+    columns_of(result, "momenta_by_position", len(moving), [p(here.by(names[a])) for a in still])
+    if multipliers:
+        phi, G, rows = here.elements("closure.residual"), here.matrix("closure.jacobian"), range(len(multipliers))
+        vector_of(result, "closure.residual", [phi.get((k,), arb(0)) for k in rows])
+        columns_of(result, "closure.jacobian", len(rows), [[G[k, a] for k in rows] for a in still])
+    return result
+
+
+def adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str]) -> Expectation:
+    """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``."""
+    return partial(_adjoint, controls, costs, varied_by)
+
+
+def _adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str], m: ModelAt) -> Outputs:
+    result, rates = Outputs(), [f"{name}'" for name in m.coordinates]
+    running, terminal = costs["running"], costs["terminal"]
+    costates = [m.values[f"lambda.{name}"] for name in (*m.coordinates, *rates)]
+    mu, weight = [m.values[f"mu.{name}"] for name in m.coordinates], m.values["lambda.0"]
+    read = Numbers(m.values).read
+
+    def rate(name: str) -> Ball:
+        """d(lambda_0 l - mu . ID)/dz."""
+        needed = m.changed({name: arb(1)}, m.second)
+        return weight * slope(running, m.values, name) - total(x * y for x, y in zip(mu, needed, strict=True))
+
+    symmetric_of(result, "metric", m.matrix("metric"))
+    vector_of(result, "force", [-x for x in m.needed([arb(0)] * m.n)])
+    result.scalar("running_cost", read(running))
+    pairs = zip(costates, [*m.rates, *m.second], strict=True)
+    result.scalar("hamiltonian", weight * read(running) + total(x * y for x, y in pairs))
+    vector_of(result, "adjoint_q", [-rate(name) for name in m.coordinates])
+    vector_of(result, "adjoint_qd", [-(costates[a] + rate(name)) for a, name in enumerate(rates)])
+    vector_of(result, "control_gradient", [rate(name) for name in controls])
+    vector_of(result, "parameter_gradient", [rate(name) for name in varied_by])
+    result.scalar("terminal_cost", read(terminal))
+    for name, by in (("q", m.coordinates), ("qd", rates), ("parameters", varied_by)):
+        vector_of(result, f"terminal_{name}", [slope(terminal, m.values, z) for z in by])
+    return result

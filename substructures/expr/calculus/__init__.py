@@ -1,0 +1,1 @@
+"""Integrals of formulas, and where they and their derivatives vanish or have corners."""

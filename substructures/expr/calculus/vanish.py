@@ -1,0 +1,142 @@
+"""Whether a formula is the zero function, decided at random points in ball arithmetic: yes, no, or unknown.
+
+Fingerprints do not know that sqrt(11)^2 = 11 or atan2(0, 1) = 0; the value at a point does. A ball without zero proves
+that the formula is not zero. Balls with zero are evidence that it is, where they are small against the terms that make
+them up, at points of both signs and of all magnitudes, and stay so with many more digits; less than that is unknown,
+unless the canonical form (:mod:`substructures.expr.rings.expand`) proves it.
+
+>>> graph = Graph()
+>>> x = graph.symbol("x")
+>>> vanish = Vanishing(graph)
+>>> root, square = graph.function("sqrt", x + 1), graph.function("sqrt", (x + 1) ** 2)
+>>> vanish(root - x), vanish(square - x - 1), vanish(square - graph.function("abs", x + 1))
+(False, False, True)
+"""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable
+from fractions import Fraction
+from secrets import SystemRandom
+from typing import Any
+
+import flint
+
+from substructures.errors import TooLarge
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.rings.expand import is_zero
+from substructures.expr.walk import reachable
+
+#: points, and at how many of them a formula must have a value to be called zero
+POINTS, ENOUGH = 12, 6
+#: powers of ten that the magnitudes of symbols span, both ways
+DECADES = 6
+#: bits of the first look; the second one has a multiple of the bits of all numbers in the formula more
+PRECISION, MORE, MOST = 300, 2000, 100_000
+#: a radius is small against the terms below 2^-(precision - GUARD)
+GUARD = 120
+#: terms of the canonical form that is tried where points leave it open
+TERMS = 200
+
+_OPERATIONS: dict[str, Callable[..., Any]] = {
+    "add": operator.add,
+    "sub": operator.sub,
+    "mul": operator.mul,
+    "div": operator.truediv,
+    "neg": operator.neg,
+    "abs": abs,
+    "sign": lambda x: x.sgn(),
+    "atan2": lambda y, x: flint.arb.atan2(y, x),
+}
+
+
+class Vanishing:
+    """The test for the formulas of one graph; values of nodes at its points are kept."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph, self.random = graph, SystemRandom()
+        self.symbols: list[dict[Expr, Fraction]] = [{} for _ in range(POINTS)]
+        self.values: dict[tuple[int, int], dict[Expr, tuple[Any, Any]]] = {}
+
+    def __call__(self, expr: Expr) -> bool | None:
+        """True for the zero function, False for another one, None where neither is known."""
+        if expr.is_zero:
+            return True
+        nodes = reachable([expr])
+        names = [node for node in nodes if node.op == "sym"]
+        seen: list[dict[Expr, Fraction]] = []
+        for point in range(POINTS):
+            verdict = self._at(expr, nodes, point)
+            if verdict is False:
+                return False
+            if verdict:
+                seen.append(self.symbols[point])
+        both = all(len({point[name] > 0 for point in seen}) == 2 for name in names)
+        if both and len(seen) >= ENOUGH:
+            return True
+        return True if _is_proven(expr) else None
+
+    def _at(self, expr: Expr, nodes: list[Expr], point: int) -> bool | None:
+        """Whether the value at a point is zero, as far as digits tell."""
+        bits = sum(_bits(node) for node in nodes if node.is_number)
+        for precision in (PRECISION, min(MORE + 8 * bits, MOST)):
+            with flint.ctx.workprec(precision):
+                value, size = self._value(expr, nodes, point, precision)
+                if not (value.is_finite() and size.is_finite()):
+                    return None
+                if not value.contains(0):
+                    return False
+                small = bool(value.rad() < size * flint.arb(2) ** (GUARD - precision))
+        return True if small else None
+
+    def _value(self, expr: Expr, nodes: list[Expr], point: int, precision: int) -> tuple[Any, Any]:
+        """The value, and the sum of the absolute values of its terms."""
+        known = self.values.setdefault((point, precision), {})
+        for node in nodes:
+            if node not in known:
+                known[node] = self._operation(node, known, self.symbols[point])
+        return known[expr]
+
+    def _operation(
+        self, node: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]
+    ) -> tuple[Any, Any]:
+        if node.is_number or node.op == "sym":
+            if node.op == "sym" and node not in symbols:
+                for point, x in zip(self.symbols, self._drawn(), strict=True):
+                    point[node] = x
+            x = Fraction(node.value) if node.is_number else symbols[node]
+            value = flint.arb(flint.fmpq(x.numerator, x.denominator))
+            return value, abs(value)
+        args = [known[a][0] for a in node.args]
+        function = _OPERATIONS.get(node.op)
+        value = function(*args) if function else getattr(args[0], node.op)()
+        if node.op in ("add", "sub"):
+            return value, known[node.args[0]][1] + known[node.args[1]][1]
+        if node.op == "mul":
+            return value, known[node.args[0]][1] * known[node.args[1]][1]
+        return value, known[node.args[0]][1] if node.op == "neg" else abs(value)
+
+    def _drawn(self) -> list[Fraction]:
+        """A random number for every point: of every two decades between 10^-6 and 10^6 one of either sign.
+
+        Left to chance, one in thirty times no point would lie at x < -1, say, where sqrt((x + 1)^2) is not x + 1.
+        """
+        half = POINTS // 2
+        signs = [self.random.choice((-1, 1)) for _ in range(half)]
+        orders = [(k, sign * signs[k]) for sign in (1, -1) for k in self.random.sample(range(half), half)]
+        return [sign * self._size(2 * k - DECADES + self.random.randrange(2)) for k, sign in orders]
+
+    def _size(self, power: int) -> Fraction:
+        return Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
+
+
+def _bits(number: Expr) -> int:
+    return int(number.value.numerator.bit_length() + number.value.denominator.bit_length())
+
+
+def _is_proven(expr: Expr) -> bool:
+    try:
+        return is_zero(expr, TERMS)
+    except (TooLarge, ZeroDivisionError):
+        return False

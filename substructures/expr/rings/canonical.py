@@ -1,0 +1,143 @@
+"""Evaluation of expressions in the ring of the canonical form, and reading of its elements."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from fractions import Fraction
+from math import gcd, lcm
+from typing import Any
+
+from substructures.errors import TooLarge
+from substructures.expr.construction.exact import MAX_BITS
+from substructures.expr.graph import Expr
+from substructures.expr.rings.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
+from substructures.expr.rings.laurent import Laurent, Quotient, Ring
+
+Terms = tuple[tuple[Basis, Fraction], ...]
+
+
+class RingEvaluator:
+    """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions."""
+
+    def __init__(self, generators: Generators, nodes: list[Expr], limit: int) -> None:
+        self.generators, self.limit = generators, limit
+        self.graph = nodes[0].graph
+        forms = [generators.forms[n] for n in nodes if is_function(n)]
+        self.units = generators.units(f for f in forms if isinstance(f, Angle))
+        self.angles = sorted(self.units, key=lambda i: generators.order[i])
+        plain = self._plain(nodes)
+        self.place = {i: n for n, i in enumerate(plain)}
+        self.plain = plain
+        self.ring = Ring(len(plain) + 1, len(self.angles), limit)
+        self._relate()
+        self.values: dict[Expr, Quotient] = {}
+        for node in nodes:
+            self.values[node] = self._value(node)
+
+    def _plain(self, nodes: list[Expr]) -> list[int]:
+        """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
+        g = self.generators
+        used = g.plain(nodes)
+        sums = sorted((i for i in used if isinstance(g.squares.get(i), Sum)), reverse=True)
+        numbers = sorted(i for i in used if isinstance(g.squares.get(i), int))
+        return [*sums, *numbers, *sorted(used - set(sums) - set(numbers), key=lambda i: g.order[i])]
+
+    def _relate(self) -> None:
+        ring, squares = self.ring, self.generators.squares
+        ring.unit = len(self.plain)
+        ring.relate(ring.unit, ring.context.constant(-1))
+        ring.roots = tuple(n for i, n in self.place.items() if i in squares)
+        ring.numeric_roots = frozenset(n for i, n in self.place.items() if isinstance(squares.get(i), int))
+        for i, n in self.place.items():
+            square = squares.get(i)
+            if isinstance(square, int):
+                ring.relate(n, ring.context.constant(square))
+            elif square is not None:
+                ring.relate(n, sum((self._monomial(b, c) for b, c in square.terms), ring.context.constant(0)))
+
+    def _monomial(self, basis: Basis, value: Fraction) -> Any:
+        exponents = [0] * (self.ring.size + self.ring.angles)
+        for i, power in basis.monomial:
+            exponents[self.place[i]] = power
+        return self.ring.monomial(exponents, value)
+
+    def _value(self, node: Expr) -> Quotient:
+        ring, args = self.ring, node.args
+        op = node.op
+        if op == "sym":
+            return ring.generator(self.place[self.generators.symbol(node)])
+        if op in ("int", "rat"):
+            return ring.constant(Fraction(node.value))
+        if is_function(node):
+            return self._function(node)
+        a = self.values[args[0]]
+        if op == "neg":
+            return ring.negative(a)
+        b = self.values[args[1]]
+        if op == "sub":
+            return ring.add(a, ring.negative(b))
+        return {"add": ring.add, "mul": ring.mul, "div": ring.div}[op](a, b)
+
+    def _function(self, node: Expr) -> Quotient:
+        form = self.generators.forms[node]
+        if isinstance(form, Product):
+            result = self.ring.constant(form.factor)
+            for i in form.ids:
+                result = self.ring.mul(result, self.ring.generator(self.place[i]))
+            return result
+        multiples = [int(form.atoms.get(i, 0) / self.units[i]) for i in self.angles]
+        cosine, sine = self.ring.cosine_sine(turned(form.turns, self.ring.context.constant, self._root), multiples)
+        if node.op == "tan":
+            return self.ring.div(sine, cosine)
+        return cosine if node.op == "cos" else sine
+
+    def _root(self, n: int) -> Any:
+        return self.ring.context.gen(self.place[self.generators.keys["root", n]])
+
+    def read(self, expr: Expr) -> Sum:
+        """The canonical form of one of the nodes."""
+        value = self.values[expr]
+        terms, denominator = self._terms(value.n), self._terms(value.d)
+        if len(terms) + len(denominator) > self.limit + 1:
+            raise TooLarge("an expanded formula (in terms)", len(terms) + len(denominator) - 1, self.limit)
+        first, c = denominator[0]
+        if len(denominator) == 1 and not first.trig:
+            inverse = tuple((i, -n) for i, n in first.monomial)
+            return Sum(self._sorted((self._product(b, inverse), value / c) for b, value in terms))
+        # integers without common factor, first one positive
+        scale = Fraction(lcm(*(x.denominator for _, x in denominator)), gcd(*(x.numerator for _, x in denominator)))
+        scale = -scale if c < 0 else scale
+        return Sum(tuple((b, x * scale) for b, x in terms), tuple((b, x * scale) for b, x in denominator))
+
+    def _product(self, basis: Basis, monomial: tuple[tuple[int, int], ...]) -> Basis:
+        powers = dict(basis.monomial)
+        for i, n in monomial:
+            powers[i] = powers.get(i, 0) + n
+        return Basis(self._ordered(powers), basis.trig, basis.angle)
+
+    def _ordered(self, powers: dict[int, int]) -> tuple[tuple[int, int], ...]:
+        order = self.generators.order
+        return tuple(sorted(((i, n) for i, n in powers.items() if n), key=lambda item: order[item[0]]))
+
+    def _sorted(self, terms: Iterable[tuple[Basis, Fraction]]) -> Terms:
+        return tuple(sorted(terms, key=self.generators.place))
+
+    def _terms(self, a: Laurent) -> Terms:
+        """c z^k + conj(c) z^-k = 2 Re(c) cos(k . angles) - 2 Im(c) sin(k . angles)."""
+        size, unit, result = self.ring.size, self.ring.unit, []
+        for raw, c in a.poly.to_dict().items():
+            exponents = [int(n) for n in raw]
+            k = [n - m for n, m in zip(exponents[size:], a.shift, strict=True)]
+            leading = next((n for n in k if n), 0)
+            if leading < 0:
+                continue
+            value = Fraction(int(c.p), int(c.q))
+            bits = max(value.numerator.bit_length(), value.denominator.bit_length())
+            if bits > MAX_BITS:
+                raise TooLarge("a coefficient of the expanded form (in bits)", bits, MAX_BITS)
+            powers = self._ordered({i: exponents[n] for i, n in self.place.items()})
+            angle = tuple((i, n * self.units[i]) for i, n in zip(self.angles, k, strict=True) if n)
+            imaginary = exponents[unit] > 0
+            trig = ("sin" if imaginary else "cos") if angle else ""
+            result.append((Basis(powers, trig, angle), value * (-2 if imaginary else 2) if angle else value))
+        return self._sorted(result)

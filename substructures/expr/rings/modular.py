@@ -1,0 +1,195 @@
+"""Programs over a prime field: exact linear algebra with formulas at a random point.
+
+Unlike fingerprints, which must be quick and only lose simplifications, this evaluation is a homomorphism for everything
+that occurs in mechanisms: square roots of all numbers (of those in formulas that are known beforehand; else another
+prime may have to be drawn), rational multiples of angles, and multiples of pi/12 beside them. Other functions are
+independent values.
+"""
+
+from __future__ import annotations
+
+import secrets
+from collections.abc import Iterable, Mapping
+from fractions import Fraction
+from math import lcm
+
+from flint import fmpz
+
+from substructures.expr.construction.circle import Point, added, multiplied, point_of
+from substructures.expr.operations import Operation
+from substructures.expr.program import Program
+
+#: an angle as multiples of what its sine and cosine are built from, and of pi
+AngleForm = tuple[dict[int, Fraction], Fraction]
+BITS = 100
+#: bits of a prime that is chosen so that numbers have square roots
+MOST_BITS = 4000
+#: multiples with denominators that divide this one are multiples of one point on the circle
+PARTS = 63 * 10**6
+
+
+class NoSquareRoot(ArithmeticError):
+    """A square root that the field does not hold: draw another one."""
+
+
+class Field:
+    """The integers modulo a random prime, 23 mod 24: 2 and 3 have square roots, -1 has none.
+
+    So have all positive numbers under roots in ``programs``, up to MOST_BITS bits together.
+    """
+
+    def __init__(self, programs: Iterable[Program] = ()) -> None:
+        self.prime = _prime(number for program in programs for number in _radicands(program))
+        self.points: dict[object, Point] = {}
+        root2, root6, quarter = self.root(2), self.root(6), pow(4, -1, self.prime)
+        self.points["pi/12"] = (root6 + root2) * quarter % self.prime, (root6 - root2) * quarter % self.prime
+
+    def draw(self) -> int:
+        """A random element."""
+        return secrets.randbelow(self.prime)
+
+    def root(self, x: int) -> int:
+        """The square root that is a square itself. Raises NoSquareRoot."""
+        y = pow(x, (self.prime + 1) // 4, self.prime)
+        if y * y % self.prime != x % self.prime:
+            raise NoSquareRoot("no square root in this field")
+        return y
+
+    def inverse(self, x: int) -> int:
+        """1/x. Raises ZeroDivisionError."""
+        if not x:
+            raise ZeroDivisionError("division by zero in the field")
+        return pow(x, -1, self.prime)
+
+    def circle(self, angle: AngleForm) -> Point:
+        """(cos, sin) of an angle."""
+        terms, turns = angle
+        twelfths = turns * 12
+        base = self.points["pi/12"] if twelfths.denominator == 1 else self._point(("pi", turns.denominator))
+        result = multiplied(base, twelfths.numerator if twelfths.denominator == 1 else turns.numerator, self.prime)
+        for atom, factor in terms.items():
+            common = PARTS if PARTS % factor.denominator == 0 else factor.denominator
+            n = factor.numerator * (common // factor.denominator)
+            result = added(result, multiplied(self._point((atom, common)), n, self.prime), self.prime)
+        return result
+
+    def _point(self, key: object) -> Point:
+        if key not in self.points:
+            self.points[key] = point_of(self.draw(), self.prime)
+        return self.points[key]
+
+    def evaluate(self, program: Program, values: Mapping[str, int], name: str) -> dict[tuple[int, ...], int]:
+        """The independent elements of an output. Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol."""
+        run = _Run(self, program, values)
+        for i in program.reachable([name]):
+            run.step(i, program.operations[i])
+        output = program.outputs[name]
+        return {index: run.values[e] for index, e in zip(output.index, output.entries, strict=True)}
+
+
+class _Run:
+    """Values of the operations, and those of angles as linear forms; atoms are known by their values."""
+
+    def __init__(self, field: Field, program: Program, symbols: Mapping[str, int]) -> None:
+        self.field, self.program, self.symbols = field, program, symbols
+        self.values: dict[int, int] = {}
+        self.linear: dict[int, AngleForm] = {}
+
+    def step(self, i: int, operation: Operation) -> None:
+        """The value of one operation."""
+        op, p = operation[0], self.field.prime
+        if op == "sym":
+            self.values[i] = self.symbols[self.program.symbols[operation[1]].name] % p
+        elif op in ("int", "rat"):
+            number = Fraction(int(operation[1]), int(operation[2]) if op == "rat" else 1)
+            self.values[i] = number.numerator * self.field.inverse(number.denominator % p) % p
+            self.linear[i] = {1: number} if number else {}, Fraction(0)
+        elif op == "powi":
+            base, n = self.values[operation[1]], operation[2]
+            self.values[i] = pow(base if n >= 0 else self.field.inverse(base), abs(n), p)
+        elif op in ("sin", "cos", "tan"):
+            c, s = self.field.circle(self._form(operation[1]))
+            self.values[i] = {"sin": s, "cos": c}[op] if op != "tan" else s * self.field.inverse(c) % p
+        elif op == "sqrt":
+            self.values[i] = self.field.root(self.values[operation[1]])
+        elif op in ("add", "sub", "mul", "neg", "div"):
+            self._rational(i, operation)
+        else:
+            self._other(i, operation)
+
+    def _rational(self, i: int, operation: Operation) -> None:
+        op, p = operation[0], self.field.prime
+        a, b = self.values[operation[1]], self.values[operation[-1]]
+        if op == "add":
+            result = a + b
+        elif op == "sub":
+            result = a - b
+        elif op == "mul":
+            result = a * b
+        else:
+            result = -a if op == "neg" else a * self.field.inverse(b)
+        self.values[i] = result % p
+
+    def _other(self, i: int, operation: Operation) -> None:
+        """Independent values, the same for the same arguments; pi is acos(-1)."""
+        key = (operation[0], *(self.values[x] for x in operation[1:]))
+        if key not in self.field.points:
+            self.field.points[key] = (self.field.draw(), 0)
+        self.values[i] = self.field.points[key][0]
+        if key == ("acos", self.field.prime - 1):
+            self.linear[i] = {}, Fraction(1)
+
+    def _form(self, i: int) -> AngleForm:
+        """An operation as multiples of atoms and of pi."""
+        terms: dict[int, Fraction] = {}
+        turns, stack = Fraction(0), [(i, Fraction(1))]
+        while stack:
+            k, factor = stack.pop()
+            op, *args = self.program.operations[k]
+            number = next((x for x in args if op in ("mul", "div") and self._number(x) is not None), None)
+            if k in self.linear:
+                known, more = self.linear[k]
+                turns += factor * more
+                for atom, x in known.items():
+                    terms[atom] = terms.get(atom, Fraction(0)) + factor * x
+            elif op in ("add", "sub", "neg"):
+                stack.append((args[0], -factor if op == "neg" else factor))
+                stack += [(args[1], -factor if op == "sub" else factor)] if op != "neg" else []
+            elif number is not None and (op == "mul" or number == args[1]):
+                value = self._number(number) or Fraction(0)
+                other = args[1] if number == args[0] else args[0]
+                stack.append((other, factor * value if op == "mul" else factor / value))
+            else:
+                atom = self.values[k]
+                terms[atom] = terms.get(atom, Fraction(0)) + factor
+        return {atom: x for atom, x in terms.items() if x}, turns
+
+    def _number(self, i: int) -> Fraction | None:
+        """The value of a constant."""
+        op, *args = self.program.operations[i]
+        return Fraction(int(args[0]), int(args[1]) if op == "rat" else 1) if op in ("int", "rat") else None
+
+
+def _radicands(program: Program) -> Iterable[int]:
+    """Numerators and denominators of all numbers under square roots."""
+    operations = program.operations
+    for inner in (operations[operation[1]] for operation in operations if operation[0] == "sqrt"):
+        if inner[0] in ("int", "rat"):
+            yield from (abs(int(x)) for x in inner[1:] if int(x))
+
+
+def _prime(roots: Iterable[int]) -> int:
+    """A random prime, -1 mod 24 and mod every number that is to have a square root.
+
+    With p = -1 mod 4 the Jacobi symbol of an odd n is (n/p) = (-1)^((n - 1)/2) (p/n), and with p = -1 mod n that is
+    (-1)^((n - 1)/2) (-1/n) = 1; (2/p) = 1 with p = -1 mod 8.
+    """
+    modulus = 24
+    for n in roots:
+        more = lcm(modulus, n)
+        # without a number that is too long a field has its root by chance
+        modulus = more if more.bit_length() <= MOST_BITS else modulus
+    while True:
+        n = (secrets.randbits(BITS - 5) | 1 << (BITS - 6)) * modulus - 1
+        if fmpz(n).is_probable_prime():
+            return n

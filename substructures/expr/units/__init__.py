@@ -1,0 +1,1 @@
+"""Units of formulas: dimensions, and whether they agree."""
