@@ -24,10 +24,10 @@ def command_line() -> str:
     lines = [
         "# The command line",
         "",
-        "`substructures COMMAND --help` says the same; `--install-completion` teaches the shell all commands and names.",
-        "Commands that talk to a server take `--server URL` (`http://127.0.0.1:8000`; `SUBSTRUCTURES_SERVER`), `--key KEY`",
-        "(`SUBSTRUCTURES_KEY`), or `--database URL` for the store itself. Exit codes: 0 done, 1 not done, 2 called wrongly,",
-        "6 an item of a job failed.",
+        "`substructures COMMAND --help` says the same; `--install-completion` teaches the shell commands and names.",
+        "Commands that talk to a server take `--server URL` (`http://127.0.0.1:8000`; `SUBSTRUCTURES_SERVER`),",
+        "`--key KEY` (`SUBSTRUCTURES_KEY`), or `--database URL` for the store itself. Exit codes: 0 done, 1 not done,",
+        "2 called wrongly, 3 some items of a job failed, 4 all did, 5 it was cancelled, 6 items were skipped.",
     ]
     panel = ""
     for command in COMMANDS:

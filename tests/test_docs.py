@@ -25,9 +25,12 @@ from service.settings import Settings
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
 PAGES = [README, *sorted((ROOT / "docs").rglob("*.md"))]
-RUN = [page for page in PAGES if page == README or (page.parent.name in ("tutorial", "how-to") and "```" in page.read_text())]
+GUIDES = [page for page in PAGES if page.parent.name in ("tutorial", "how-to") and "```" in page.read_text()]
+RUN = [README, *GUIDES]
 ADDRESS = "http://127.0.0.1:8000"
-BLOCK = re.compile(r"(?:Save\s+as\s+`(?P<file>[\w.-]+)`:\n\n)?^```(?P<language>\w+)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE)
+BLOCK = re.compile(
+    r"(?:Save\s+as\s+`(?P<file>[\w.-]+)`:\n\n)?^```(?P<language>\w+)\n(?P<text>.*?)^```$", re.DOTALL | re.MULTILINE
+)
 LINK = re.compile(r"\]\(([^)#\s]+)(?:#[\w-]*)?\)")
 #: of the set-up, which tests of the clone and of the wheel run
 SET_UP = ("python3 -m venv", ". .venv/bin/activate")
@@ -87,7 +90,9 @@ def commands(text: str) -> list[str]:
 def run_command(line: str) -> None:
     """A request or a command of ours; anything but success fails."""
     if line.startswith("curl -sS "):
-        done = subprocess.run(["bash", "-c", f"{line} --fail-with-body"], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            ["/bin/bash", "-c", f"{line} --fail-with-body"], capture_output=True, text=True, check=False
+        )
         assert done.returncode == 0, f"{line}\n{done.stdout}{done.stderr}"
         Path("answer").write_text(done.stdout)
     elif line.startswith("substructures "):
@@ -97,7 +102,7 @@ def run_command(line: str) -> None:
 
 
 def dialogue(text: str, capsys: pytest.CaptureFixture[str]) -> None:
-    """Every line is what the command prints; ``| grep PATTERN`` is done here. Where nothing is shown it only has to run."""
+    """Every line is what the command prints, where some are shown; ``| grep PATTERN`` is done here."""
     capsys.readouterr()
     for command, *expected in (part.splitlines() for part in text.split("$ substructures ")[1:]):
         words, _, pattern = command.partition(" | grep ")
