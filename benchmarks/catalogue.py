@@ -27,14 +27,14 @@ import substructures
 from benchmarks.http import cpu_seconds, serving
 from benchmarks.report import keep, options
 from benchmarks.store import sizes
+from service.content.summaries import PartContent, part_content, tree_summary
 from service.database.connections import Database
 from service.database.packed import pack
+from service.messages.viewer import ANYBODY
 from service.operations import trees
 from service.operations.catalogue import PartSubmission, submit
 from service.operations.trees import TreeContent
 from service.schemas.entries import PLAIN
-from service.summaries import PartContent, part_content, tree_summary
-from service.viewer import ANYBODY
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.client import Client
 from substructures.tree.plausibility import Plausibility

@@ -19,7 +19,7 @@ import numpy as np
 
 from benchmarks.derive import humanoid
 from benchmarks.report import keep, options
-from service.kernels import Way, quickest
+from service.store.kernels import Way, quickest
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks

@@ -21,7 +21,7 @@ import numpy as np
 
 from benchmarks.report import keep, options
 from benchmarks.transfer import exchange
-from service.kernels import Kernels
+from service.store.kernels import Kernels
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.array import Array
 from substructures.client import Client

@@ -16,9 +16,9 @@ from typing import Any
 import numpy as np
 
 from benchmarks.report import keep, options
+from service.content.summaries import part_content
 from service.database.connections import Connection, Database
 from service.operations.catalogue import store_part
-from service.summaries import part_content
 from substructures import Definition, catalogue, derive
 
 #: of SQLite its pages, of PostgreSQL its files

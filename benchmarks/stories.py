@@ -186,9 +186,9 @@ async def queued(listener: Listener, app: Any, store: Any, file: Path) -> set[st
 
 def ran(listener: Listener, part: Any, limits: Any) -> set[str]:
     """What a runner does with an item."""
-    kinds, wire = importlib.import_module("service.jobs.kinds"), importlib.import_module("service.jobs.wire")
+    kinds, wire = importlib.import_module("service.jobs.kinds"), importlib.import_module("service.jobs.engines.wire")
     engine, documents = (
-        importlib.import_module("service.jobs.engine"),
+        importlib.import_module("service.jobs.engines.engine"),
         importlib.import_module("substructures.documents"),
     )
     own = found("software")()
@@ -224,7 +224,7 @@ def main() -> None:
             app = found("create_app")(store)
             told["Christoffel, HTTP"] = asyncio.run(christoffel(listener, app))
             held = asyncio.run(queued(listener, app, store, file))
-    done = chosen(held | ran(listener, part, settings().limits) | {"service.jobs.runner"})
+    done = chosen(held | ran(listener, part, settings().limits) | {"service.jobs.engines.runner"})
     told["item of a job"] = [name for name in done if not name.startswith(SQL)]
     sys.stdout.write(json.dumps(told))
 

@@ -15,13 +15,13 @@ from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
 from service.http.middleware import Conventions
 from service.http.not_derived import DerivesFirst
-from service.jobs.pool import InProcess
+from service.jobs.engines.pool import InProcess
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
 from service.pages import account
 from service.pages import routes as pages
+from service.processes.parent import Kept
 from service.queries import idempotency
-from service.respawn import Kept
 from service.routes import (
     aliases,
     analyses,
@@ -46,7 +46,7 @@ from service.routes import (
     visibility,
 )
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 ROUTES = (
     substructures,

@@ -17,11 +17,11 @@ from time import perf_counter
 
 from sqlalchemy.exc import DBAPIError
 
+from service.messages.refusals import NotDerived, Refused
 from service.operations.renewal import is_part_newest, is_tree_newest, renew_part, renew_tree
 from service.operations.verification import told
 from service.queries import content, renewals, trees
-from service.refusals import NotDerived, Refused
-from service.store import Store
+from service.store.store import Store
 
 SHARE = 1.0  # of the time of a piece of work that it rests afterwards, for those who wait for answers
 PATIENCE = 2.0  # seconds for the piece of work at hand, which is begun again at the next start

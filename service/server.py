@@ -21,15 +21,15 @@ import uvicorn
 
 from service.app import create_app, open_store
 from service.http.connections import Complaints, Connection, Connections
-from service.jobs.engine import Engine
+from service.jobs.engines.engine import Engine
 from service.operations.seed import Told
+from service.processes.parent import bound, kept, listeners
 from service.queries.keys import any_key
 from service.queue.engines import engine_of, worker_pool
 from service.queue.supervisor import Supervisor
 from service.renewing import renewed
-from service.respawn import bound, kept, listeners
 from service.settings import Settings, SettingsError
-from service.store import Store
+from service.store.store import Store
 
 logger = logging.getLogger(__name__)
 

@@ -8,8 +8,8 @@ from typing import Annotated, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError, field_validator
 
+from service.processes.accepting import PROCESSES
 from service.sources import read_source
-from service.turns import PROCESSES
 from substructures.compile.setting import VARIABLES, Setting
 from substructures.documents import message_of
 from substructures.errors import meant

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from service.refusals import known_refusal
+from service.messages.refusals import known_refusal
 from substructures.errors import Fault, InvalidArgument, InvalidDocument, InvalidInput
 from substructures.quantities.derivatives import SingularMetric
 

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import httpx2
 
-from service.refusals import Refused
+from service.messages.refusals import Refused
 from service.settings import SettingsError
 from substructures.client import ProblemError
 from substructures.errors import InvalidInput, SubstructuresError

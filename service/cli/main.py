@@ -20,7 +20,7 @@ import service
 from substructures.late import Table
 
 PROGRAM = "substructures"
-FAILURES, RESPAWN = "service.cli.failures", "service.respawn"
+FAILURES, RESPAWN = "service.cli.failures", "service.processes.parent"
 
 
 @dataclass(frozen=True)

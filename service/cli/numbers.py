@@ -12,13 +12,13 @@ from typing import Annotated, Any
 import orjson
 import typer
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.results import JSON, MEDIA_TYPES, written
 from service.cli import completion
 from service.cli.documents import is_document, named, read_document
 from service.cli.options import Server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
+from service.models.numbers import ANALYSES
+from service.models.results import JSON, MEDIA_TYPES, written
 
 #: what is said of results that are not known to be right
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator
 from contextlib import ExitStack, contextmanager
 
-from service import keys
 from service.cli.output import shipped
 from service.database.connections import Database
+from service.messages.viewer import CONSOLE, SCOPES
 from service.queries.keys import any_key
 from service.server import background
 from service.settings import Settings
-from service.viewer import CONSOLE, SCOPES
+from service.store import keys
 from substructures.client import Client
 
 DAYS = 1 / 24

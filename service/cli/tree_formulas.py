@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from service.analyses.formulas import QUANTITIES, made
-from service.analyses.formulas.entry import Options
-from service.analyses.printing import (
+from service.cli.tree_files import local_source
+from service.models.formulas import QUANTITIES, made
+from service.models.formulas.entry import Options
+from service.models.printing import (
     Style,
     check_quantity,
     described,
@@ -17,7 +18,6 @@ from service.analyses.printing import (
     with_numbers,
     with_options,
 )
-from service.cli.tree_files import local_source
 from substructures.export import interface_of_model
 
 

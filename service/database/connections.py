@@ -14,7 +14,7 @@ from sqlalchemy import Connection, Engine, create_engine, event, text
 from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
-from service.clock import set_by
+from service.database.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch
 from service.database.schema import is_newest
 from service.database.seals import KEY, key_beside

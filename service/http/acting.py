@@ -17,19 +17,19 @@ from typing import Annotated, Any, TypeVar
 
 from fastapi import Depends, Header, Request, Response
 
-from service.answers import Answer, Stream
 from service.database.connections import Connection
 from service.http.deadline import Deadline, GivenUp
 from service.http.idempotency import IdempotencyClaim, replayed
 from service.http.requests import RawBody, spooled_body, store_of
 from service.http.responses import response_of
 from service.jobs.worker import Worker
+from service.messages.answers import Answer, Stream
+from service.messages.refusals import Refused, StaleError
+from service.messages.spool import Spool
+from service.messages.viewer import Viewer
 from service.queries.common import is_conflict
-from service.refusals import Refused, StaleError
-from service.runtime import Task
-from service.spool import Spool
-from service.store import Store
-from service.viewer import Viewer
+from service.store.runtime import Task
+from service.store.store import Store
 
 #: writes what was prepared, in the transaction of the request, and answers
 Commit = Callable[[Connection], Answer]

@@ -38,7 +38,7 @@ from service.http.authority import origin_form
 from service.http.chunks import AT_ONCE, Chunked
 from service.http.middleware import GUARDED
 from service.http.request_id import begin_request
-from service.refusals import Refused
+from service.messages.refusals import Refused
 from service.settings import Limits
 
 AHEAD = 2**20  # bytes of a body that wait to be taken

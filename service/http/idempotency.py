@@ -23,13 +23,13 @@ from functools import cached_property
 import orjson
 from fastapi import Request
 
-from service.answers import Answer
-from service.claims import LEASE
 from service.database.connections import Connection
+from service.messages.answers import Answer
+from service.messages.refusals import Refused
 from service.queries import idempotency
-from service.refusals import Refused
-from service.runtime import Computed
-from service.store import Store
+from service.store.idempotency import LEASE
+from service.store.runtime import Computed
+from service.store.store import Store
 
 
 class IdempotencyClaim:

@@ -12,8 +12,8 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from service.http import problems
 from service.http.authority import host_of
 from service.http.request_id import begin_request
+from service.messages.refusals import Refused
 from service.metrics import Metrics
-from service.refusals import Refused
 
 #: nothing that is served is anything else than it says, or a page that may load something, unless it says so
 GUARDED = {"X-Content-Type-Options": "nosniff", "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'"}

@@ -7,9 +7,9 @@ import asyncio
 from fastapi.concurrency import run_in_threadpool
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
-from service.refusals import NotDerived
+from service.messages.refusals import NotDerived
 from service.renewing import Renewal
-from service.store import Store
+from service.store.store import Store
 
 
 class DerivesFirst:

@@ -12,12 +12,12 @@ from typing import Any
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
 
-from service.answers import JSON
 from service.http.requests import authenticated, credentials, store_of
 from service.http.responses import response_of
+from service.messages.answers import JSON
+from service.messages.references import is_pinned
 from service.operations import at_hand
 from service.operations.exchange import choose_media_type
-from service.references import is_pinned
 
 
 class OneStateRoute(APIRoute):

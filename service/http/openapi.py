@@ -11,7 +11,7 @@ from fastapi.openapi.utils import get_openapi
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
-from service.analyses.numbers import ANALYSES
+from service.models.numbers import ANALYSES
 from service.schemas.entries import SubmittedDefinition, SubmittedTree, VisibilityRequest
 from service.schemas.equivalences import EquivalenceRequest
 from service.schemas.jobs import CancelRequest, JobRequest, RetryRequest

@@ -23,8 +23,8 @@ from sqlalchemy.exc import TimeoutError as PoolTimeout
 from starlette.exceptions import HTTPException
 
 from service.http.request_id import current_request_id
+from service.messages.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from service.queries.common import is_conflict, is_full, is_outage
-from service.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from substructures.documents import message_of, pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed, among
 

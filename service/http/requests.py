@@ -12,13 +12,14 @@ from fastapi.routing import APIRoute
 from starlette.datastructures import Headers
 from starlette.requests import cookie_parser
 
-from service import bundles, keys
-from service.answers import JSON
-from service.refusals import Refused, unprocessable
+from service.content import bundles
+from service.messages.answers import JSON
+from service.messages.refusals import Refused, unprocessable
+from service.messages.spool import Spool
+from service.messages.viewer import Viewer
 from service.schemas import forms
-from service.spool import Spool
-from service.store import Store
-from service.viewer import Viewer
+from service.store import keys
+from service.store.store import Store
 from substructures.documents import pointer_step, read_json
 from substructures.errors import meant
 from substructures.formats import arrays, arrow

@@ -10,8 +10,8 @@ from fastapi import Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from service.answers import FOR_EVER, REVALIDATE, Answer, Stream, some_of
 from service.http.requests import store_of
+from service.messages.answers import FOR_EVER, REVALIDATE, Answer, Stream, some_of
 
 AT_ONCE = 2**22  # bytes that are handed to the connection at a time
 

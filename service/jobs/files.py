@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from typing import Any
 
-from service.integrity import digest_of
+from service.content.integrity import digest_of
 from service.jobs.worker import Worker
 from substructures.interchange.as_part import Options
 from substructures.interchange.importing import text_of_file

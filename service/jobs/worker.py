@@ -12,8 +12,8 @@ from dataclasses import dataclass
 from time import monotonic
 from typing import Any, Protocol
 
-from service.jobs.engine import AttemptReport, Budget, Outcome, Work
-from service.refusals import Refused, refused_of
+from service.jobs.engines.engine import AttemptReport, Budget, Outcome, Work
+from service.messages.refusals import Refused, refused_of
 from service.schemas.jobs import ItemDocument
 from substructures.errors import InvalidDocument, TooLarge
 

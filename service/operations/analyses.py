@@ -8,21 +8,21 @@ from typing import Any
 
 import orjson
 
-from service.analyses.exporting import URDF, ExportRequest
-from service.analyses.formulas.entry import Options
-from service.analyses.printing import TO_READ, Style, has_parts
-from service.analyses.results import MEDIA_TYPES
-from service.answers import Answer
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.worker import Worker
-from service.negotiation import MEDIA_TYPES as PRINTED
+from service.messages.answers import Answer
+from service.messages.negotiation import MEDIA_TYPES as PRINTED
+from service.messages.refusals import moved
+from service.messages.viewer import Viewer
+from service.models.exporting import URDF, ExportRequest
+from service.models.formulas.entry import Options
+from service.models.printing import TO_READ, Style, has_parts
+from service.models.results import MEDIA_TYPES
 from service.operations import trees
 from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
-from service.refusals import moved
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.errors import InvalidInput
 
 FORMATS = {media: name for name, media in MEDIA_TYPES.items()}

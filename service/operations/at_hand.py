@@ -11,13 +11,13 @@ from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from service.answers import Answer, json_answer
+from service.messages.answers import Answer, json_answer
+from service.messages.viewer import Viewer
 from service.operations import evaluations
 from service.operations.exchange import TreeEvaluation
 from service.queries.trees import Tree
 from service.schemas.numbers import EvaluationRequest
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.quantities.evaluation import Sources, cost, steps

@@ -11,22 +11,22 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from service import bundles
-from service.bundles import BundledPart
+from service.content import bundles
+from service.content.bundles import BundledPart
+from service.content.integrity import missing
+from service.content.summaries import PartContent
+from service.content.unzipped import file_pointer, too_large
 from service.database.connections import Connection
-from service.integrity import missing
 from service.jobs.worker import Worker
+from service.messages.refusals import Refused, unprocessable
+from service.messages.viewer import Viewer
 from service.operations import catalogue
 from service.operations.catalogue import PartSubmission
 from service.operations.provenance import Origin
 from service.queries import content
 from service.queries.catalogue import Version
-from service.refusals import Refused, unprocessable
 from service.schemas.entries import PartEntry
-from service.store import Store
-from service.summaries import PartContent
-from service.unzipped import file_pointer, too_large
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.errors import Fault, InvalidInput, TooLarge
 
 IMPORTED = Origin("import")

@@ -6,19 +6,19 @@ import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
+from service.content.summaries import PartContent, part_content
 from service.database.connections import Connection
 from service.jobs.worker import Worker
+from service.messages.references import ALIAS, Reference, parse_reference
+from service.messages.refusals import Refused, not_found, unprocessable
+from service.messages.viewer import Viewer
 from service.operations import owners
 from service.operations.provenance import Origin, derived_from, pinned, provenance
 from service.queries import aliases, audit, catalogue, content, uses
 from service.queries.formulas import FormulaRow
 from service.queries.owners import is_version, ownership
-from service.references import ALIAS, Reference, parse_reference
-from service.refusals import Refused, not_found, unprocessable
 from service.schemas.entries import PLAIN, PartEntry
-from service.store import Store
-from service.summaries import PartContent, part_content
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.documents import read_json
 from substructures.part.definition import Definition
 from substructures.part.part import derive

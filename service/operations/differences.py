@@ -7,13 +7,13 @@ from typing import Any
 
 from service.database.connections import Connection
 from service.jobs.worker import Worker
+from service.messages.refusals import Refused, unprocessable
+from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
-from service.refusals import Refused, unprocessable
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 
 
 def versions(store: Store, viewer: Viewer, a: str, b: str) -> tuple[Version, Version]:

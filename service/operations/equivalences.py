@@ -9,10 +9,10 @@ from service.jobs.files import document_of
 from service.jobs.kinds.compare import SIDES, pinned_side
 from service.jobs.kinds.kind import inside
 from service.jobs.worker import Worker
+from service.messages.refusals import moved
+from service.messages.viewer import Viewer
 from service.operations.library import StoreLibrary
-from service.refusals import moved
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.errors import InvalidDocument
 
 

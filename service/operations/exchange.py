@@ -7,14 +7,14 @@ from dataclasses import dataclass
 from itertools import chain
 from typing import Any
 
-from service.answers import JSON, Answer, Stream, json_answer, streamed
-from service.negotiation import by_preference
+from service.messages.answers import JSON, Answer, Stream, json_answer, streamed
+from service.messages.negotiation import by_preference
+from service.messages.refusals import Refused
+from service.messages.spool import Spool
 from service.operations import batches, evaluations
-from service.refusals import Refused
 from service.schemas import forms
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
-from service.spool import Spool
 from substructures.documents import read_json
 from substructures.documents.grouped import take
 from substructures.formats import arrays, arrow

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from service.content.summaries import PartContent
 from service.database.connections import Connection
 from service.jobs.worker import Worker
+from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.provenance import Origin
 from service.queries.trees import Tree
 from service.schemas.entries import PLAIN
-from service.store import Store
-from service.summaries import PartContent
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
 

@@ -6,13 +6,15 @@ from collections.abc import Callable, Iterable, Mapping
 from dataclasses import replace
 from typing import Any
 
-from service.addresses import tree_path, version_path
+from service.content.improvement import Improvement
+from service.content.integrity import checked
+from service.content.summaries import UNKNOWN, PartContent
 from service.database.connections import Connection
 from service.database.packed import unpack
-from service.improvement import Improvement
-from service.integrity import checked
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.kind import ENTRY
+from service.messages.addresses import tree_path, version_path
+from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
 from service.operations.provenance import Origin
@@ -21,8 +23,6 @@ from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
 from service.schemas.entries import Entry, PartEntry
-from service.summaries import UNKNOWN, PartContent
-from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
 #: fields of an item that changes a tree: the number of the revision that it changes, and whether that was pinned

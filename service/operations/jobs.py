@@ -11,15 +11,15 @@ from typing import Any
 from service.database.connections import Connection
 from service.jobs import kinds
 from service.jobs.files import document_of
+from service.messages.refusals import SHOWN, Refused, not_found
+from service.messages.viewer import Viewer
 from service.operations.library import Reader, StoreLibrary
 from service.operations.owners import require
 from service.queries import audit, jobs, uploads
 from service.queries.jobs import Job, NewItem
 from service.queries.removal import remove_job
-from service.refusals import SHOWN, Refused, not_found
 from service.settings import Limits
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.documents import require_object, write_json
 from substructures.documents.fields import hidden
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge

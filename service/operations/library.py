@@ -9,18 +9,18 @@ from typing import Any
 from service.database.connections import Connection
 from service.jobs.kinds.kind import ENTRY
 from service.jobs.kinds.library import StoredTree, StoredVersion
+from service.messages.references import parse_reference
+from service.messages.refusals import Refused
+from service.messages.viewer import OPEN, PUBLIC, Viewer
 from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, private_parts, wanted
 from service.operations.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
 from service.queries.owners import Kind, ownership
 from service.queries.trees import Tree
-from service.references import parse_reference
-from service.refusals import Refused
 from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.sources import read_source
-from service.viewer import OPEN, PUBLIC, Viewer
 from substructures.errors import InvalidDocument
 from substructures.interchange.importing import document_of
 

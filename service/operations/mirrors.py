@@ -15,18 +15,18 @@ from typing import Any
 
 import httpx2
 
-from service.bundles import BundledPart, read_bundle
+from service.content.bundles import BundledPart, read_bundle
+from service.messages.references import Reference, parse_reference
+from service.messages.refusals import Refused, known_refusal
+from service.messages.viewer import PUBLIC, Viewer
 from service.operations import bundles, owners
 from service.operations.bundles import Imported
 from service.queries import catalogue
 from service.queries.catalogue import Version
 from service.queries.common import is_conflict
-from service.references import Reference, parse_reference
-from service.refusals import Refused, known_refusal
 from service.schemas.entries import PLAIN
 from service.sources import SETTING, Source
-from service.store import Store
-from service.viewer import PUBLIC, Viewer
+from service.store.store import Store
 from substructures.client import Client, ProblemError
 from substructures.errors import InvalidInput
 

@@ -8,8 +8,8 @@ from itertools import product
 
 import orjson
 
+from service.messages.refusals import unprocessable
 from service.queries.formulas import FormulaRow
-from service.refusals import unprocessable
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
 from substructures.quantities.quantity import outputs_of

@@ -6,12 +6,12 @@ from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 from service.database.connections import Connection
+from service.messages.references import parse_reference
+from service.messages.refusals import Refused, not_found
+from service.messages.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
 from service.queries import audit, catalogue, owners, uses
 from service.queries.owners import Kind, Ownership
-from service.references import parse_reference
-from service.refusals import Refused, not_found
 from service.schemas.entries import Entry
-from service.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
 from substructures.errors import Fault, meant
 
 #: what a reference means that may be one to a part or a tree

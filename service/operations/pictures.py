@@ -11,12 +11,12 @@ import numpy as np
 import orjson
 
 from service.jobs.kinds.reported import INSTANCE
+from service.messages.refusals import unprocessable
 from service.operations.evaluations import check_size
 from service.operations.sources import tree_parts
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
-from service.refusals import unprocessable
-from service.store import Store
+from service.store.store import Store
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import InvalidArgument
 from substructures.part.part import Part

@@ -7,13 +7,13 @@ from dataclasses import dataclass, field
 from typing import Any, Literal, Self
 
 from service.database.connections import Connection
+from service.messages.references import parse_reference
+from service.messages.refusals import unprocessable
+from service.messages.viewer import Viewer
 from service.operations.owners import absent_part
 from service.queries import catalogue
 from service.queries.catalogue import Provenance
-from service.references import parse_reference
-from service.refusals import unprocessable
 from service.schemas.entries import PartEntry
-from service.viewer import Viewer
 
 Kind = Literal["definition", "import", "catalogue", "tree"]
 #: field of an item of kind ``derive`` that says where its definition comes from

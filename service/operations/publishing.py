@@ -6,22 +6,22 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
+from service.content.derivation import recipe_of
+from service.content.summaries import PartContent
 from service.database.connections import Connection
-from service.derivation import recipe_of
 from service.jobs.kinds.requested import publication_of
 from service.jobs.worker import Worker
+from service.messages.refusals import Refused
+from service.messages.viewer import PRIVATE, PUBLIC, Viewer
 from service.operations import catalogue, owners, trees
 from service.operations.provenance import Origin
 from service.operations.sources import pinned_tree, tree_parts
 from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree
-from service.refusals import Refused
 from service.schemas.entries import PartEntry
 from service.schemas.publishing import PublishRequest
-from service.store import Store
-from service.summaries import PartContent
-from service.viewer import PRIVATE, PUBLIC, Viewer
+from service.store.store import Store
 from substructures.documents import read_json, read_model
 from substructures.tree.published import Published, published
 

@@ -11,16 +11,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
+from service.content.derivation import coupled_tree, derived_part, software
+from service.content.integrity import checked, digest_of
+from service.content.summaries import PartContent, part_content, tree_summary
 from service.database.connections import Connection, Database
 from service.database.packed import pack
-from service.derivation import coupled_tree, derived_part, software
-from service.integrity import checked, digest_of
+from service.messages.refusals import Refused
+from service.messages.viewer import CONSOLE, OPEN, SCOPES, Viewer
 from service.operations.catalogue import mend_part
 from service.queries import audit, catalogue, content, trees
 from service.queries.trees import Tree
-from service.refusals import Refused
-from service.summaries import PartContent, part_content, tree_summary
-from service.viewer import CONSOLE, OPEN, SCOPES, Viewer
 from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.part.definition import Definition

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from service.answers import Answer
 from service.jobs.worker import Worker
+from service.messages.answers import Answer
 from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument
-from service.store import Store
+from service.store.store import Store
 
 FORMATS: Mapping[str, str] = {
     "json": "application/json",

@@ -7,7 +7,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
 from service.database.connections import Connection
-from service.paging import is_of, of_no_page, read_token, write_token
+from service.messages.paging import is_of, of_no_page, read_token, write_token
+from service.messages.refusals import unprocessable
+from service.messages.viewer import Viewer
 from service.queries import part_search, tree_search
 from service.queries.catalogue import Version
 from service.queries.part_search import CatalogueSearch
@@ -15,8 +17,6 @@ from service.queries.search import RELEVANCE, SORTS, Search, number_of
 from service.queries.tree_search import TreeSearch
 from service.queries.trees import Tree
 from service.queries.words import corrected
-from service.refusals import unprocessable
-from service.viewer import Viewer
 from substructures.errors import meant
 
 Found = TypeVar("Found", Version, Tree)

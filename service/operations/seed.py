@@ -6,13 +6,13 @@ import logging
 from collections.abc import Callable
 from time import perf_counter
 
+from service.messages.viewer import CATALOGUE, SHIPPED
 from service.operations import catalogue as operations
 from service.operations.owners import ship
 from service.operations.provenance import Origin
 from service.queries.owners import ownership
 from service.schemas.entries import PLAIN
-from service.store import Store
-from service.viewer import CATALOGUE, SHIPPED
+from service.store.store import Store
 from substructures import catalogue
 from substructures.part.definition import Definition
 

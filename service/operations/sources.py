@@ -7,14 +7,14 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-from service.integrity import reading
+from service.content.integrity import reading
 from service.jobs.kinds.trees import pinned
+from service.messages.viewer import ANYBODY
 from service.operations.library import StoreLibrary
 from service.queries import trees
 from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument
-from service.store import Store
-from service.viewer import ANYBODY
+from service.store.store import Store
 from substructures.documents import read_json
 from substructures.part.part import Part
 from substructures.quantities.evaluation import Evaluator

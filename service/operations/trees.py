@@ -6,24 +6,24 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.answers import etag
+from service.content.integrity import checked, digest_of
+from service.content.summaries import UNKNOWN, PartContent, float_of
 from service.database.connections import Connection
 from service.database.packed import unpack
-from service.integrity import checked, digest_of
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import NAMED, pinned_spec
 from service.jobs.worker import Worker
+from service.messages.answers import etag
+from service.messages.references import Reference, is_pinned, parse_reference
+from service.messages.refusals import Refused, StaleError, moved, not_found
+from service.messages.viewer import Viewer
 from service.operations import catalogue, owners
 from service.operations.library import StoreLibrary
 from service.queries import audit, content, trees, uses
 from service.queries.common import now
 from service.queries.uses import Withdrawn
-from service.references import Reference, is_pinned, parse_reference
-from service.refusals import Refused, StaleError, moved, not_found
 from service.schemas.entries import PLAIN, Entry
-from service.store import Store
-from service.summaries import UNKNOWN, PartContent, float_of
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.documents import read_json
 from substructures.documents.tables import with_points
 from substructures.errors import InvalidDocument, among

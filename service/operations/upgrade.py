@@ -11,15 +11,15 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
+from service.content.improvement import AS_IT_WAS, Improvement, improvement
+from service.content.integrity import digest_of
+from service.content.summaries import PartContent
 from service.database.connections import Connection, Database
-from service.improvement import AS_IT_WAS, Improvement, improvement
-from service.integrity import digest_of
+from service.messages.viewer import Viewer
 from service.operations.catalogue import mend_part
 from service.operations.renewal import OPERATOR, read_tree, renew_part, renew_tree
 from service.operations.verification import told
 from service.queries import audit, catalogue, content, trees
-from service.summaries import PartContent
-from service.viewer import Viewer
 from substructures.expr.program import Program
 from substructures.part.part import MAX_NODES
 

@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from service.jobs.kinds.evaluate import states_per_item
+from service.messages.viewer import Viewer
 from service.operations import jobs
 from service.queries.trees import Tree
 from service.queries.uploads import put_uploads
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.array import Array
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.formats.arrays import flat, write_npz

@@ -12,14 +12,14 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
+from service.content.derivation import software
+from service.content.integrity import checked
 from service.database.connections import Connection, Database
-from service.derivation import software
-from service.integrity import checked
+from service.messages.refusals import Refused
+from service.messages.viewer import ANYBODY
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
 from service.queries import catalogue, content, results, trees
 from service.queries.formulas import FormulaRow, read_index
-from service.refusals import Refused
-from service.viewer import ANYBODY
 from substructures.documents import read_json
 from substructures.errors import SubstructuresError
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from service.database.connections import Connection
+from service.messages.references import parse_reference
+from service.messages.viewer import Viewer
 from service.operations import catalogue, owners
-from service.references import parse_reference
-from service.viewer import Viewer
 
 
 def used(connection: Connection, viewer: Viewer, text: str) -> tuple[str, int | None]:

@@ -14,13 +14,13 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.routing import APIRoute
 from starlette.requests import cookie_parser
 
-from service import keys
 from service.http.connections import network_of
 from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials
+from service.messages.refusals import Refused
+from service.messages.viewer import ANYBODY, Viewer
 from service.pages.html import Html, facts, tag
 from service.pages.layout import HEADERS, document
-from service.refusals import Refused
-from service.viewer import ANYBODY, Viewer
+from service.store import keys
 
 FORM = "application/x-www-form-urlencoded"
 LONGEST = 2000  # characters of an address to return to

@@ -10,7 +10,7 @@ from urllib.parse import urlencode
 
 import orjson
 
-from service.addresses import version_path
+from service.messages.addresses import version_path
 from service.operations.searches import Page
 from service.pages.html import Html, joined, link, tag
 from service.pages.layout import SCRIPT, document

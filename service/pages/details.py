@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from service.addresses import tree_path, version_path
-from service.cache import Cache
+from service.content.cache import Cache
+from service.messages.addresses import tree_path, version_path
 from service.pages import words
 from service.pages.catalogue import links, size
 from service.pages.html import Content, Html, facts, html, joined, link, table, tag

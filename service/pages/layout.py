@@ -8,9 +8,9 @@ from pathlib import Path
 
 from fastapi import Request, Response
 
-from service.answers import Answer, etag
 from service.http.requests import store_of
 from service.http.responses import conditional
+from service.messages.answers import Answer, etag
 from service.pages.html import Html, html, joined, link, tag
 from service.queries import renewals
 

@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.jobs.worker import Worker
+from service.messages.viewer import ANYBODY
 from service.operations import catalogue, differences, jobs, searches, trees
 from service.operations.sources import sources_of
 from service.pages.account import PageRoute
@@ -31,7 +32,6 @@ from service.queries.part_search import CatalogueSearch
 from service.queries.search import RELEVANCE
 from service.queries.tree_search import TreeSearch
 from service.queries.words import words_of
-from service.viewer import ANYBODY
 from substructures.part.outputs import with_own_inertia
 
 To = Annotated[str, Query(min_length=1, max_length=160)]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 from urllib.parse import urlencode
 
-from service.addresses import tree_path
+from service.messages.addresses import tree_path
+from service.messages.viewer import PUBLIC
 from service.operations.searches import Page
 from service.pages.html import Html, link, table, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
-from service.viewer import PUBLIC
 
 
 def trees_table(trees: Sequence[Tree]) -> Html:

@@ -10,8 +10,8 @@ import orjson
 from sqlalchemy import Connection, insert, select
 
 from service.database.tables import audit
+from service.messages.viewer import Viewer
 from service.queries.common import now
-from service.viewer import Viewer
 
 
 @dataclass(frozen=True, slots=True)

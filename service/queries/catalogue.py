@@ -7,15 +7,15 @@ from typing import Any, Self
 
 from sqlalchemy import Connection, Row, and_, bindparam, func, insert, select, update
 
+from service.content.integrity import missing
 from service.database.tables import aliases, parts, substructures, tree_names, versions
-from service.integrity import missing
+from service.messages.references import Reference
+from service.messages.refusals import NotDerived
+from service.messages.viewer import PUBLIC, Viewer
 from service.queries.common import now
 from service.queries.content import seal_of_part
 from service.queries.owners import reference, seen_by, visible
 from service.queries.terms import Term, exchange, stored_terms, terms_of
-from service.references import Reference
-from service.refusals import NotDerived
-from service.viewer import PUBLIC, Viewer
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")

@@ -8,11 +8,11 @@ from typing import Any
 
 from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, update
 
+from service.content.derivation import software
+from service.content.integrity import checked, missing, reading
 from service.database.packed import unpack
 from service.database.seals import seal
 from service.database.tables import parts, programs, trees
-from service.derivation import software
-from service.integrity import checked, missing, reading
 from service.queries.common import insert_missing, now
 from service.queries.formulas import FormulaRow, packed
 from service.queries.uploads import get_upload

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 import orjson
 from sqlalchemy import Connection, select
 
+from service.content.integrity import damaged, digest_of, reading
 from service.database.tables import parts
-from service.integrity import damaged, digest_of, reading
 
 
 @dataclass(frozen=True, slots=True)

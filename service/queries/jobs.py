@@ -11,13 +11,13 @@ from typing import Any
 
 from sqlalchemy import Connection, and_, bindparam, case, exists, func, insert, or_, select, update
 
-from service.clock import time_now
+from service.database.clock import time_now
 from service.database.job_tables import job_items, jobs, results
+from service.messages.viewer import Viewer
 from service.queries.common import now
 from service.queries.job_events import add_event
 from service.queries.results import as_kept
 from service.queries.states import OPEN, QUEUED, RUNNING
-from service.viewer import Viewer
 
 
 @dataclass(frozen=True, slots=True)

@@ -22,8 +22,8 @@ from sqlalchemy import (
 )
 
 from service.database.tables import substructures, tree_names, tree_parts, versions
+from service.messages.viewer import PUBLIC, Viewer
 from service.queries.common import insert_missing
-from service.viewer import PUBLIC, Viewer
 
 AT_A_TIME = 500
 CANDIDATES = 1000

@@ -10,13 +10,13 @@ from typing import Any, ClassVar
 from sqlalchemy import ColumnElement, Connection, ScalarSelect, Select, func, select
 
 from service.database.tables import search_terms, substructures, versions
+from service.messages.viewer import PRIVATE, PUBLIC, Viewer
 from service.queries.catalogue import COLUMNS, STORED, Version
 from service.queries.membership import Membership, scanned
 from service.queries.owners import seen_by, visible
 from service.queries.search import Position, Search, in_order, matching, places
 from service.queries.terms import PORT, TAG, names_with
 from service.queries.words import PARTS, Shelf
-from service.viewer import PRIVATE, PUBLIC, Viewer
 
 _IS_LATEST = substructures.c.latest == versions.c.version
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from sqlalchemy import Connection, delete, insert, select
 
+from service.content.derivation import software
 from service.database.seals import seal
 from service.database.tables import renewals
-from service.derivation import software
 from service.queries.common import now
 from service.queries.content import count_parts
 from service.queries.trees import count_revisions

@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 from sqlalchemy import Connection, delete, select
 
+from service.content.integrity import checked, digest_of
 from service.database.job_tables import result_files, results
-from service.integrity import checked, digest_of
 from service.queries.common import now, put_all
 
 

@@ -12,10 +12,10 @@ from typing import Any, ClassVar, Self
 
 from sqlalchemy import ColumnElement, Connection, Select, Subquery, and_, case, not_, or_, select
 
+from service.messages.viewer import Viewer
 from service.queries.membership import Condition, Membership, scanned, without_index
 from service.queries.owners import seen_by, visible
 from service.queries.words import TRIGRAM, Shelf, beside_index, escaped, in_index, starts
-from service.viewer import Viewer
 
 RELEVANCE = "relevance"
 SORTABLE = ("name", "dof", "created")

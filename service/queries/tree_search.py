@@ -9,12 +9,12 @@ from typing import ClassVar
 from sqlalchemy import Connection, and_, select
 
 from service.database.tables import tree_names, tree_parts, versions
+from service.messages.viewer import Viewer
 from service.queries.membership import Membership
 from service.queries.owners import seen_by
 from service.queries.search import Position, Search, in_order, places
 from service.queries.trees import LATEST, Tree
 from service.queries.words import TREES, Shelf
-from service.viewer import Viewer
 
 
 @dataclass(frozen=True)

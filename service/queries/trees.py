@@ -8,14 +8,14 @@ from typing import Any, Self
 
 from sqlalchemy import Connection, Row, RowMapping, Select, bindparam, delete, func, insert, select, update
 
+from service.content.derivation import software
+from service.content.integrity import checked
 from service.database.seals import seal
 from service.database.tables import parts, tree_names, tree_parts, trees
-from service.derivation import software
-from service.integrity import checked
+from service.messages.references import Reference
+from service.messages.refusals import NotDerived
+from service.messages.viewer import ANYBODY, PUBLIC, Viewer
 from service.queries.owners import seen_by, visible
-from service.references import Reference
-from service.refusals import NotDerived
-from service.viewer import ANYBODY, PUBLIC, Viewer
 
 
 @dataclass(frozen=True, slots=True)

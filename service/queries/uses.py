@@ -10,8 +10,8 @@ from typing import Any
 from sqlalchemy import BindParameter, ColumnElement, Connection, Select, bindparam, select, tuple_
 
 from service.database.tables import part_uses, parts, substructures, tree_names, tree_parts, versions
+from service.messages.viewer import Viewer
 from service.queries.owners import private_parts, reference, seen_by, visible
-from service.viewer import Viewer
 
 #: how something uses a part, in the order of pages
 KINDS = ("derived", "part", "tree")

@@ -8,8 +8,8 @@ from typing import Any
 from sqlalchemy import Connection, Select, select
 
 from service.database.tables import parts, substructures, tree_names, trees, versions
+from service.messages.viewer import Viewer
 from service.queries.owners import reference, seen_by, visible
-from service.viewer import Viewer
 
 
 @dataclass(frozen=True, slots=True)

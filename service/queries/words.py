@@ -28,10 +28,10 @@ from sqlalchemy import (
 )
 
 from service.database.tables import substructures, tree_names
+from service.messages.viewer import Viewer
 from service.queries.membership import Condition, Membership, without_index
 from service.queries.owners import seen_by, visible
 from service.queries.terms import START, is_start, names_with
-from service.viewer import Viewer
 
 TRIGRAM = 3  # letters
 #: names that are looked at for a half of a word that is in none, how much of it has to agree, and letters that may be

@@ -9,10 +9,10 @@ from collections.abc import Callable
 from importlib import import_module
 from urllib.parse import urlsplit
 
-from service.jobs.engine import Engine
-from service.jobs.local import LocalEngine
-from service.jobs.pool import NICE, WorkerPool
-from service.jobs.process import rights_of
+from service.jobs.engines.engine import Engine
+from service.jobs.engines.local import LocalEngine
+from service.jobs.engines.pool import NICE, WorkerPool
+from service.jobs.engines.process import rights_of
 from service.settings import Settings, SettingsError
 
 
@@ -56,7 +56,7 @@ def _dask(address: str) -> Callable[[], Engine]:
             + given
         )
     try:
-        module = import_module("service.jobs.dask")  # an extra; it takes long to load
+        module = import_module("service.jobs.engines.dask")  # an extra; it takes long to load
     except ImportError:
         raise SettingsError(
             "the engine dask needs the extra: pip install 'substructures[dask]' (in a clone: pip install -e '.[dask]')"

@@ -12,15 +12,15 @@ from collections import deque
 from time import monotonic
 from typing import Any
 
-from service.jobs.engine import AttemptReport, Engine, Outcome, Work
+from service.jobs.engines.engine import AttemptReport, Engine, Outcome, Work
 from service.jobs.kinds import failed
 from service.jobs.kinds.mirror import MIRROR_KIND
+from service.messages.refusals import Refused, known_refusal
 from service.operations.mirrors import Mirror, Stopped, Told
 from service.queries.attempts import job_of
 from service.queries.jobs import submitters
-from service.refusals import Refused, known_refusal
 from service.sources import SETTING, source_of
-from service.store import Store
+from service.store.store import Store
 
 PATIENCE = 10.0  # seconds for threads to end, which wait for other instances
 _log = logging.getLogger(__name__)

@@ -8,7 +8,7 @@ from threading import Event
 from service.queries.common import now
 from service.queries.removal import remove_finished
 from service.queries.uploads import remove_unused
-from service.store import Store
+from service.store.store import Store
 
 CHUNKS = 10  # uploads that are removed together
 

@@ -12,12 +12,12 @@ from datetime import timedelta
 from typing import Any
 
 from service.database.connections import Connection
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
+from service.messages.refusals import Refused, StaleError, problem
 from service.operations import job_results
 from service.queries import job_events, jobs, queue
 from service.queries.attempts import Attempt, Changes, Lost
 from service.queries.common import is_outage
-from service.refusals import Refused, StaleError, problem
 from substructures.documents import write_json
 
 #: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers:

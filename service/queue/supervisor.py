@@ -19,7 +19,8 @@ from collections.abc import Callable
 from datetime import timedelta
 from time import monotonic
 
-from service.jobs.engine import AttemptReport, Budget, Engine, Outcome, Work
+from service.jobs.engines.engine import AttemptReport, Budget, Engine, Outcome, Work
+from service.messages.refusals import Refused, problem
 from service.queries import jobs, queue
 from service.queries.attempts import Attempt
 from service.queries.common import is_conflict, is_outage
@@ -27,8 +28,7 @@ from service.queue.backlog import GATHER, Backlog
 from service.queue.mirroring import WithMirrors
 from service.queue.retention import sweep
 from service.queue.rounds import Ended, Round, lock_owned, play, put_back_all
-from service.refusals import Refused, problem
-from service.store import Store
+from service.store.store import Store
 from substructures.documents import read_json
 
 POLL = 0.5  # seconds between looks at the queue when nothing wakes us

@@ -6,12 +6,12 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Response
 
-from service.answers import REVALIDATE, json_answer
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import response_of
+from service.messages.answers import REVALIDATE, json_answer
+from service.messages.refusals import not_found
 from service.operations import catalogue
 from service.queries import aliases
-from service.refusals import not_found
 from service.routes.bodies import body_of
 from service.schemas.resources import AliasList, AliasRequest, AliasView
 from service.views.resources import alias_view, dump

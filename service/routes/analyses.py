@@ -6,13 +6,13 @@ from collections.abc import Awaitable, Callable
 
 from fastapi import APIRouter, Request, Response
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.numbers.analysis import Analysis
-from service.analyses.results import JSON
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
-from service.negotiation import MEDIA_TYPES as PRINTED
-from service.negotiation import choose_media_type
+from service.messages.negotiation import MEDIA_TYPES as PRINTED
+from service.messages.negotiation import choose_media_type
+from service.models.numbers import ANALYSES
+from service.models.numbers.analysis import Analysis
+from service.models.results import JSON
 from service.operations.analyses import FORMATS, analyse, velocity_equations
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, deferred

@@ -6,10 +6,10 @@ from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.answers import json_answer
 from service.http.requests import StoreOf, needs
 from service.http.responses import link_header, next_link, response_of
-from service.paging import limited, read_token, write_token
+from service.messages.answers import json_answer
+from service.messages.paging import limited, read_token, write_token
 from service.queries import audit
 from service.schemas.resources import AuditPage
 from service.views.resources import audit_view, dump

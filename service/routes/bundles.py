@@ -6,18 +6,18 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.addresses import version_path
-from service.answers import Answer, etag, json_answer
-from service.bundles import MEDIA_TYPE, read_bundle, write_bundle
+from service.content.bundles import MEDIA_TYPE, read_bundle, write_bundle
+from service.content.integrity import digest_of
 from service.database.connections import Connection
 from service.http.acting import Commit, SpooledActOf, timed
 from service.http.requests import StoreOf, ViewerOf, declared_type, needs, received
 from service.http.responses import conditional
-from service.integrity import digest_of
+from service.messages.addresses import version_path
+from service.messages.answers import Answer, etag, json_answer
+from service.messages.references import is_pinned
+from service.messages.refusals import Refused
 from service.operations import bundles
 from service.operations.bundles import Imported
-from service.references import is_pinned
-from service.refusals import Refused
 from service.routes.bodies import binary
 from service.schemas.bundles import BundleView
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility

@@ -7,14 +7,14 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import Act, Commit
+from service.messages.answers import Answer, json_answer
+from service.messages.viewer import Viewer
 from service.operations import jobs
 from service.queries.jobs import Job
 from service.schemas.jobs import JobView
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from service.views.jobs import job_path, job_view, skipped_view
 from service.views.resources import dump
 

@@ -7,13 +7,13 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
 from service.jobs.worker import Worker
+from service.messages.answers import Answer, etag, json_answer
+from service.messages.references import is_pinned
 from service.operations import differences
-from service.references import is_pinned
 from service.schemas.versions import DifferenceView
 from substructures.documents import write_json
 

@@ -8,18 +8,18 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from service.analyses.exporting import ALL_TARGETS, ZIP, ExportRequest
-from service.answers import etag
 from service.http.acting import Act, Commit, in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
+from service.messages.answers import etag
+from service.messages.references import is_pinned
+from service.messages.viewer import Viewer
+from service.models.exporting import ALL_TARGETS, ZIP, ExportRequest
 from service.operations import analyses, catalogue
-from service.references import is_pinned
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.errors import InvalidInput
 
 router = APIRouter(prefix="/v1/substructures/{ref}", tags=["formulas"])

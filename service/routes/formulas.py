@@ -7,23 +7,23 @@ from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from service.analyses import printing
-from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional, remembered
 from service.jobs.kinds.requested import BODY
 from service.jobs.worker import Worker
-from service.negotiation import MEDIA_TYPES
+from service.messages.answers import Answer, etag, json_answer
+from service.messages.negotiation import MEDIA_TYPES
+from service.messages.references import is_pinned
+from service.messages.refusals import not_found
+from service.messages.viewer import Viewer
+from service.models import printing
 from service.operations import catalogue, models
 from service.queries import formulas as index
-from service.references import is_pinned
-from service.refusals import not_found
 from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from service.views.resources import dump, formulas_view
 from substructures.errors import among, meant
 from substructures.export import first_index

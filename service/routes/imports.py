@@ -8,15 +8,15 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.addresses import tree_path, version_path
-from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs, received
 from service.jobs.files import Wanted, read
+from service.messages.addresses import tree_path, version_path
+from service.messages.answers import Answer, json_answer
+from service.messages.refusals import Refused
 from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
-from service.refusals import Refused
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import PLAIN

@@ -18,7 +18,7 @@ from service.operations import jobs
 from service.queries import content, job_events, results
 from service.queries import jobs as rows
 from service.routes.bodies import binary
-from service.store import Store
+from service.store.store import Store
 from service.views.jobs import event_text, file_name, item_view
 from service.views.resources import dump
 from substructures.documents import read_json

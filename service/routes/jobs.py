@@ -7,16 +7,16 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, Commit
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
+from service.messages.answers import Answer, json_answer
+from service.messages.paging import limited, read_token, write_token
+from service.messages.refusals import not_found
 from service.operations import jobs
-from service.paging import limited, read_token, write_token
 from service.queries import jobs as rows
 from service.queries import results
-from service.refusals import not_found
 from service.routes.bodies import binary, body_of
 from service.routes.deferred import FRESH, answer, committed
 from service.schemas.jobs import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView, RetryRequest

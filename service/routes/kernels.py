@@ -7,9 +7,9 @@ from time import perf_counter
 
 from fastapi import APIRouter, Response
 
-from service.answers import Answer, json_answer
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
+from service.messages.answers import Answer, json_answer
 from service.operations import trees
 from service.operations.sources import sources_of
 from service.routes.bodies import body_of

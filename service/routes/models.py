@@ -7,31 +7,31 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.analyses import printing
-from service.analyses.exporting import ExportRequest
-from service.analyses.formulas import QUANTITIES, check_options
-from service.analyses.formulas.entry import Options
-from service.analyses.grouping import check_group
-from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.one_state import OneStateRoute
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
-from service.negotiation import MEDIA_TYPES
+from service.messages.answers import JSON, Answer, Stream, etag
+from service.messages.negotiation import MEDIA_TYPES
+from service.messages.references import is_pinned
+from service.messages.viewer import Viewer
+from service.models import printing
+from service.models.exporting import ExportRequest
+from service.models.formulas import QUANTITIES, check_options
+from service.models.formulas.entry import Options
+from service.models.grouping import check_group
 from service.operations import analyses, at_hand, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
 from service.operations.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
-from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.exports import ADVICE, EXPORTED, ExportOf, export_job
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 

@@ -6,8 +6,8 @@ from typing import Annotated, Any
 
 from fastapi import Depends, Query
 
-from service.analyses.formulas import OPTIONS
-from service.analyses.formulas.entry import Options
+from service.models.formulas import OPTIONS
+from service.models.formulas.entry import Options
 
 Texts = list[Annotated[str, Query(max_length=5_000)]] | None
 

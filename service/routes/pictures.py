@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.answers import Answer, etag
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
+from service.messages.answers import Answer, etag
+from service.messages.references import is_pinned
 from service.operations import catalogue, pictures, trees
-from service.references import is_pinned
 
 MEDIA_TYPE = "image/svg+xml"
 #: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
-from service.addresses import version_path
-from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, Commit, timed
 from service.http.requests import OptionalJsonBody, StoreOf, needs
+from service.messages.addresses import version_path
+from service.messages.answers import Answer, json_answer
 from service.operations import catalogue, publishing
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made

@@ -7,15 +7,15 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Depends, Header, Query, Request, Response
 
-from service.answers import etag
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
 from service.jobs.worker import Worker
-from service.negotiation import choose_format
+from service.messages.answers import etag
+from service.messages.negotiation import choose_format
+from service.messages.references import is_pinned
 from service.operations import catalogue, reports, trees
 from service.operations.sources import part_programs
-from service.references import is_pinned
 from service.routes.bodies import reference
 from service.schemas.reports import ReportView
 

@@ -6,9 +6,9 @@ from typing import Annotated
 
 from fastapi import Depends, Header, Query
 
-from service.analyses.exporting import NAME
-from service.analyses.printing import Style
-from service.negotiation import MEDIA_TYPES, choose_form, choose_format
+from service.messages.negotiation import MEDIA_TYPES, choose_form, choose_format
+from service.models.exporting import NAME
+from service.models.printing import Style
 from substructures.printers import FORMS
 
 

@@ -8,27 +8,27 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.addresses import version_path
-from service.answers import Answer, etag, json_answer
+from service.content.integrity import missing
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
-from service.integrity import missing
+from service.messages.addresses import version_path
+from service.messages.answers import Answer, etag, json_answer
+from service.messages.paging import limited
+from service.messages.references import is_pinned
+from service.messages.viewer import Viewer
 from service.operations import catalogue, searches
-from service.paging import limited
 from service.queries import aliases, content, uses
 from service.queries.catalogue import Version
 from service.queries.part_search import CatalogueSearch
 from service.queries.uses import Withdrawn
 from service.queries.words import words_of
-from service.references import is_pinned
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf, PortName
 from service.schemas.entries import PartEntry
 from service.schemas.resources import VersionPage, VersionView, YankRequest
-from service.viewer import Viewer
 from service.views.resources import dump, page_view, version_view
 from substructures.documents import read_model
 from substructures.part.definition import Definition

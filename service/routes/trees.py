@@ -7,18 +7,18 @@ from typing import Annotated
 
 from fastapi import APIRouter, Header, Query, Request, Response
 
-from service.addresses import tree_path
-from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import Act, ActOf, Commit, timed
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
+from service.messages.addresses import tree_path
+from service.messages.answers import Answer, json_answer
+from service.messages.paging import limited
+from service.messages.refusals import unprocessable
 from service.operations import searches, trees
 from service.operations.job_results import BASE_REVISION, IS_EXACT
-from service.paging import limited
 from service.queries.tree_search import TreeSearch
 from service.queries.words import words_of
-from service.refusals import unprocessable
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf

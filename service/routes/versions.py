@@ -7,11 +7,11 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
-from service.answers import REVALIDATE, json_answer
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
+from service.messages.answers import REVALIDATE, json_answer
+from service.messages.paging import limited, read_token, write_token
 from service.operations import owners, versions
-from service.paging import limited, read_token, write_token
 from service.queries import uses
 from service.queries import versions as rows
 from service.schemas.versions import RevisionList, UsePage, VersionList

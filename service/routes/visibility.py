@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from fastapi import APIRouter, Response
 
-from service.answers import json_answer
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import response_of
+from service.messages.answers import json_answer
 from service.operations import owners
 from service.queries.owners import Kind, Ownership
 from service.routes.bodies import body_of

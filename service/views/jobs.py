@@ -8,7 +8,7 @@ from typing import Any
 
 import orjson
 
-from service.addresses import BASE
+from service.messages.addresses import BASE
 from service.operations.jobs import Progress, Skipped
 from service.queries.job_events import JobEvent
 from service.queries.jobs import Job, JobItem

@@ -7,7 +7,7 @@ from typing import Any
 
 import orjson
 
-from service.addresses import BASE, tree_path, version_path
+from service.messages.addresses import BASE, tree_path, version_path
 from service.operations.searches import Page
 from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.audit import AuditEntry

@@ -6,7 +6,7 @@ from typing import Any
 
 import orjson
 
-from service.addresses import BASE
+from service.messages.addresses import BASE
 from service.queries.uses import Use
 from service.queries.versions import RevisionEntry, VersionEntry
 

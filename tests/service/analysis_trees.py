@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 from substructures import catalogue
 from substructures.documents import write_json
 

@@ -18,7 +18,7 @@ from sqlalchemy import func, select
 from service.app import bare_app, create_app, open_store
 from service.database.tables import metadata
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .databases import close
 from .made_once import bare_app_from, upgrade_from
@@ -92,7 +92,7 @@ def pytest_sessionfinish() -> None:
 @pytest.fixture(autouse=True)
 def _logs_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """A server's command run in this process would write all later log lines to a stderr that ends with its test."""
-    monkeypatch.setattr("service.logs.configure", lambda: None)
+    monkeypatch.setattr("service.http.logs.configure", lambda: None)
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -10,10 +10,10 @@ from typing import Any
 
 from fastapi.testclient import TestClient
 
-from service.jobs.engine import AttemptReport, Outcome, Work
+from service.jobs.engines.engine import AttemptReport, Outcome, Work
 from service.jobs.kinds import run
 from service.queue.supervisor import Supervisor
-from service.store import Store
+from service.store.store import Store
 
 
 class FakeEngine:

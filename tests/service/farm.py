@@ -17,8 +17,8 @@ from typing import Any, Self
 import httpx2
 import numpy as np
 
-from service.jobs.pool import NICE
-from service.respawn import VARIABLE
+from service.jobs.engines.pool import NICE
+from service.processes.parent import VARIABLE
 from substructures.client import Client, ProblemError
 
 START = 60.0

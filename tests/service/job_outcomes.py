@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds import run
 from service.settings import Limits
 from substructures.documents import read_json, write_json

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
-from service.derivation import software
-from service.jobs.engine import AttemptReport, Budget, Engine, Work
+from service.content.derivation import software
+from service.content.summaries import tree_summary
+from service.jobs.engines.engine import AttemptReport, Budget, Engine, Work
 from service.jobs.kinds import expand, resolve
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.settings import Limits
-from service.summaries import tree_summary
 from substructures.documents import write_json
 from substructures.interchange.importing import document_of
 from substructures.part.definition import Definition

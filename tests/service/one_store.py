@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import HAND, make_client
 

@@ -13,7 +13,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store.store import Store
 from substructures import Definition, Program, TreeSpec, abbreviate, catalogue, couple, derive
 from substructures.expr.interpret import interpret
 

@@ -13,9 +13,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.negotiation import MEDIA_TYPES
+from service.messages.negotiation import MEDIA_TYPES
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store.store import Store
 from substructures.expr.program import Program
 from substructures.formats import arrow
 

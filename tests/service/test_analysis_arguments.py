@@ -9,8 +9,8 @@ from typing import Any
 import pytest
 from flat_arguments import flat_arguments
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.requests import arguments, read_request
+from service.models.numbers import ANALYSES
+from service.models.requests import arguments, read_request
 from substructures import InvalidDocument
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.nonlinear_program import End

@@ -11,10 +11,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.analyses.formulas import QUANTITIES
-from service.analyses.grouping import QUANTITIES as GROUPED
 from service.app import open_store
-from service.negotiation import MEDIA_TYPES
+from service.messages.negotiation import MEDIA_TYPES
+from service.models.formulas import QUANTITIES
+from service.models.grouping import QUANTITIES as GROUPED
 from service.settings import Settings
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program

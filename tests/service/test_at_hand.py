@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.operations import at_hand
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 
 QUANTITIES = ["metric", "forces", "forward_dynamics"]
 STATE: dict[str, Any] = {"quantities": QUANTITIES, "q": [0.1], "qd": [0.2]}

@@ -16,17 +16,17 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.cli.main import main
+from service.content.derivation import software
+from service.content.summaries import PartContent, part_content
 from service.database.backup import backup, restore
 from service.database.packed import pack, unpack
-from service.derivation import software
+from service.messages.refusals import Refused
 from service.operations.catalogue import PartSubmission, submit
 from service.operations.renewal import OPERATOR
 from service.operations.verification import verify_all
-from service.refusals import Refused
 from service.renewing import Renewal
 from service.settings import Limits, Settings
-from service.store import Store
-from service.summaries import PartContent, part_content
+from service.store.store import Store
 from substructures.documents import write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program

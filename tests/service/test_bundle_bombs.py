@@ -11,12 +11,12 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import update
 
+from service.content.integrity import digest_of
 from service.database.tables import parts
-from service.integrity import digest_of
+from service.messages.viewer import ANYBODY
 from service.operations import catalogue
 from service.queries import content
-from service.store import Store
-from service.viewer import ANYBODY
+from service.store.store import Store
 from substructures.documents import write_json
 
 from .conftest import TREE

@@ -17,12 +17,12 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import open_store
-from service.bundles import LIST, MOST_PARTS
-from service.integrity import digest_of
+from service.content.bundles import LIST, MOST_PARTS
+from service.content.integrity import digest_of
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 from substructures.certificate.part_outputs import part_symbols
 from substructures.certificate.states import draws
 from substructures.documents import write_json

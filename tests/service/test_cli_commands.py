@@ -10,12 +10,12 @@ from pathlib import Path
 
 import pytest
 
-from service import keys
 from service.cli.main import main
 from service.database.connections import Database
 from service.queries.keys import list_keys
 from service.server import background
 from service.settings import Settings
+from service.store import keys
 from substructures.client import Client
 
 from .conftest import PENDULUM, TREE

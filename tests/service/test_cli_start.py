@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pytest
 
-from service.analyses import exporting, numbers
-from service.analyses.formulas import _QUANTITIES, OF_PARTS
 from service.cli import choices
 from service.cli.main import COMMANDS, main
+from service.models import exporting, numbers
+from service.models.formulas import _QUANTITIES, OF_PARTS
 from substructures import catalogue, export, printers
 from substructures.documents import write_json
 
@@ -43,7 +43,7 @@ TREE = {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulu
 
 
 #: of a server, of those who talk to one, of robot files, of few motions, of terminals
-SERVED = {"fastapi", "sqlalchemy", "uvicorn", "service.database", "service.store"}
+SERVED = {"fastapi", "sqlalchemy", "uvicorn", "service.database", "service.store.store"}
 TALKING = {"httpx2", "substructures.client.client"}
 ROBOTS = {"substructures.interchange.kinds", "substructures.interchange.importing"}
 SCIPY = {"scipy.integrate", "scipy.linalg", "scipy.optimize", "scipy.special"}
@@ -51,7 +51,7 @@ NEVER = {"asyncio", "pint", "sympy", "rich.console", *SERVED}
 #: the names of formats and targets are not those who write them
 WRITERS = {"substructures.export", "substructures.printers"}
 ANALYSES = {
-    "service.analyses.abbreviations",
+    "service.models.abbreviations",
     "substructures.analysis.control",
     "substructures.analysis.identification",
     "substructures.analysis.stability",
@@ -66,7 +66,7 @@ STARTS = {
     "export t.json --target c --out t.zip": HERE | SCIPY | ANALYSES | MOTIONS | {"llvmlite"},
     "analyse t.json metric": HERE | SCIPY | MOTIONS | {"llvmlite", "substructures.analysis.stability"},
     "analyse t.json first_integrals": HERE | SCIPY | MOTIONS | {"substructures.analysis.stability"},
-    "simulate t.json m.json": HERE | ANALYSES | {"service.analyses.printing"},
+    "simulate t.json m.json": HERE | ANALYSES | {"service.models.printing"},
     "same d.json d.json": (HERE - ROBOTS) | SCIPY | ANALYSES | MOTIONS,
 }
 DOCUMENTS = {

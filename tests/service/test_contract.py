@@ -14,10 +14,10 @@ import pytest
 from fastapi.testclient import TestClient
 
 import service
-from service.analyses.formulas import OPTIONS, QUANTITIES
-from service.analyses.numbers import ANALYSES
 from service.jobs.kinds import KINDS
-from service.negotiation import FORMS, MEDIA_TYPES
+from service.messages.negotiation import FORMS, MEDIA_TYPES
+from service.models.formulas import OPTIONS, QUANTITIES
+from service.models.numbers import ANALYSES
 from service.settings import Limits
 from substructures.quantities.quantity import ANALYSIS, PART, TABLE, Quantity
 

@@ -12,11 +12,11 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.jobs import process
+from service.jobs.engines import process
 from service.queue.retention import sweep
 from service.schemas.resources import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import PENDULUM, TREE, make_client
 

@@ -14,8 +14,8 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.cli.main import main
+from service.content.integrity import digest_of
 from service.database.packed import pack, unpack
-from service.integrity import digest_of
 from service.operations.verification import verify_all
 from service.settings import Settings
 from substructures.expr.program import Program

@@ -15,12 +15,12 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.analyses.exporting import ALL_TARGETS
 from service.app import open_store
 from service.cli.main import main
-from service.keys import create
+from service.models.exporting import ALL_TARGETS
 from service.settings import Settings
-from service.store import Store
+from service.store.keys import create
+from service.store.store import Store
 
 from .conftest import PENDULUM, make_client
 from .fake_engine import FakeEngine, finished, running

@@ -12,13 +12,13 @@ from typing import Any
 import pytest
 import sqlalchemy as sa
 
+from service.content.summaries import PartContent, part_content
 from service.database.connections import Database
 from service.database.migrate import upgrade
 from service.database.tables import metadata
 from service.operations.catalogue import store_part
 from service.operations.verification import verify_all
 from service.queries.formulas import FormulaRow, list_formulas
-from service.summaries import PartContent, part_content
 from substructures import Definition, catalogue, derive
 
 from .databases import fresh

@@ -12,13 +12,13 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import Engine, event
 
-from service import claims
 from service.app import open_store
+from service.messages.refusals import StaleError
 from service.operations import jobs, trees
 from service.queries import idempotency
-from service.refusals import StaleError
-from service.runtime import COMPUTED, Computed
 from service.settings import Settings
+from service.store import idempotency as claims
+from service.store.runtime import COMPUTED, Computed
 
 from .conftest import HAND, PENDULUM, make_client
 from .databases import fresh

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import SLIDER
 from .fake_engine import FakeEngine, finished, items, running

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds import run
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidInput

@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 from service.queries.attempts import Attempt
 from service.queue import backlog
 from service.queue.backlog import AHEAD, Backlog
-from service.store import Store
+from service.store.store import Store
 
 from .fake_engine import FakeEngine, eventually, export, finished, items, running, submitted
 

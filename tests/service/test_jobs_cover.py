@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.analyses.formulas import QUANTITIES, WITH_DOCUMENT
-from service.analyses.numbers import ANALYSES
 from service.app import open_store
+from service.models.formulas import QUANTITIES, WITH_DOCUMENT
+from service.models.numbers import ANALYSES
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 from substructures.quantities.quantity import ANALYSIS, PART, TABLE
 
 from .analysis_trees import client_with_trees

@@ -13,9 +13,9 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs import dask
-from service.jobs.dask import DaskEngine
-from service.jobs.engine import AttemptReport, Budget, Work
+from service.jobs.engines import dask
+from service.jobs.engines.dask import DaskEngine
+from service.jobs.engines.engine import AttemptReport, Budget, Work
 from service.jobs.kinds import run
 
 from .conftest import PENDULUM, SLIDER, TREE

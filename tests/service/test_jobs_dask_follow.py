@@ -10,8 +10,8 @@ from typing import Any
 import pytest
 from distributed.comm.core import CommClosedError
 
-from service.jobs.dask import DaskEngine
-from service.jobs.engine import AttemptReport, Budget, Work
+from service.jobs.engines.dask import DaskEngine
+from service.jobs.engines.engine import AttemptReport, Budget, Work
 
 WORK = Work("a", "verify", {}, {}, Budget(60.0, 2**30))
 

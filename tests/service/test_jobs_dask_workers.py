@@ -14,14 +14,14 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs import dask, dask_cluster
-from service.jobs.dask import DaskEngine
+from service.jobs.engines import dask, dask_cluster
+from service.jobs.engines.dask import DaskEngine
 
 from .conftest import PENDULUM, SLIDER, TREE
 from .jobs_library import BUDGET, MemoryLibrary, chain, compute
 from .test_jobs_dask import Cluster, cells, check, check_limits, connected, runners
 
-OTHER = "import service.jobs.wire\nservice.jobs.wire.PROTOCOL += 1\n"
+OTHER = "import service.jobs.engines.wire\nservice.jobs.wire.PROTOCOL += 1\n"
 WITHOUT = "import sys\nsys.modules['service'] = None\n"
 linux = pytest.mark.skipif(sys.platform != "linux", reason="/proc is that of Linux")
 
@@ -41,7 +41,7 @@ def until(is_so: Callable[[], object], engine: DaskEngine, seconds: float = 40.0
 
 def said(caplog: pytest.LogCaptureFixture, *words: str) -> list[str]:
     """The lines of the log with all these words."""
-    lines = [record.getMessage() for record in caplog.records if record.name.startswith("service.jobs.dask")]
+    lines = [record.getMessage() for record in caplog.records if record.name.startswith("service.jobs.engines.dask")]
     return [line for line in lines if all(word in line for word in words)]
 
 

@@ -9,11 +9,11 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.keys import create
 from service.operations import trees
-from service.runtime import THREADS
 from service.settings import Settings
-from service.store import Store
+from service.store.keys import create
+from service.store.runtime import THREADS
+from service.store.store import Store
 from substructures import InvalidDocument
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client

@@ -13,11 +13,11 @@ import httpx2
 import pytest
 from fastapi.testclient import TestClient
 
-from service import feed
 from service.routes import job_streams
 from service.server import background
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store import job_events as feed
+from service.store.store import Store
 from substructures.client import Client
 
 from .conftest import PENDULUM, TREE

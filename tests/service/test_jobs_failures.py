@@ -7,9 +7,9 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.engine import Work
+from service.jobs.engines.engine import Work
 from service.settings import Limits
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import TREE
 from .fake_engine import FakeEngine, export, finished, items, running, submitted

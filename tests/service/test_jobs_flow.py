@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 
 from service.jobs.kinds import KINDS
 from service.schemas.jobs import JobKind
-from service.store import Store
+from service.store.store import Store
 from substructures.expr.program import read_program
 
 from .conftest import PENDULUM, SLIDER

@@ -6,10 +6,10 @@ from typing import Any
 
 import pytest
 
+from service.content.summaries import PartContent, part_content
 from service.database.packed import unpack
 from service.jobs.kinds import KINDS, expand, run
 from service.settings import Limits
-from service.summaries import PartContent, part_content
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 from substructures.export import render

@@ -13,10 +13,10 @@ from pathlib import Path
 
 import pytest
 
-from service.jobs.engine import Budget, Work
+from service.jobs.engines.engine import Budget, Work
+from service.jobs.engines.local import LocalEngine
+from service.jobs.engines.process import lacked_memory, rights_of
 from service.jobs.kinds import run
-from service.jobs.local import LocalEngine
-from service.jobs.process import lacked_memory, rights_of
 from service.queue.engines import engine_of
 from service.settings import Settings, SettingsError
 from substructures.documents import write_json
@@ -207,7 +207,7 @@ def test_runner_has_nothing_of_its_parent(monkeypatch: pytest.MonkeyPatch) -> No
 def test_runner_ends_with_its_parent() -> None:
     script = (
         "import sys, time\n"
-        "from service.jobs.local import LocalEngine\n"
+        "from service.jobs.engines.local import LocalEngine\n"
         "engine = LocalEngine(1)\n"
         "while not engine.free: engine.reports(0.1)\n"
         "print(*engine.processes, flush=True)\n"

@@ -15,13 +15,13 @@ from urllib.parse import urlsplit
 import pytest
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import open_store
 from service.operations import mirrors
 from service.server import background
 from service.settings import Settings, SettingsError, from_environment
 from service.sources import read_source, source_of
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 from substructures.client import Client, ProblemError
 from substructures.documents import write_json
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from fastapi.testclient import TestClient
 
-from service.jobs.engine import Outcome, Work
+from service.jobs.engines.engine import Outcome, Work
 from service.jobs.kinds import failed
-from service.refusals import Refused
-from service.store import Store
+from service.messages.refusals import Refused
+from service.store.store import Store
 
 from .fake_engine import FakeEngine, eventually, export, finished, running, submitted
 from .reading import read

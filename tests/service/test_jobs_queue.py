@@ -6,12 +6,12 @@ import pytest
 import sqlalchemy as sa
 
 from service.database.job_tables import job_items
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.queries import queue
 from service.queries.attempts import Attempt
 from service.queue import rounds
 from service.queue.rounds import Ended
-from service.store import Store
+from service.store.store import Store
 
 from .queue_rounds import DONE, LEASE, OVER, add, job_of, opened, round_of, states, store
 

@@ -16,7 +16,7 @@ import pytest
 
 from service.app import open_store
 from service.cli.main import main
-from service.jobs.engine import Outcome, Work
+from service.jobs.engines.engine import Outcome, Work
 from service.queue.supervisor import Supervisor
 from service.settings import Settings
 from substructures.client import Client

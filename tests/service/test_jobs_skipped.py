@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import HAND, TREE
 from .fake_engine import FakeEngine, finished, items, running

@@ -16,7 +16,7 @@ from service.queries import removal
 from service.queries.common import now
 from service.queries.job_events import events_after
 from service.queue.rounds import Ended
-from service.store import Store
+from service.store.store import Store
 
 from .queue_rounds import DONE, OVER, add, job_of, opened, round_of, states, store
 

@@ -19,7 +19,7 @@ from service.operations import batches
 from service.queries.common import now
 from service.queue.retention import sweep
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store.store import Store
 from substructures.formats.arrays import read_npz, write_npz
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
 from substructures.formats.arrow import read_tables

@@ -4,8 +4,16 @@ from __future__ import annotations
 
 import pytest
 
-from service.jobs.engine import AttemptReport, Budget, Outcome, Work
-from service.jobs.wire import Message, MessageReader, WireError, read_report, read_work, report_frame, work_frame
+from service.jobs.engines.engine import AttemptReport, Budget, Outcome, Work
+from service.jobs.engines.wire import (
+    Message,
+    MessageReader,
+    WireError,
+    read_report,
+    read_work,
+    report_frame,
+    work_frame,
+)
 
 from .jobs_library import BUDGET
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from service.queries.results import Result, get_file, put_results
-from service.store import Store
+from service.store.store import Store
 
 
 def test_good_results_replace_those_of_items_that_failed(store: Store) -> None:

@@ -14,9 +14,9 @@ import pytest
 from fastapi.testclient import TestClient
 from machine_code import NEEDS_MACHINE_CODE
 
-from service import kernels
-from service.kernels import Kernels
 from service.settings import Settings
+from service.store import kernels
+from service.store.kernels import Kernels
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
 from substructures.part.part import Part
@@ -55,14 +55,14 @@ def test_small_batches_are_answered_first_and_compiled_then(
         assert monotonic() < limit, "nothing is compiled in the background"
         sleep(0.02)
     assert list(tmp_path.iterdir())
-    monkeypatch.setattr("service.kernels.interpreted", None)  # kernels alone can answer now
+    monkeypatch.setattr("service.store.kernels.interpreted", None)  # kernels alone can answer now
     agree(model, engine, 3)
     engine.close()
 
 
 def test_large_batches_are_compiled_at_once(model: Model, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(kernels, "AT_ONCE", 10)
-    monkeypatch.setattr("service.kernels.interpreted", None)
+    monkeypatch.setattr("service.store.kernels.interpreted", None)
     engine = Kernels(tmp_path)
     agree(model, engine, 33)
     engine.close()
@@ -118,8 +118,8 @@ def test_one_state_comes_from_warm_parts(tmp_path: Path, monkeypatch: pytest.Mon
     asked: list[str] = []
     tree = NumericTree(spec, parts, engine.of_part)
     monkeypatch.setattr(engine, "_compile_later", lambda key, *_: asked.append(key[0]))
-    monkeypatch.setattr("service.kernels.interpreted", None)
-    monkeypatch.setattr("service.kernels.interpret_entries", None)
+    monkeypatch.setattr("service.store.kernels.interpreted", None)
+    monkeypatch.setattr("service.store.kernels.interpret_entries", None)
     q = np.random.default_rng(1).uniform(-1, 1, 4)
     wanted = {"quantities": ["metric", "christoffel", "forces", "kinematics"], "q": q, "qd": q[::-1]}
     found = evaluate(
@@ -154,7 +154,7 @@ def test_kernels_on_request(filled: TestClient, monkeypatch: pytest.MonkeyPatch)
     assert again.status_code == 200
     assert not any(row["new"] for row in again.json()["kernels"])
     states = {"q": [[0.1], [0.2]], "qd": [[0], [1]]}
-    monkeypatch.setattr("service.kernels.interpreted", None)
+    monkeypatch.setattr("service.store.kernels.interpreted", None)
     assert filled.post("/v1/trees/cell/evaluations", json={**body, **states}).status_code == 200
     assert filled.post("/v1/trees/cell").status_code == 405
 

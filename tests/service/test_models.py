@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.negotiation import MEDIA_TYPES
+from service.messages.negotiation import MEDIA_TYPES
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 

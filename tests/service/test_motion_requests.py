@@ -12,11 +12,11 @@ from flat_arguments import flat_arguments
 from random_trees import Plain
 from rolling_bodies import sleigh
 
-from service.analyses.formulas.constraints import velocity_equations_of
-from service.analyses.numbers import ANALYSES
-from service.analyses.requests import arguments, read_request
-from service.analyses.results import plain
-from service.analyses.source import Source
+from service.models.formulas.constraints import velocity_equations_of
+from service.models.numbers import ANALYSES
+from service.models.requests import arguments, read_request
+from service.models.results import plain
+from service.models.source import Source
 from service.schemas.motions import (
     AnySimulationRequest,
     ClosedRequest,

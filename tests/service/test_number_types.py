@@ -13,15 +13,15 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.results import JSON, written
 from service.app import open_store
 from service.jobs.kinds.trees import source_of
+from service.messages.viewer import ANYBODY
+from service.models.numbers import ANALYSES
+from service.models.results import JSON, written
 from service.operations.sources import pinned_tree
 from service.operations.trees import find
 from service.settings import Settings
-from service.store import Store
-from service.viewer import ANYBODY
+from service.store.store import Store
 
 from .analysis_trees import TREES
 from .conftest import make_client

@@ -15,10 +15,10 @@ import pytest
 from fastapi.testclient import TestClient
 
 import substructures.client
-from service import keys
 from service.app import open_store
 from service.server import background
 from service.settings import Settings
+from service.store import keys
 
 from .conftest import PENDULUM, TREE
 from .test_conventions import problem

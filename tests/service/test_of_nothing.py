@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import kernels
-from service.store import Store
+from service.store import kernels
+from service.store.store import Store
 
 from .analysis_trees import client, store
 

@@ -22,7 +22,7 @@ from service.queries import renewals
 from service.renewing import Renewal
 from service.server import background
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 from substructures.client import Client
 
 from .conftest import make_client

@@ -20,12 +20,12 @@ from service.database import connections
 from service.database.connections import Database, DatabaseError
 from service.database.tables import tree_names
 from service.http.problems import as_refused
+from service.messages.viewer import Viewer
 from service.operations import trees
 from service.operations.seed import Told
 from service.queries.common import insert_missing, is_conflict, is_outage
 from service.settings import Settings
-from service.store import Store
-from service.viewer import Viewer
+from service.store.store import Store
 
 from .conftest import PENDULUM, TREE, make_client
 from .databases import fresh

@@ -13,15 +13,15 @@ import pytest
 import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import bare_app, open_store
 from service.cli.main import main
 from service.database.migrate import upgrade
 from service.http import openapi
+from service.messages.viewer import Viewer
 from service.queries.jobs import get_job
 from service.settings import Settings
-from service.store import Store
-from service.viewer import Viewer
+from service.store import keys
+from service.store.store import Store
 
 from .conftest import PENDULUM, copied, make_client
 from .fake_engine import FakeEngine, export, finished, running

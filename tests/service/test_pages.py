@@ -17,7 +17,7 @@ from service.app import open_store
 from service.pages.html import Html, html, tag
 from service.pages.words import certificate
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
 from .reading import Page, draw, read

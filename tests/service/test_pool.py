@@ -12,11 +12,11 @@ from typing import Any
 
 import pytest
 
-from service.jobs.engine import AttemptReport, Budget, Outcome, Work
-from service.jobs.local import LocalEngine
-from service.jobs.pool import InProcess, WorkerPool
+from service.jobs.engines.engine import AttemptReport, Budget, Outcome, Work
+from service.jobs.engines.local import LocalEngine
+from service.jobs.engines.pool import InProcess, WorkerPool
 from service.jobs.worker import Worker, Workers
-from service.refusals import Refused
+from service.messages.refusals import Refused
 from substructures import Definition
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument, TooLarge
@@ -236,7 +236,7 @@ def test_work_that_is_given_up_ends_where_it_tells_how_far_it_is(monkeypatch: py
             progress(0.5)
             time.sleep(0.001)
 
-    monkeypatch.setattr("service.jobs.pool.run", endless)
+    monkeypatch.setattr("service.jobs.engines.pool.run", endless)
     workers = InProcess()
     with pytest.raises(TimeoutError):
         worker(workers, seconds=0.2)("derive", item(PENDULUM))

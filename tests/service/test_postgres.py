@@ -8,8 +8,8 @@ from datetime import UTC, datetime, timedelta, tzinfo
 import pytest
 from fastapi.testclient import TestClient
 
-from service import clock
 from service.app import open_store
+from service.database import clock
 from service.settings import Settings
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once, make_client
@@ -101,7 +101,7 @@ class _Late(datetime):
 def test_hosts_agree_on_the_time_of_the_database(address: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Leases and claims of one host would be over for another as soon as they are taken."""
     monkeypatch.setattr(clock, "_ahead", timedelta())
-    for place in ("service.clock.datetime", "service.database.connections.datetime"):
+    for place in ("service.database.clock.datetime", "service.database.connections.datetime"):
         monkeypatch.setattr(place, _Late)
     assert clock.time_now() < datetime.now(UTC) - timedelta(minutes=9)
     with open_store(Settings(database=address, catalogue=False)):

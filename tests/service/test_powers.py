@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.store import Store
+from service.store.store import Store
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.formats import arrow

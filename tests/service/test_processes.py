@@ -17,12 +17,12 @@ from typing import Any
 import httpx2
 import pytest
 
-from service import turns
 from service.cli.main import main
 from service.database.connections import Database, DatabaseError
 from service.database.file import Claim
+from service.processes import accepting as turns
+from service.processes.parent import bound
 from service.queries import idempotency
-from service.respawn import bound
 from service.settings import Limits, Settings
 from substructures.client import Client
 

@@ -13,8 +13,8 @@ import pytest
 from damaged import damages
 from fastapi.testclient import TestClient
 
-from service.analyses import binding
-from service.store import Store
+from service.models import binding
+from service.store.store import Store
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program

@@ -12,13 +12,13 @@ import numpy as np
 import pytest
 import sqlalchemy as sa
 
-from service import usage
 from service.app import open_store
 from service.database.job_tables import results, uploads
 from service.database.migrate import upgrade
 from service.database.tables import idempotency
 from service.settings import Limits, Settings
-from service.store import Store
+from service.store import usage
+from service.store.store import Store
 from substructures.compile import cache
 from substructures.formats.arrays import write_npz
 

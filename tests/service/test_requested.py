@@ -7,10 +7,10 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.engine import AttemptReport, Work
+from service.jobs.engines.engine import AttemptReport, Work
 from service.jobs.kinds import KINDS
 from service.jobs.kinds.requested import REQUESTED
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import HAND, PENDULUM, SLIDER
 

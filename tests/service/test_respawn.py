@@ -16,7 +16,7 @@ from pathlib import Path
 import httpx2
 import pytest
 
-from service.respawn import bound
+from service.processes.parent import bound
 from substructures.client import Client
 
 from .conftest import PENDULUM, TREE

@@ -8,11 +8,11 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import open_store
 from service.queries import membership
 from service.settings import Settings
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 
 from .conftest import PENDULUM, make_client
 from .databases import fresh

@@ -10,14 +10,14 @@ import pytest
 import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import open_store
 from service.database.connections import Database
 from service.database.migrate import upgrade
 from service.database.tables import metadata, search_terms
 from service.queries import membership
 from service.settings import Settings
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 
 from .conftest import make_client
 from .databases import fresh

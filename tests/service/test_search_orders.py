@@ -13,7 +13,7 @@ from sqlalchemy import event
 from service.app import open_store
 from service.queries import membership
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import make_client
 from .databases import fresh

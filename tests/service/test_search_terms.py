@@ -13,7 +13,7 @@ from service.app import open_store
 from service.database.migrate import upgrade
 from service.queries.terms import terms_of
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import PENDULUM, make_client
 from .databases import fresh

@@ -9,12 +9,12 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
-from service import keys
 from service.database.tables import api_keys, sessions
 from service.http.requests import SESSION
+from service.messages.refusals import Refused
 from service.queries.common import now
-from service.refusals import Refused
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 
 from .conftest import PENDULUM
 from .reading import Page, read
@@ -156,7 +156,7 @@ def test_trees_beyond_the_first_page(filled: TestClient) -> None:
 def test_wrong_keys_meet_a_brake(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     """After ten in a minute no more of the address are looked at, right or wrong, until the minute is over."""
     clock = [1000.0]
-    monkeypatch.setattr("service.keys.monotonic", lambda: clock[0])
+    monkeypatch.setattr("service.store.keys.monotonic", lambda: clock[0])
     right = token(store, "read")
     for k in range(keys.TRIES):
         clock[0] += 1

@@ -10,13 +10,13 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.pool import THREADS, InProcess
+from service.jobs.engines.pool import THREADS, InProcess
+from service.messages.viewer import ANYBODY
 from service.operations import catalogue
+from service.processes.threads import SharedThreads
 from service.schemas.entries import PLAIN
 from service.settings import Limits
-from service.store import Store
-from service.threads import SharedThreads
-from service.viewer import ANYBODY
+from service.store.store import Store
 from substructures import Definition, derive
 
 from .conftest import PENDULUM

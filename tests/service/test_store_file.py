@@ -20,7 +20,7 @@ from service.app import open_store
 from service.database.backup import backup, restore
 from service.database.connections import Database, DatabaseError
 from service.settings import Settings
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import PENDULUM, SLIDER, copied, make_client
 from .farm import Server, running

@@ -13,10 +13,10 @@ import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
 
-from service import spool
+from service.messages import spool
 from service.operations import exchange
 from service.settings import Limits
-from service.store import Store
+from service.store.store import Store
 from substructures.formats.arrow import MEDIA_TYPE
 
 from .conftest import make_client

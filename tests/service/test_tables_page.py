@@ -15,7 +15,7 @@ from sqlalchemy import inspect
 
 import service
 from service.database.tables import metadata
-from service.store import Store
+from service.store.store import Store
 from substructures import catalogue
 from substructures.documents import write_json
 

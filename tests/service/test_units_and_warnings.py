@@ -15,11 +15,11 @@ from fastapi.testclient import TestClient
 from sqlalchemy import select, update
 
 from service.cli.main import main
+from service.content.summaries import part_content
 from service.database.tables import trees
+from service.messages.viewer import ANYBODY
 from service.operations import catalogue, exchange
-from service.store import Store
-from service.summaries import part_content
-from service.viewer import ANYBODY
+from service.store.store import Store
 from substructures import Definition, Part, derive
 from substructures.formats.arrays import as_answer, read_npz
 from substructures.formats.arrow import read_tables

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from service.analyses.formulas import made
-from service.analyses.printing import Style, made_text
 from service.cli.tree_files import coupled_source
+from service.models.formulas import made
+from service.models.printing import Style, made_text
 from substructures import Definition, TreeSpec, catalogue, derive
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Linear

@@ -18,8 +18,8 @@ import pytest
 from fastapi.testclient import TestClient
 from pydantic import BaseModel
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.requests import arguments, read_request
+from service.models.numbers import ANALYSES
+from service.models.requests import arguments, read_request
 from service.schemas.measured import WithUnits
 from service.schemas.numbers import EvaluationRequest
 from service.schemas.state_sets import Grid, Sample

@@ -11,18 +11,18 @@ from typing import Any
 
 import pytest
 
-from service import keys
-from service.analyses.grouping import QUANTITIES as GROUPED
 from service.app import open_store
+from service.content.improvement import AS_IT_WAS, MORE, SHORTER
+from service.content.integrity import digest_of
 from service.database.packed import pack, unpack
-from service.improvement import AS_IT_WAS, MORE, SHORTER
-from service.integrity import digest_of
+from service.messages.viewer import Viewer
+from service.models.grouping import QUANTITIES as GROUPED
 from service.operations import renewal
 from service.operations.upgrade import Upgraded, upgrade
 from service.operations.verification import verify_all
 from service.settings import Settings
-from service.store import Store
-from service.viewer import Viewer
+from service.store import keys
+from service.store.store import Store
 from substructures.expr.program import Program
 
 from .conftest import HAND, SLIDER, copied, make_client

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.store import Store
+from service.store.store import Store
 
 from .conftest import PENDULUM
 from .seals import seal_again

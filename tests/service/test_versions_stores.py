@@ -9,11 +9,11 @@ import pytest
 import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
-from service import keys
 from service.app import open_store
 from service.database.job_tables import job_items, result_files, results, uploads
 from service.settings import Settings
-from service.store import Store
+from service.store import keys
+from service.store.store import Store
 
 from .conftest import PENDULUM, TREE, make_client
 from .databases import fresh

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from fastapi.testclient import TestClient
 
-from service.analyses.numbers import ANALYSES
 from service.app import open_store
+from service.models.numbers import ANALYSES
 from service.settings import Limits, Settings, SettingsError, from_environment
 
 from .conftest import PENDULUM, TREE, make_client

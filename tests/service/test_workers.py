@@ -15,7 +15,7 @@ from typing import Any
 import httpx2
 import pytest
 
-from service.cache import Cache
+from service.content.cache import Cache
 
 from .conftest import PENDULUM, TREE
 from .farm import Server, running

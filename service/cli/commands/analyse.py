@@ -9,13 +9,13 @@ from typing import Annotated, Any
 
 import typer
 
-from service.analyses.formulas import OPTIONS, QUANTITIES
-from service.analyses.numbers import ANALYSES
 from service.cli import completion
 from service.cli.choices import FORMS, NAME, Form, Format
 from service.cli.documents import is_document
 from service.cli.numbers import Out, Tree, Wanted, numbers
 from service.cli.options import Json, Server, with_more, with_server
+from service.models.formulas import OPTIONS, QUANTITIES
+from service.models.numbers import ANALYSES
 from substructures.client.steps import step
 from substructures.errors import meant
 

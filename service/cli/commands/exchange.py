@@ -13,7 +13,7 @@ import typer
 from service.cli.options import Json, Private, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.progress import follow
-from service.viewer import PRIVATE
+from service.messages.viewer import PRIVATE
 from substructures.client import Client
 from substructures.errors import listed
 

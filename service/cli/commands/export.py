@@ -8,13 +8,13 @@ from typing import Annotated
 
 import typer
 
-from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
 from service.cli import completion
 from service.cli.choices import one_of
 from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.tree_files import coupled_source, part_or_tree
+from service.models.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
 from service.settings import Limits
 from substructures.client.steps import step
 from substructures.part.part import Part

@@ -10,13 +10,13 @@ from typing import Annotated
 
 import typer
 
-from service import keys
 from service.cli.options import Json, Store, settings
 from service.cli.output import print_json, table
 from service.database.connections import Connection, Database, DatabaseError
+from service.messages.viewer import OPEN, SCOPES
 from service.queries.common import now
 from service.queries.keys import ApiKey, list_keys
-from service.viewer import OPEN, SCOPES
+from service.store import keys
 
 Id = Annotated[str, typer.Argument(metavar="ID", parser=lambda text: _id(text))]
 

@@ -6,9 +6,9 @@ from typing import Annotated, Literal
 
 import typer
 
-from service import logs
 from service.cli.options import Store, settings
 from service.cli.output import shipped
+from service.http import logs
 from service.server import serve as serve_with
 from service.server import work
 

@@ -6,8 +6,8 @@ import logging
 from collections.abc import Mapping
 from typing import Any
 
-from service.integrity import CheckedBlobs
-from service.jobs.engine import Outcome
+from service.content.integrity import CheckedBlobs
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.analyse import analysis_kind
 from service.jobs.kinds.assemble import ASSEMBLE
 from service.jobs.kinds.choices import combinations
@@ -21,7 +21,7 @@ from service.jobs.kinds.mirror import MIRROR, MIRROR_KIND
 from service.jobs.kinds.requested import REQUESTED
 from service.jobs.kinds.upgrade import UPGRADE
 from service.jobs.kinds.verify import VERIFY
-from service.refusals import Refused, known_refusal, problem
+from service.messages.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram, among, meant

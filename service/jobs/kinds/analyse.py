@@ -14,15 +14,15 @@ from typing import Any
 
 import orjson
 
-from service.analyses.numbers import ANALYSES
-from service.analyses.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
-from service.refusals import Refused, problem
+from service.messages.refusals import Refused, problem
+from service.models.numbers import ANALYSES
+from service.models.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.errors import InvalidDocument, meant

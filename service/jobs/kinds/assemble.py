@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from service.cache import Cache
+from service.content.cache import Cache
+from service.content.derivation import software
+from service.content.summaries import part_content, tree_summary
 from service.database.packed import pack
-from service.derivation import software
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, admitted, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
-from service.refusals import NotDerived
+from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from functools import lru_cache
 from typing import Any
 
-from service.cache import Cache
-from service.integrity import reading
+from service.content.cache import Cache
+from service.content.integrity import reading
 from service.jobs.kinds.library import StoredTree
 from substructures.documents import read_json
 from substructures.part.certificate import not_judged

@@ -6,13 +6,13 @@ from collections.abc import Collection, Iterator
 from functools import lru_cache
 from typing import Any
 
-from service.jobs.engine import Outcome
+from service.content.summaries import part_content
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, parted
 from service.jobs.kinds.library import Library
 from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from service.summaries import part_content
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph

@@ -17,8 +17,8 @@ from typing import Any
 
 import numpy as np
 
-from service.cache import Cache
-from service.jobs.engine import Outcome
+from service.content.cache import Cache
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree

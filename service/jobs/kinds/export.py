@@ -15,8 +15,15 @@ from dataclasses import replace
 from functools import lru_cache
 from typing import Any
 
-from service.analyses.binding import DEFAULTS, bindings, unit_faults
-from service.analyses.exporting import (
+from service.jobs.engines.engine import Outcome
+from service.jobs.kinds.assemble import tree_parts
+from service.jobs.kinds.decoded import part_of, summary_of
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_part, known_tree
+from service.jobs.kinds.library import Library
+from service.jobs.kinds.trees import pinned, source_of
+from service.messages.refusals import Refused
+from service.models.binding import DEFAULTS, bindings, unit_faults
+from service.models.exporting import (
     ALL_TARGETS,
     DEFAULT_OPTIONS,
     FMI,
@@ -30,10 +37,10 @@ from service.analyses.exporting import (
     read_item,
     tree_package,
 )
-from service.analyses.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
-from service.analyses.grouping import QUANTITIES as GROUPED
-from service.analyses.grouping import grouped_text
-from service.analyses.printing import (
+from service.models.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
+from service.models.grouping import QUANTITIES as GROUPED
+from service.models.grouping import grouped_text
+from service.models.printing import (
     Style,
     check_quantity,
     described,
@@ -45,14 +52,7 @@ from service.analyses.printing import (
     with_numbers,
     with_options,
 )
-from service.analyses.source import Source
-from service.jobs.engine import Outcome
-from service.jobs.kinds.assemble import tree_parts
-from service.jobs.kinds.decoded import part_of, summary_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_part, known_tree
-from service.jobs.kinds.library import Library
-from service.jobs.kinds.trees import pinned, source_of
-from service.refusals import Refused
+from service.models.source import Source
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step

@@ -6,10 +6,10 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 
-from service.integrity import missing, reading
-from service.jobs.engine import Outcome
+from service.content.integrity import missing, reading
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree, StoredVersion
-from service.refusals import LongWork
+from service.messages.refusals import LongWork
 from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits

@@ -13,7 +13,7 @@ class StoredVersion:
 
     The blob of ``digest`` is the canonical definition (:meth:`substructures.part.definition.Definition.canonical`), the
     blob of ``program`` the canonical program, which ``software`` derived; ``recipe``: of a published tree
-    (:mod:`service.derivation`).
+    (:mod:`service.content.derivation`).
     """
 
     name: str

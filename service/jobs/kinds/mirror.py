@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import secrets
 
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields
 from service.jobs.kinds.library import Library
-from service.refusals import Refused
+from service.messages.refusals import Refused
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.sources import SCHEMES, SETTING, read_source

@@ -6,8 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
-from service.cache import Cache
-from service.jobs.engine import Outcome
+from service.content.cache import Cache
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import model_of, part_of
 from service.jobs.kinds.kind import Blobs

@@ -6,15 +6,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from service.analyses.printing import Style, names_of_steps, text_of, with_numbers
-from service.jobs.engine import Outcome
+from service.content.summaries import part_content
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, admitted
 from service.jobs.kinds.reported import difference_of, report_of
+from service.models.printing import Style, names_of_steps, text_of, with_numbers
 from service.schemas.jobs import ItemDocument
 from service.schemas.publishing import PublishRequest
-from service.summaries import part_content
 from substructures.documents import read_model
 from substructures.errors import InvalidArgument
 from substructures.export import interface_of_part

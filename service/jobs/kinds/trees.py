@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from service.analyses.source import Source
-from service.cache import Cache
+from service.content.cache import Cache
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import model_of, pinned_model
 from service.jobs.kinds.kind import Blobs, known_tree
 from service.jobs.kinds.library import Library
+from service.models.source import Source
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json

@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from service.content.derivation import derived_part, software
+from service.content.improvement import improvement
+from service.content.integrity import reading
+from service.content.summaries import part_content, tree_summary
 from service.database.packed import pack
-from service.derivation import derived_part, software
-from service.improvement import improvement
-from service.integrity import reading
-from service.jobs.engine import Outcome
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree, recipe_member
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from service.summaries import part_content, tree_summary
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program

@@ -7,7 +7,7 @@ from typing import Any
 
 from pydantic import BaseModel
 
-from service.analyses.requests import arguments
+from service.models.requests import arguments
 from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program

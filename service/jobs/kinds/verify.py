@@ -8,9 +8,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from service.derivation import derived_part
-from service.integrity import reading
-from service.jobs.engine import Outcome
+from service.content.derivation import derived_part
+from service.content.integrity import reading
+from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.kind import (
     Blobs,

@@ -1,0 +1,63 @@
+"""Keyset pages: opaque tokens that say where the next page begins."""
+
+from __future__ import annotations
+
+import base64
+import binascii
+import hashlib
+from typing import Any
+
+import orjson
+
+from service.messages.refusals import Refused, unprocessable
+from service.settings import Limits
+
+
+def write_token(search: object, *position: str | int) -> str:
+    """The token of the page that begins after ``position`` in the results of ``search``."""
+    return base64.urlsafe_b64encode(orjson.dumps([_mark(search), *position])).decode().rstrip("=")
+
+
+def read_token(search: object, token: str | None, *kinds: type) -> tuple[Any, ...] | None:
+    """The position, None without a token. Raises Refused 422 unless the token came from the same search.
+
+    A token only ever selects rows by comparison with bound values, so it needs no signature.
+    """
+    if token is None:
+        return None
+    try:
+        mark, *position = _read(token)
+    except (ValueError, TypeError, binascii.Error):
+        mark, position = "", []
+    if mark != _mark(search) or [type(value) for value in position] != list(kinds):
+        raise of_no_page()
+    return tuple(position)
+
+
+def of_no_page() -> Refused:
+    """What is said of a token that is of no page."""
+    return unprocessable("page-token", "this page_token belongs to no page of this search", "/query/page_token")
+
+
+def is_of(search: object, token: str) -> bool:
+    """Whether a token came from a search."""
+    try:
+        return bool(_read(token)[0] == _mark(search))
+    except (ValueError, TypeError, binascii.Error, IndexError):
+        return False
+
+
+def _read(token: str) -> Any:
+    return orjson.loads(base64.urlsafe_b64decode(token + "=" * (-len(token) % 4)))
+
+
+def _mark(search: object) -> str:
+    return hashlib.sha256(repr(search).encode()).hexdigest()[:16]
+
+
+def limited(page_size: int, limits: Limits) -> int:
+    """The page size if it is allowed. Raises Refused 422."""
+    if page_size > limits.page_size:
+        detail = f"page_size is at most {limits.page_size}"
+        raise unprocessable("page-size", detail, "/query/page_size", limit=limits.page_size)
+    return page_size

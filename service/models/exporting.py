@@ -1,0 +1,195 @@
+"""Exports: quantities of trees and parts as files of a target, one file as it is, several as a zip."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from service.models.binding import DEFAULTS, Parameters, bound, bound_names
+from substructures.errors import InvalidArgument
+from substructures.export import (
+    TARGETS,
+    Exported,
+    Interface,
+    archive,
+    exported_model,
+    exported_part,
+    files,
+    interface_of_model,
+    interface_of_part,
+)
+from substructures.export.exported import check_name
+from substructures.export.stages import staged
+from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
+from substructures.expr.program import Program
+from substructures.part.part import Part
+from substructures.quantities.evaluation import Sources
+from substructures.quantities.quantity import FORWARD, askable
+from substructures.tree.document import TreeSpec
+
+#: prefix of functions where none is given
+NAME = "model"
+ZIP = "application/zip"
+_MEDIA = {
+    "json": "application/json",
+    "zip": ZIP,
+    "fmu": ZIP,
+    "tex": "application/x-latex",
+    "xhtml": "application/xhtml+xml",
+}
+#: quantities of a tree and of a part where none are named; those that are not stored are left out
+OF_TREES, OF_PARTS = ("metric", "christoffel", "forces"), ("metric", "christoffel")
+
+
+#: a tree as a model to be simulated, with its energies and the poses of its frames where nothing is named
+FMU, FMU2 = "fmu", "fmu2"
+MOVING = (FMU, "simulink")  # targets that need accelerations
+#: versions of FMUs, precisions; the first ones are the defaults
+FMI, PRECISIONS = ("3.0", "2.0"), ("double", "single")
+DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "stages": False}
+OF_FMUS = ("metric", "forces", "kinetic_energy", "potential_energy", "position", "rotation")
+#: formulas to be read, which have the independent elements anyway
+WRITTEN = ("text", "latex", "mathml")
+#: the mechanism itself as a file, beside the targets that are functions
+URDF = "urdf"
+ALL_TARGETS = (*(name for name in TARGETS if name != FMU2), URDF)
+#: a tree document and its parts by instance
+Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
+
+
+@dataclass(frozen=True, slots=True)
+class ExportRequest:
+    """``together``: also a function with all quantities; ``packed``: independent elements alone; ``fmi``: the version
+    of an FMU; ``precision`` of the functions in C; ``stages``: what depends on parameters alone apart."""
+
+    target: str
+    quantities: tuple[str, ...] = ()
+    name: str = ""
+    bind: str = ""
+    together: bool = False
+    packed: bool = False
+    fmi: str = FMI[0]
+    precision: str = PRECISIONS[0]
+    stages: bool = False
+
+    @property
+    def identity(self) -> tuple[str, ...]:
+        """What an ETag depends on beside the content."""
+        flags = str(self.together), str(self.packed), self.fmi, self.precision, str(self.stages)
+        return "export", self.target, ",".join(self.quantities), self.name, self.bind, *flags
+
+
+@dataclass(frozen=True, slots=True)
+class Package:
+    """A file: its name, media type and content."""
+
+    name: str
+    media: str
+    data: bytes
+
+
+def prefix(wanted: str, called: str) -> str:
+    """The prefix of functions: what is wanted, or the name of the tree or part where it can be one."""
+    if wanted:
+        return wanted
+    try:
+        return check_name(called.replace("-", "_"))
+    except InvalidArgument:
+        return NAME
+
+
+def tree_package(
+    sources: Sources, called: str, reference: str, digest: str, request: ExportRequest, limit: int, document: Document
+) -> Package:
+    """A tree for a target. Raises InvalidArgument, InvalidDocument, TooLarge, MissingValue, Refused 422 for bad
+    bindings. ``document``: what the tree is made of, where the target asks for it.
+    """
+    _check(request)
+    parameters = sources.model.parameters
+    if request.target == URDF:
+        name, spec_and_parts = _urdf_name(request, called), document()
+        return _urdf(name, urdf_of_tree(*spec_and_parts, name, reference, digest, _all_numbers(parameters, request)))
+    known = askable(sources.model.program.outputs)
+    chosen = OF_FMUS if request.target == FMU else OF_TREES
+    names = request.quantities or tuple(name for name in chosen if name in known)
+    if request.target in MOVING:
+        names = tuple(dict.fromkeys((FORWARD, *names)))
+    interface = _left(interface_of_model(sources.model, reference, digest), request)
+
+    def numbers(program: Program) -> Program:
+        """The program with numbers in place of parameters."""
+        return bound(program, parameters, request.bind)
+
+    name, flags = prefix(request.name, called), (request.together, request.packed)
+    exported = exported_model(sources, interface, names, name, numbers, *flags)
+    return _package(exported, request, limit)
+
+
+def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:
+    """A part for a target, as it stands alone. Raises as :func:`tree_package`."""
+    _check(request)
+    if request.target == URDF:
+        name = _urdf_name(request, part.name)
+        return _urdf(name, urdf_of_part(part, name, reference, digest, _all_numbers(part.parameters, request)))
+    names = request.quantities or tuple(name for name in OF_PARTS if name in part.program.outputs)
+    interface = _left(interface_of_part(part, reference, digest), request)
+
+    def numbers(program: Program) -> Program:
+        """The program with numbers in place of parameters."""
+        return bound(program, part.parameters, request.bind)
+
+    name, flags = prefix(request.name, part.name), (request.together, request.packed)
+    exported = exported_part(part, interface, names, name, numbers, *flags)
+    return _package(exported, request, limit)
+
+
+def _check(request: ExportRequest) -> None:
+    given = {
+        name: getattr(request, name) for name in ("quantities", "together", "packed", "fmi", "precision", "stages")
+    }
+    field = misplaced(request.target, given)
+    if field is not None:
+        raise InvalidArgument.at(f"/{field}", "not-of-target", f"target={request.target} does not take '{field}'")
+
+
+def _urdf_name(request: ExportRequest, called: str) -> str:
+    """The name of the robot. Raises InvalidArgument."""
+    return prefix(request.name, called)
+
+
+def _all_numbers(parameters: Parameters, request: ExportRequest) -> Callable[[Program], Program]:
+    """Puts numbers in place of all parameters: as asked for, else defaults."""
+    return lambda program: bound(program, parameters, f"{request.bind},{DEFAULTS}")
+
+
+def _urdf(name: str, text: bytes) -> Package:
+    return Package(f"{name}.urdf", f"{MEDIA_TYPE}; charset=utf-8", text)
+
+
+def _left(interface: Interface, request: ExportRequest) -> Interface:
+    return interface.bound(bound_names(interface.vectors["p"].with_default, request.bind))
+
+
+def _package(exported: Exported, request: ExportRequest, limit: int) -> Package:
+    target = FMU2 if request.target == FMU and request.fmi == "2.0" else request.target
+    made = files(replace(staged(exported) if request.stages else exported, precision=request.precision), target, limit)
+    if len(made) > 1:
+        return Package(f"{exported.name}_{request.target}.zip", ZIP, archive(made))
+    ((name, data),) = made.items()
+    return Package(name, _MEDIA.get(name.rpartition(".")[2], "text/plain; charset=utf-8"), data)
+
+
+def read_item(item: Mapping[str, Any]) -> ExportRequest:
+    """The export that an item of a job asks for; its fields are checked already."""
+    given = tuple(item["quantities"])
+    more = {name: item[name] for name in ("packed", "fmi", "precision", "stages") if name in item}
+    return ExportRequest(item["target"], given, item["name"], item["bind"], item["together"], **more)
+
+
+def misplaced(target: str, given: Mapping[str, Any]) -> str | None:
+    """The first field, of those that differ from their defaults, that a target does not take."""
+    taken = {"fmi": ("fmu",), "precision": ("c",), "stages": ("c",)}
+    without = {URDF: ("quantities", "together", "packed"), **dict.fromkeys(WRITTEN, ("packed",))}
+    fields = [*without.get(target, ()), *(name for name, targets in taken.items() if target not in targets)]
+    return next((name for name in fields if given[name] and given[name] != DEFAULT_OPTIONS.get(name)), None)

@@ -1,0 +1,38 @@
+"""What is left of the equations for small changes: of the motion, and of parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.models.formulas.entry import Made, Options, Quantity
+from service.models.source import Source
+from substructures.analysis.equations.formulas import inputs_of, multipliers_of
+from substructures.analysis.equations.perturbation import perturbation, state_space
+from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
+from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
+
+
+def _perturbation(source: Source, _: Options) -> Made:
+    members: dict[str, Any] = {"coordinates": list(source.model.coordinates), "inputs": inputs_of(source.model)}
+    if source.model.closures:
+        members["multipliers"] = multipliers_of(source.model)
+    return Made(perturbation(source.model), members)
+
+
+def _state_space(source: Source, options: Options) -> Made:
+    model, outputs, inputs = source.model, options.get("outputs", ()), options.get("inputs")
+    state = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    members = {"state": state, "inputs": list(inputs or inputs_of(model)), "expressions": list(outputs)}
+    return Made(state_space(model, outputs, inputs), members)
+
+
+def _sensitivity(source: Source, options: Options) -> Made:
+    parameters = options.get("parameters", tuple(source.model.parameters))
+    return Made(sensitivity_formulas(source.model, parameters, options.get("quantities", VARIED)))
+
+
+QUANTITIES = {
+    "perturbation": Quantity(_perturbation),
+    "state_space": Quantity(_state_space, ("inputs", "outputs")),
+    "parameter_sensitivity": Quantity(_sensitivity, ("parameters", "quantities")),
+}

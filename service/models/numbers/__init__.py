@@ -1,0 +1,27 @@
+"""Analyses in numbers, by the names of their endpoints: the body of a request in, a result out."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from substructures.late import Table
+
+if TYPE_CHECKING:  # what an analysis needs is imported when it is first asked for
+    from service.models.numbers.analysis import Analysis
+
+_MODULES = {
+    "abbreviations": "abbreviations",
+    "simulations": "motions",
+    "sensitivities": "motions",
+    "linearisations": "stability",
+    "equilibria": "stability",
+    "steady-motions": "stability",
+    "root-loci": "stability",
+    "curvatures": "geometry",
+    "cost-gradients": "control",
+    "optimal-controls": "control",
+    "loop-states": "loops",
+    "excitations": "identification",
+    "identifications": "identification",
+}
+ANALYSES: Table[Analysis] = Table("ANALYSES", {name: f"{__name__}.{module}" for name, module in _MODULES.items()})

@@ -1,0 +1,57 @@
+"""Linear equations about states, equilibria, steady motions and their stability."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.models.numbers.analysis import Analysis, check_size
+from service.models.requests import arguments
+from service.models.results import DRAWN
+from service.models.source import Source
+from service.schemas.stability import (
+    EquilibriaRequest,
+    LinearisationRequest,
+    RootLocusRequest,
+    SteadyMotionsRequest,
+)
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.root_locus import root_locus
+from substructures.analysis.stability.steady_motions import steady_motions
+from substructures.quantities.states import read_states
+
+
+def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
+    n = source.model.dof
+    inputs = len(source.model.input_names)
+    given = {"q": read.q, "qd": read.qd, "qdd": read.qdd}
+    states = read_states(source.model, given, source.limits.states).count
+    check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))
+    return linearise(source.model, **arguments(read))
+
+
+ANALYSES = {
+    "linearisations": Analysis(
+        LinearisationRequest,
+        _linearisation,
+        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
+        "of closed loops in independent coordinates, about one state",
+    ),
+    "equilibria": Analysis(
+        EquilibriaRequest,
+        lambda source, read, _: equilibria(source.model, **arguments(read)),
+        "All equilibria that are found, each with its vibrations and stability; also of closed loops",
+    ),
+    "steady-motions": Analysis(
+        SteadyMotionsRequest,
+        lambda source, read, _: steady_motions(source.model, **arguments(read)),
+        "Steady motions: cyclic coordinates at constant rates, all others still; each with its stability and why",
+    ),
+    "root-loci": Analysis(
+        RootLocusRequest,
+        lambda source, read, _: root_locus(source.model, **arguments(read)),
+        "Eigenvalues of an equilibrium over a parameter",
+        DRAWN,
+    ),
+}

@@ -1,0 +1,1 @@
+"""The store as one thing: database, caches, kernels, keys, quotas, events."""

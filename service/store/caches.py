@@ -1,0 +1,59 @@
+"""What is kept decoded in memory, by kind. Content never changes, so a cached value is never out of date; programs
+that take the place of others (:mod:`service.operations.upgrade`) have keys of their own."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from service.content.cache import Cache
+from service.messages.answers import Answer
+from substructures.expr.program import Program
+from substructures.part.part import Part
+from substructures.quantities.from_parts import NumericTree
+from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
+
+TREES = 1000  # with what judges their values
+PICTURES = 16 * 2**20  # characters
+BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
+PRINTED = 32 * 2**20  # bytes of formulas as they were sent
+SECTIONS = 8 * 2**20  # characters of formulas on pages
+
+
+@dataclass(frozen=True)
+class Caches:
+    """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
+    model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
+    digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
+    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
+    """
+
+    parts: Cache[Part]
+    models: Cache[Model]
+    derived: Cache[Program]
+    of_parts: Cache[Any]  # of substructures.quantities.of_parts
+    numeric_trees: Cache[NumericTree]
+    plausibilities: Cache[Plausibility]
+    evaluations: Cache[Any]  # of service.operations.at_hand
+    pictures: Cache[str]
+    blobs: Cache[bytes]
+    printed: Cache[Answer]
+    sections: Cache[str]
+
+    @classmethod
+    def for_nodes(cls, nodes: int) -> Caches:
+        """Caches that together hold programs of about so many operations."""
+        return cls(
+            parts=Cache(nodes // 4, lambda part: len(part.program)),
+            models=Cache(nodes // 4, lambda model: len(model.program)),
+            derived=Cache(nodes // 4, len),
+            of_parts=Cache(nodes // 8, lambda found: len(found.program)),
+            numeric_trees=Cache(nodes // 8, NumericTree.weight),
+            plausibilities=Cache(TREES, lambda _: 1),
+            evaluations=Cache(nodes // 8, lambda found: found.weight()),
+            pictures=Cache(PICTURES, len),
+            blobs=Cache(BLOBS, len),
+            printed=Cache(PRINTED, lambda answer: len(answer.body)),
+            sections=Cache(SECTIONS, len),
+        )
