@@ -1,6 +1,6 @@
 """Seeded random mechanisms as definitions, first all in numbers, then with parameters in the place of some of them.
 
-Everything is plain data in the form of contract.md, section 1. The numeric definition is what the independent
+Everything is plain data in the form of HTTP contract, section 1. The numeric definition is what the independent
 computations of the tests read; the definition with parameters has the same values as defaults.
 """
 

@@ -46,7 +46,7 @@ def _command(command: Any, name: str) -> Iterator[str]:
     words = [_argument(each) for each in shown if each.param_type_name == "argument"]
     yield from ("", f"`substructures {' '.join((name, *words))}`")
     if " " in name:
-        yield from ("", _sentence(command.help or ""))
+        yield from ("", *wrap(_sentence((command.help or "").split("\b")[0]), 118))
     options = [each for each in shown if each.param_type_name == "option" and not each.hidden]
     if options:
         yield ""

@@ -9,13 +9,14 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parent.parent
-FOLDERS = ("substructures", "service", "migrations", "tests", "benchmarks")
-CONTRACT = "contract.md"  # which the science calls the HTTP contract, as it may not name a page of the service
+FOLDERS = ("substructures", "service", "migrations", "tests", "benchmarks", "docs")
+HTTP = ROOT / "docs" / "reference" / "http"
+CONTRACT = "HTTP contract"  # the pages of that folder together
 NUMBER = r"\d+(?:\.\d+)?"
 CITATION = re.compile(
     rf"(?P<page>[A-Za-z][\w-]*\.md|HTTP\s+contract)`?,\s+(?:#\s*)?sections?\s+(?:#\s*)?(?P<numbers>{NUMBER}(?:(?:,|\s+and|\s+to)\s+{NUMBER})*)"
 )
-HEADING = re.compile(r"#{2,} (\d+(?:\.\d+)?)\.? |(\d+)\. ")
+HEADING = re.compile(r"#+ (\d+(?:\.\d+)?)\.? |(\d+)\. ")
 
 
 def sections(text: str) -> set[str]:
@@ -36,10 +37,10 @@ def sections(text: str) -> set[str]:
 
 
 def pages() -> dict[str, set[str]]:
-    """The sections of every page, by its name."""
-    found = [path for folder in FOLDERS for path in (ROOT / folder).rglob("*.md")]
-    assert len({path.name for path in found}) == len(found), "two pages have the same name"
-    return {path.name: sections(path.read_text()) for path in found}
+    """The sections of every page that is cited by its name, and of the HTTP contract."""
+    found = [path for path in (ROOT / "docs").rglob("*.md") if path.parent.name in ("explanation", "reference")]
+    contract = set[str]().union(*(sections(path.read_text()) for path in HTTP.glob("*.md")))
+    return {path.name: sections(path.read_text()) for path in found} | {CONTRACT: contract}
 
 
 def citations(text: str) -> Iterator[tuple[str, str]]:
@@ -70,14 +71,14 @@ def test_every_citation_leads_somewhere() -> None:
 
 def test_every_page_that_is_named_exists() -> None:
     """Also without a section; the pages outside of the folders are those of every repository."""
-    known = {*pages(), "README.md", "CHANGELOG.md", "CONTRIBUTING.md"}
+    known = {path.name for path in (*(ROOT / "docs").rglob("*.md"), *ROOT.glob("*.md"))}
     for path in sources():
         named = set(re.findall(r"(?<![\w{}*.-])[A-Za-z][\w-]*\.md\b", path.read_text()))
         assert named <= known, f"{path.relative_to(ROOT)}: {named - known}"
 
 
 def test_the_science_names_no_page_of_the_service() -> None:
-    above = {path.name for path in (ROOT / "service").rglob("*.md")}
+    above = {"tables.md", *(path.name for path in HTTP.glob("*.md"))}
     for path in sources():
         if path.is_relative_to(ROOT / "substructures"):
             assert not above & set(re.findall(r"[\w-]+\.md", path.read_text())), path
@@ -93,8 +94,7 @@ def test_the_science_names_no_page_of_the_service() -> None:
         ("notation.md, sections 3 and 77", ["notation.md, section 77"]),
         ("(notation.md, section 8.99)", ["notation.md, section 8.99"]),
         ("mathematics.md, section 5", ["mathematics.md, section 5"]),
-        ("`contract.md, section 99`", ["contract.md, section 99"]),
-        ("the HTTP contract, section 99", ["contract.md, section 99"]),
+        ("the HTTP contract, section 99", ["HTTP contract, section 99"]),
         ("the HTTP\ncontract, section 4", []),
     ],
 )
@@ -109,13 +109,13 @@ def test_points_of_lists_and_headings_are_sections() -> None:
 
 def test_the_readme_links_to_what_is_there() -> None:
     links = re.findall(r"\]\(([^)#:]+)\)", (ROOT / "README.md").read_text())
-    assert {"substructures/notation.md", "service/contract.md"} <= set(links)
+    assert {"docs/explanation/notation.md", "docs/reference/http/index.md"} <= set(links)
     assert all((ROOT / link).exists() for link in links), links
 
 
 def test_the_pages_say_what_people_look_for() -> None:
     """The equation of motion, Gamma and Q at the top of the notation."""
-    top = (ROOT / "substructures" / "notation.md").read_text().split("\n## 1.")[0]
+    top = (ROOT / "docs" / "explanation" / "notation.md").read_text().split("\n## 1.")[0]
     assert "g_ab q''^b + Gamma_abc q'^b q'^c = Q_a" in top
     assert "Gamma_abc = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc)" in top
     assert re.search(r"Q_a = .*gravity.*springs and dampers.*actuator", top, re.DOTALL)

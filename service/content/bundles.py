@@ -4,7 +4,7 @@
 
     bundle.json                           format, version, and of every part name, digest, program, folder, files
     puma560@0123456789ab/definition.json  canonical bytes, whose SHA-256 is the digest
-    puma560@0123456789ab/program          canonical bytes of the program (substructures/expr/format.md)
+    puma560@0123456789ab/program          canonical bytes of the program (docs/reference/format.md)
     puma560@0123456789ab/certificate.json
 
 Of a bundle that is read only names and definitions are taken: formulas are derived of these, and a program that comes

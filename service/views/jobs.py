@@ -40,7 +40,7 @@ def job_path(identifier: str) -> str:
 
 
 def job_view(job: Job, progress: Progress) -> dict[str, Any]:
-    """A job (contract.md, section 5)."""
+    """A job (HTTP contract, section 5)."""
     path = job_path(job.id)
     return {
         "id": job.id,

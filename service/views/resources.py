@@ -38,7 +38,7 @@ def tree_warnings(tree: Tree) -> Sequence[Mapping[str, str]]:
 def version_view(
     version: Version, aliases: Sequence[str], withdrawn: Sequence[Withdrawn] | None = None
 ) -> dict[str, Any]:
-    """A version (contract.md, section 2); ``withdrawn``: of the parts that it is built of, where that was looked up."""
+    """A version (HTTP contract, section 2); ``withdrawn``: of the parts that it is built of, where that was looked up."""
     path = version_path(version)
     built_of = {} if withdrawn is None else {"withdrawn": withdrawn_view(withdrawn)}
     return built_of | {
@@ -149,7 +149,7 @@ def withdrawn_view(withdrawn: Sequence[Withdrawn]) -> list[dict[str, Any]]:
 
 
 def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
-    """The JSON of a tree (contract.md, section 3): names and links, then the stored summary as it is."""
+    """The JSON of a tree (HTTP contract, section 3): names and links, then the stored summary as it is."""
     path = tree_path(tree)
     quantities = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
     names = {

@@ -18,7 +18,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.operations import ARITY, KINDS, MAX_ELEMENTS, SYMMETRIES, VERSION
 from substructures.expr.program import Program
 
-PAGE = (Path(substructures.__file__).parent / "expr" / "format.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "format.md").read_text()
 EXAMPLE: dict[str, Any] = json.loads(PAGE.split("```json\n")[1].split("```")[0])
 
 

@@ -1,4 +1,4 @@
-"""``/v1/substructures``: submit, refer, search, alias, yank (contract.md, section 2)."""
+"""``/v1/substructures``: submit, refer, search, alias, yank (HTTP contract, section 2)."""
 
 from __future__ import annotations
 

@@ -22,7 +22,10 @@ from service.settings import Limits
 from substructures.quantities.quantity import ANALYSIS, PART, TABLE, Quantity
 
 FOLDER = Path(service.__file__).parent
-PAGE = (FOLDER / "contract.md").read_text()
+PAGES = Path(__file__).parents[2] / "docs" / "reference" / "http"
+INDEX = (PAGES / "index.md").read_text()
+#: all pages, in the order of their sections
+PAGE = "\n\n".join((PAGES / name).read_text() for name in re.findall(r"\]\((\w+\.md)\)", INDEX))
 DOCUMENT = json.loads((FOLDER / "openapi.json").read_text())
 SCHEMAS = DOCUMENT["components"]["schemas"]
 REQUEST = re.compile(r"```http (\d{3})\n([A-Z]+) (\S+)\n((?:[A-Z][A-Za-z-]+: [^\n]*\n)*)(?:\n(.*?))?```", re.DOTALL)
@@ -52,7 +55,7 @@ def examples() -> list[Example]:
 
 def section(number: int) -> str:
     """The text of a section."""
-    return re.split(r"^## ", PAGE, flags=re.MULTILINE)[number]
+    return re.split(r"^# (?=\d+\. )", PAGE, flags=re.MULTILINE)[number]
 
 
 def spans(text: str) -> set[str]:

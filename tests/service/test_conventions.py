@@ -1,4 +1,4 @@
-"""Conventions of all endpoints (contract.md, section 6)."""
+"""Conventions of all endpoints (HTTP contract, section 6)."""
 
 from __future__ import annotations
 

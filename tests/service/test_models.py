@@ -1,4 +1,4 @@
-"""Formulas of coupled trees: quantities, formats, binding (contract.md, section 4)."""
+"""Formulas of coupled trees: quantities, formats, binding (HTTP contract, section 4)."""
 
 from __future__ import annotations
 

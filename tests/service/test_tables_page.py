@@ -19,7 +19,7 @@ from service.store.store import Store
 from substructures import catalogue
 from substructures.documents import write_json
 
-PAGE = (Path(service.__file__).parent / "tables.md").read_text()
+PAGE = (Path(__file__).parents[2] / "docs" / "reference" / "tables.md").read_text()
 READER = PAGE.split("```python\n")[1].split("```")[0]
 
 

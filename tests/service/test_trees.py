@@ -1,4 +1,4 @@
-"""``/v1/trees`` and couplings (contract.md, section 3)."""
+"""``/v1/trees`` and couplings (HTTP contract, section 3)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Units and warnings over HTTP, on the pages and on the command line (contract.md, sections 1 to 5)."""
+"""Units and warnings over HTTP, on the pages and on the command line (HTTP contract, sections 1 to 5)."""
 
 from __future__ import annotations
 

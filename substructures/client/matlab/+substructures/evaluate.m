@@ -4,7 +4,7 @@ function answer = evaluate (tree, quantities, q, varargin)
   %   answer = substructures.evaluate ("cell", {"metric", "forces"}, q)
   %   answer = substructures.evaluate ("cell", "bias", q, "qd", qd, "parameters", values)
   %
-  % q and qd are 1 x n, or N x n with a row for each state. Further fields as in contract.md, section 4.
+  % q and qd are 1 x n, or N x n with a row for each state. Further fields as in the HTTP contract, section 4.
   request = struct ('q', {rows(q)});
   request.quantities = quantities;
   for k = 1:2:numel (varargin)
