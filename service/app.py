@@ -13,10 +13,9 @@ from sqlalchemy.exc import DBAPIError
 from service import __version__
 from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
-from service.http.away import Away
 from service.http.middleware import Conventions
 from service.http.not_derived import DerivesFirst
-from service.http.short_way import ShortWay
+from service.jobs.pool import InProcess
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
 from service.pages import account
@@ -93,11 +92,11 @@ def open_store(
     kept = kept or Kept()
     database = Database(settings.database, claim=kept.claim)
     label = str(kept.number) if settings.processes > 1 else ""
-    store = Store(settings, database, Metrics(label))
+    store = Store(settings, database, Metrics(label), InProcess())
     try:
         require(store)
         if kept.number == 0:
-            _prepare(store, kept.is_start or (settings.processes == 1 and not kept.path), progress)
+            _prepare(store, kept.is_start or settings.processes == 1, progress)
         yield store
     finally:
         store.close()
@@ -116,11 +115,11 @@ def _prepare(store: Store, is_alone: bool, progress: Told) -> None:
         raise DatabaseError(f"cannot use the database {database.url}: {told(error)}") from None
 
 
-def create_app(store: Store, away: Away | None = None) -> FastAPI:
-    """The app that serves a store; ``away``: the process that does what takes long."""
+def create_app(store: Store) -> FastAPI:
+    """The app that serves a store."""
     hosts = (*store.settings.allowed_hosts, store.settings.host)
     app = bare_app(tuple(host.lower() for host in hosts), store.metrics)
-    app.state.store, app.state.away = store, away
+    app.state.store = store
     return app
 
 
@@ -136,11 +135,10 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics and the log are our own
         responses=openapi.PROBLEM,
     )
-    routers = [module.router for module in ROUTES]
+    routers = [models.evaluations, *(module.router for module in ROUTES)]  # what is asked for most is looked for first
     for router in routers:
         app.include_router(router)
     problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
-    app.add_middleware(ShortWay)
     app.add_middleware(DerivesFirst)
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
     return app

@@ -10,9 +10,11 @@ import hashlib
 import hmac
 import re
 import secrets
+from collections import OrderedDict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from datetime import timedelta
+from math import ceil
 from time import monotonic
 
 from service.database.connections import Connection
@@ -26,6 +28,7 @@ OWNER = r"[a-z0-9][a-z0-9-]{0,63}"
 DAYS = 36_500  # that a key may last
 REMEMBERED = 1000  # authorisations in memory
 SESSION = timedelta(hours=12)
+TRIES, TRIES_SECONDS = 10, 60.0  # wrong keys of an address at sign-in
 HEADER = "the header 'Authorization: Bearer sub_...'"
 
 
@@ -135,6 +138,35 @@ class Authorisations:
     def forget(self, given: Credentials) -> None:
         """Look it up the next time."""
         self._known.pop(_kept(given), None)
+
+
+class WrongKeys:
+    """A brake on guessing: after TRIES wrong keys of an address in a time no more of it are looked at until that is
+    over. ``addresses``: as many are remembered.
+    """
+
+    def __init__(self, addresses: int = REMEMBERED) -> None:
+        self._most = addresses
+        self._seen: OrderedDict[str, list[float]] = OrderedDict()
+
+    def require_few(self, address: str) -> None:
+        """Raise Refused 429 where there were too many of late."""
+        seen = self._of_late(address)
+        if len(seen) >= TRIES:
+            wait = max(1, ceil(seen[0] + TRIES_SECONDS - monotonic()))
+            detail = f"{TRIES} wrong keys came from this address in {TRIES_SECONDS:g} s; wait {wait} s"
+            raise Refused(429, "too-many-attempts", detail, headers={"Retry-After": str(wait)})
+
+    def note(self, address: str) -> None:
+        """One more."""
+        self._seen[address] = [*self._of_late(address), monotonic()]
+        self._seen.move_to_end(address)
+        if len(self._seen) > self._most:
+            self._seen.popitem(last=False)
+
+    def _of_late(self, address: str) -> list[float]:
+        since = monotonic() - TRIES_SECONDS
+        return [each for each in self._seen.get(address, []) if each > since]
 
 
 def _kept(given: Credentials) -> tuple[str, str]:

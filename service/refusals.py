@@ -11,7 +11,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import replace
 from http import HTTPStatus
 from typing import Any, Literal
 
@@ -19,6 +21,7 @@ from substructures.documents import pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed
 
 SHOWN = 20  # faults
+MEMBERS = ("type", "title", "status", "detail", "code", "errors")  # of every problem document
 
 
 class Refused(Exception):
@@ -104,3 +107,22 @@ def problem(refused: Refused, **request: str) -> dict[str, Any]:
         **counted,
         **refused.members,
     }
+
+
+def refused_of(document: Mapping[str, Any]) -> Refused:
+    """The refusal that a problem document tells of."""
+    faults = [Fault(each["pointer"], each["code"], each["message"]) for each in document["errors"]]
+    members = {name: value for name, value in document.items() if name not in MEMBERS}
+    return Refused(document["status"], document["code"], document["detail"], faults, **members)
+
+
+@contextmanager
+def moved(move: Callable[[str], str]) -> Iterator[None]:
+    """Faults that are found here, by this process or another one, have their pointers moved."""
+    try:
+        yield
+    except InvalidInput as error:
+        raise error.moved(move) from None
+    except Refused as error:
+        faults = [replace(fault, pointer=move(fault.pointer)) for fault in error.faults]
+        raise Refused(error.status, error.code, error.detail, faults, error.headers, **error.members) from None

@@ -8,7 +8,8 @@ that died before it listened.
 A server may be several processes. The first prepares the store, listens, and says how many there are to be; the parent
 starts the others then. All accept from the same sockets, each is started again for itself, and all end together. What
 the parent holds it hands to all: the sockets, and the file that is locked for the server as a whole (its claim).
-For each there is one more that computes for it (:mod:`service.http.away`), on sockets in a folder of their own.
+
+Told to end, they have some seconds for what they have begun; then they are killed, whatever they do.
 """
 
 from __future__ import annotations
@@ -21,13 +22,11 @@ import signal
 import socket
 import stat
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Sequence
 from contextlib import ExitStack, suppress
 from dataclasses import dataclass, field
-from pathlib import Path
 from selectors import EVENT_READ, DefaultSelector
 from typing import Any
 
@@ -40,8 +39,7 @@ logger = logging.getLogger(__name__)
 #: of a server: process of its parent, its number, descriptors of the channel to the parent, of turns, of what it holds
 VARIABLE = "_SUBSTRUCTURES_PARENT"
 MOST = 64  # descriptors
-COMPUTING = 32  # processes at most that compute for others; where there are more of these, some share one
-BACKLOG = 256  # requests that wait for a process that computes
+LAST = 8.0  # seconds from being told to end until those are killed that are there still
 #: seconds until a server that died is started again: none at first, more for one that dies young again and again
 YOUNG, FIRST, LONGEST = 30.0, 0.5, 10.0
 
@@ -79,6 +77,7 @@ class _Parent:
         self.held: list[int] = []
         self.children = [_Child(0)]
         self.stopping = False
+        self.last = float("inf")  # when those are killed that do not end
         self.status = 0
         self._selector = DefaultSelector()
         self._shared = turns.new()
@@ -102,15 +101,18 @@ class _Parent:
                     self._pass_on(told.recv(1)[0])
                 else:
                     self._hear(*key.data)
+            if time.monotonic() >= self.last:
+                self.last = float("inf")
+                self._signal(signal.SIGKILL)
         return self.status
 
     def _running(self) -> list[_Child]:
         return [child for child in self.children if child.pid is not None]
 
     def _rest(self) -> float | None:
-        """Seconds until a process is due."""
-        due = [child.due for child in self.children if child.pid is None]
-        return max(0.0, min(due) - time.monotonic()) if due and not self.stopping else None
+        """Seconds until a process is due, or all are to be gone."""
+        due = [self.last] if self.stopping else [child.due for child in self.children if child.pid is None]
+        return max(0.0, min(due) - time.monotonic()) if due and min(due) < float("inf") else None
 
     def _start(self, child: _Child) -> None:
         ours, theirs = socket.socketpair()
@@ -142,7 +144,7 @@ class _Parent:
         """A process has ended: by itself, or as it was told to; otherwise it is started again."""
         code = self._status_of(child)
         self._turns.note(child.number)
-        if self.stopping and code == -signal.SIGTERM:  # told to end before it listened to that
+        if self.stopping and code in (-signal.SIGTERM, -signal.SIGKILL):  # before it listened to that, or by us
             code = 0
         if code >= 0 or self.stopping or not self.held:
             self.status = max(self.status, code if code >= 0 else 128 - code)  # as shells tell it
@@ -169,20 +171,22 @@ class _Parent:
         return code
 
     def _pass_on(self, received: int) -> None:
-        if not self._running():  # all wait to be started again
+        if not self._running() and received != signal.SIGTERM:  # all wait to be started again
             self.status = 128 + received
         self._stop(received)
 
     def _stop(self, received: int) -> None:
         self.stopping = True
+        self.last = min(self.last, time.monotonic() + LAST)
         while self.held:  # nobody waits in them any longer
-            descriptor = self.held.pop()
-            _remove(path_of(descriptor))
-            os.close(descriptor)
+            os.close(self.held.pop())
+        self._signal(received)
+
+    def _signal(self, number: int) -> None:
         for child in self._running():
             if child.pid is not None and child.pid not in self._ended:
                 with suppress(ProcessLookupError):
-                    os.kill(child.pid, received)
+                    os.kill(child.pid, number)
 
 
 @dataclass
@@ -190,27 +194,18 @@ class Kept:
     """What a process of a server has from its parent, or nothing.
 
     ``number``: from 0; the first one looks after the store. ``claim``: the descriptor of the file that is locked for
-    the server, None at its first start and where there is none. ``computes``: for those that answer; then ``number``
-    goes on after theirs, and ``of`` is its number among those that compute.
+    the server, None at its first start and where there is none.
     """
 
     number: int = 0
-    computes: bool = False
-    of: int = 0
     sockets: list[int] = field(default_factory=list)
     claim: int | None = None
     channel: socket.socket | None = None
     turns: Turns | None = None
 
-    @property
-    def path(self) -> str:
-        """Of the socket of the process that computes for this one, or of its own; empty where there is none."""
-        paths = [path for path in map(path_of, self.sockets) if path]
-        return paths[(self.of if self.computes else self.number) % len(paths)] if paths else ""
-
     def note(self, count: int) -> None:
         """So many connections are open, of those that any process may take."""
-        if self.turns is not None and not self.computes:
+        if self.turns is not None:
             self.turns.note(self.number, count)
 
     @property
@@ -244,51 +239,17 @@ def _end_with(channel: socket.socket) -> None:
     os.kill(os.getpid(), signal.SIGKILL)
 
 
-def listeners(
-    host: str, port: int, claim: int | None = None, processes: int = 1, computing: bool = False
-) -> list[socket.socket]:
+def listeners(host: str, port: int, claim: int | None = None, processes: int = 1) -> list[socket.socket]:
     """The sockets that the parent holds; at the first time new ones, for it to hold together with the descriptor
-    ``claim``, and to start so many processes on, with others that are ``computing`` for them. Raises OSError.
+    ``claim``, and to start so many processes on. Raises OSError.
     """
     if kept.channel is None or kept.turns is None:
         return bound(host, port)
     if not kept.sockets:
         kept.sockets += [each.detach() for each in bound(host, port)]
-        private = _private(min(processes, COMPUTING)) if computing else []
-        kept.sockets += [each.detach() for each in private]
         held = kept.sockets + ([] if claim is None else [claim])
-        socket.send_fds(kept.channel, [str(processes + len(private)).encode()], held)
-    if kept.computes:
-        return [socket.socket(fileno=each) for each in kept.sockets if path_of(each) == kept.path]
-    return [Listener(each, kept.turns, kept.number) for each in kept.sockets if not path_of(each)]
-
-
-def path_of(descriptor: int) -> str:
-    """Where a socket of this machine alone listens; empty for others."""
-    if not stat.S_ISSOCK(os.fstat(descriptor).st_mode):
-        return ""
-    with socket.socket(fileno=os.dup(descriptor)) as same:
-        name = same.getsockname() if same.family == socket.AF_UNIX else ""
-    return name if isinstance(name, str) else ""
-
-
-def _private(count: int) -> list[socket.socket]:
-    """Listening sockets in a folder that only our user can enter."""
-    folder, found = Path(tempfile.mkdtemp(prefix="substructures-")), list[socket.socket]()
-    for number in range(count):
-        one = socket.socket(socket.AF_UNIX)
-        one.bind(str(folder / f"computing-{number}"))
-        one.listen(BACKLOG)
-        found.append(one)
-    return found
-
-
-def _remove(path: str) -> None:
-    """The socket, and its folder with the last one."""
-    if path:
-        with suppress(OSError):
-            Path(path).unlink()
-            Path(path).parent.rmdir()
+        socket.send_fds(kept.channel, [str(processes).encode()], held)
+    return [Listener(each, kept.turns, kept.number) for each in kept.sockets]
 
 
 def bound(host: str, port: int) -> list[socket.socket]:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from threading import Event, Lock
 from typing import Literal
 
-from service.keys import Authorisations
+from service.keys import Authorisations, WrongKeys
 from service.threads import SharedThreads
 
-#: what is computed by threads of its own, and how many; the interpreter runs one at a time, so that more than one who
-#: derives would only delay those who evaluate
+#: what has threads of its own, and how many; those of other tasks than to evaluate do nothing but wait for workers, and
+#: are so many that nobody's works wait for a thread behind those of others
 Task = Literal["evaluate", "analyse", "derive", "print"]
-THREADS: dict[Task, int] = {"evaluate": 16, "analyse": 4, "derive": 16, "print": 8}
-DERIVING = 1  # of those who derive at a time
+THREADS: dict[Task, int] = {"evaluate": 16, "analyse": 256, "derive": 256, "print": 256}
 #: idempotency keys of computations that a process remembers
 COMPUTED = 10_000
 
@@ -34,17 +33,16 @@ class Computed:
 
 
 class Runtime:
-    """``computed``: keys of computations; ``threads``: for requests that may be given up, by task; ``deriving``: where
-    they derive; ``renewing``: held while something stored is derived anew; ``wake``: set when there is something new
-    for the supervisor of this process; ``stopping``: set when the server stops, so that answers without an end are
-    ended.
+    """``computed``: keys of computations; ``threads``: for requests that may be given up, by task; ``wrong_keys``: at
+    sign-in; ``renewing``: held while something stored is derived anew; ``wake``: set when there is something new for
+    the supervisor of this process; ``stopping``: set when the server stops, so that answers without an end are ended.
     """
 
     def __init__(self, key_seconds: float) -> None:
         self.authorisations = Authorisations(key_seconds)
+        self.wrong_keys = WrongKeys()
         self.computed = Computed()
         self.threads = {task: SharedThreads(count, task) for task, count in THREADS.items()}
-        self.deriving = SharedThreads(DERIVING, "deriving")
         self.renewing = Lock()
         self.wake = Event()
         self.stopping = Event()
@@ -52,5 +50,5 @@ class Runtime:
     def close(self) -> None:
         """End what has no end, wait for the requests that are being answered, and drop those that are not begun."""
         self.stopping.set()
-        for threads in (self.deriving, *self.threads.values()):
+        for threads in self.threads.values():
             threads.close()

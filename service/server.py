@@ -20,12 +20,11 @@ from typing import cast
 import uvicorn
 
 from service.app import create_app, open_store
-from service.http.away import Away
 from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engine import Engine
 from service.operations.seed import Told
 from service.queries.keys import any_key
-from service.queue.engines import engine_of
+from service.queue.engines import engine_of, worker_pool
 from service.queue.supervisor import Supervisor
 from service.renewing import renewed
 from service.respawn import bound, kept, listeners
@@ -38,7 +37,7 @@ MAPPED, KEPT = 32 * 2**20, 64 * 2**20  # bytes: memory that is got from the syst
 TURN = 0.001  # seconds that a thread computes while others wait
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h
 TICKS = 10  # of uvicorn in a second
-NICE = 5  # of processes that compute for others: those that answer go first, jobs last
+GRACE = 4  # seconds for answers that were begun, when the server is told to end
 AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
 
@@ -46,12 +45,12 @@ def serve(settings: Settings, told: Told = lambda _done, _all: None) -> None:
     """Serve until interrupted; ``told``: as of ``import_catalogue``. Raises SettingsError rather than to listen beyond
     loopback without API keys.
     """
-    kept.computes, kept.of = kept.number >= settings.processes, kept.number - settings.processes
     if kept.is_start:
         _require_free(settings)
     with open_store(settings, kept, _require, told) as store:
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
         _prepare_to_answer()
+        store.workers = worker_pool(settings)
         # one supervisor for all processes, in the first: the others' jobs wait until it looks for some
         is_first = kept.number == 0
         with (
@@ -94,23 +93,17 @@ def _check_processes(store: Store) -> None:
 
 def _run(store: Store) -> None:
     """Answer until the end. Raises SettingsError for an address that cannot be listened on."""
-    settings, claim = store.settings, store.database.claim
-    # of a store that processes cannot share there is none that computes for others
-    computing = kept.channel is not None and (claim is not None or not store.database.is_sqlite)
+    settings = store.settings
     try:
-        found = listeners(settings.host, settings.port, claim, settings.processes, computing)
+        found = listeners(settings.host, settings.port, store.database.claim, settings.processes)
     except OSError as error:
         raise _cannot_listen(settings, error) from None
-    if kept.computes:
-        os.nice(NICE)
-        _server(store).run(sockets=found)
-        return
     if kept.number == 0:
         name = found[0].getsockname()
         logger.info("pages and requests: http://%s:%s/; Ctrl+C stops", settings.host, name[1])
         logger.info("stored in %s", store.database.url)
     logger.info("listening on %s", ", ".join(f"{name[0]}:{name[1]}" for name in (s.getsockname() for s in found)))
-    _server(store, Away(kept.path, settings.limits.sync_seconds) if kept.path else None).run(sockets=found)
+    _server(store).run(sockets=found)
 
 
 def _prepare_to_answer() -> None:
@@ -133,8 +126,10 @@ def work(settings: Settings) -> None:
     if settings.engine == "none":
         raise SettingsError("a worker needs an engine: local or dask")
     signal.signal(signal.SIGTERM, _stop)
-    with open_store(settings) as store, supervised(store, engine_of(settings)):
-        threading.Event().wait()
+    with open_store(settings) as store:
+        store.workers = worker_pool(settings, warm=False)  # of mirrors
+        with supervised(store, engine_of(settings)):
+            threading.Event().wait()
 
 
 def _stop(_signal: int, _frame: object) -> None:
@@ -199,16 +194,14 @@ class _Server(uvicorn.Server):
         await super().shutdown(sockets)
 
 
-def _server(store: Store, away: Away | None = None) -> uvicorn.Server:
-    settings, limits = store.settings, store.settings.limits_of_process
-    if kept.computes:  # all come from the same address, having been let in
-        limits = limits.model_copy(update={"connections_per_address": limits.connections})
-    connections = Connections(limits, kept.note)
+def _server(store: Store) -> uvicorn.Server:
+    settings = store.settings
+    connections = Connections(settings.limits_of_process, kept.note)
     return _Server(
         store,
         connections,
         uvicorn.Config(
-            create_app(store, away),
+            create_app(store),
             http=cast(type[asyncio.Protocol], partial(Connection, connections)),
             backlog=AT_A_STRETCH if settings.processes == 1 else 1,
             host=settings.host,
@@ -219,7 +212,7 @@ def _server(store: Store, away: Away | None = None) -> uvicorn.Server:
             loop="asyncio",  # for large answers quicker than uvloop
             lifespan="off",
             ws="none",
-            timeout_graceful_shutdown=15,
+            timeout_graceful_shutdown=GRACE,
         ),
     )
 

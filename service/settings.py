@@ -50,7 +50,7 @@ class Limits(BaseModel):
     stream_states: Count = Field(10**8, description="most states of one Arrow request")
     program_nodes: Count = Field(100_000, description="most operations of a derived or coupled program")
     sync_nodes: Count = Field(25_000, description="operations beyond which deriving becomes a job at once")
-    sync_seconds: Seconds = Field(10.0, description="longest time a request may compute, seconds")
+    sync_seconds: Seconds = Field(10.0, description="CPU time that a request may take, seconds")
     states: Count = Field(1_000_000, description="most states of one evaluation")
     evaluation_operations: Count = Field(2 * 10**9, description="most states times operations of one evaluation")
     connections: Count = Field(512, description="most open connections; never more than half of the descriptors")

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
+from pathlib import Path
+from time import monotonic
 from typing import Any
 
 from service.caches import Caches
@@ -11,11 +13,12 @@ from service.database.connections import Connection, Database
 from service.derivation import software
 from service.feed import Feed
 from service.integrity import missing, reading
+from service.jobs.worker import Worker, Workers
 from service.kernels import Kernels
 from service.metrics import Metrics
 from service.queries import content
 from service.queries.trees import Tree
-from service.refusals import LongWork, NotDerived
+from service.refusals import NotDerived
 from service.runtime import Runtime
 from service.settings import Settings
 from service.usage import Usage
@@ -32,8 +35,8 @@ from substructures.tree.model import Model, couple
 class Store:
     """What every operation works on: the database, the caches in front of it, kernels, and the running process."""
 
-    def __init__(self, settings: Settings, database: Database, metrics: Metrics) -> None:
-        self.settings, self.database, self.metrics = settings, database, metrics
+    def __init__(self, settings: Settings, database: Database, metrics: Metrics, workers: Workers) -> None:
+        self.settings, self.database, self.metrics, self.workers = settings, database, metrics, workers
         self.caches = Caches.for_nodes(settings.cache_nodes)
         self.kernels = Kernels(settings.kernel_folder, settings.limits.kernel_bytes)
         self.runtime = Runtime(settings.key_seconds)
@@ -42,7 +45,8 @@ class Store:
         self.feed = Feed(database, self.runtime.stopping)
 
     def close(self) -> None:
-        """Stop what computes in the background, and give the database up."""
+        """Stop what computes, and give the database up."""
+        self.workers.close()  # threads wait for it
         self.runtime.close()
         self.feed.close()
         self.claims.close()
@@ -76,6 +80,27 @@ class Store:
             raise missing("a definition", digest)
         return part
 
+    @property
+    def work_limits(self) -> dict[str, int]:
+        """Fields of the items of works that derive or couple for a request: most operations at all, and those beyond
+        which others would be kept waiting."""
+        return {"nodes": self.settings.limits.program_nodes, "admit": self.settings.limits.sync_nodes}
+
+    @property
+    def work_folder(self) -> Path | None:
+        """Where works keep compiled kernels: where this process does, unless they have the rights of another user."""
+        return None if self.settings.runner_user else self.kernels.folder
+
+    def job_worker(self, owner: str) -> Worker:
+        """A worker that may take what an item of a job may, on behalf of an owner."""
+        limits = self.settings.limits
+        end = monotonic() + limits.job_seconds
+        return Worker(self.workers, owner, limits.job_cpu_seconds, end, limits.job_memory_bytes)
+
+    def blobs(self, digests: Iterable[str]) -> dict[str, bytes]:
+        """Contents by digest. Raises Refused as :meth:`blob`."""
+        return {digest: self.blob(digest) for digest in digests}
+
     def blob(self, digest: str) -> bytes:
         """The definition, the program or the uploaded states with this digest. Raises Refused as :meth:`part`."""
         blob = self.caches.blobs.get(digest)
@@ -86,10 +111,6 @@ class Store:
                 raise missing("a content", digest)
             self.caches.blobs.put(digest, blob)
         return blob
-
-    def remember_part(self, part: Part) -> None:
-        """Keep a part that was just derived."""
-        self.caches.parts.put((part.definition.digest, part.program.digest), part)
 
     def model(self, connection: Connection, tree: Tree) -> Model:
         """The model of a revision, decoded. Raises Refused for content that is damaged or gone."""
@@ -103,12 +124,12 @@ class Store:
             with reading(what, tree.program):
                 summary = read_json(tree.summary.encode())
                 if "inputs" not in summary:
-                    summary |= self._declared(connection, tree)
+                    summary |= self.declared(connection, tree)
                 model = Model.load(summary, program)
             self.caches.models.put((tree.digest, tree.program), model)
         return model
 
-    def _declared(self, connection: Connection, tree: Tree) -> dict[str, Any]:
+    def declared(self, connection: Connection, tree: Tree) -> dict[str, Any]:
         """All parameters and inputs of a tree that was stored when only those in its formulas were noted."""
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         parts = {each.name: self.part(connection, each.digest) for each in spec.instances}
@@ -134,12 +155,3 @@ class Store:
             program = derived(model, quantity, self.settings.limits.program_nodes)
             self.caches.derived.put(key, program)
         return program
-
-    def admit(self, operations: int) -> None:
-        """Raise LongWork where a derivation or a coupling of so many operations would take others their time."""
-        if operations > self.settings.limits.sync_nodes:
-            raise LongWork(f"about {operations:,} operations")
-
-    def remember_model(self, digest: str, model: Model) -> None:
-        """Keep a model that was just coupled."""
-        self.caches.models.put((digest, model.program.digest), model)

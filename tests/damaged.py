@@ -47,7 +47,12 @@ def nudged_numbers(program: Program) -> Iterator[tuple[str, str, Program]]:
 
 def _with(program: Program, changed: dict[int, Operation]) -> Program:
     operations = tuple(changed.get(i, operation) for i, operation in enumerate(program.operations))
-    return Program.from_bytes(replace(program, operations=operations).to_bytes())
+    return _read(replace(program, operations=operations))
+
+
+def _read(program: Program) -> Program:
+    """As it would be read from a store, with a digest of its own; what no output needs any more is left out."""
+    return Program.from_bytes(program.select(list(program.outputs)).to_bytes())
 
 
 def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Generator) -> Program | None:
@@ -74,9 +79,7 @@ def _damaged(program: Program, name: str, k: int, kind: str, rng: np.random.Gene
         other = others[int(rng.integers(len(others)))]
         entries[k], entries[other] = entries[other], entries[k]
     changed = replace(output, entries=tuple(entries), index=index)
-    found = replace(program, operations=(*program.operations, *more), outputs={**program.outputs, name: changed})
-    # read as it would be from a store, with a digest of its own
-    return Program.from_bytes(found.to_bytes())
+    return _read(replace(program, operations=(*program.operations, *more), outputs={**program.outputs, name: changed}))
 
 
 def errors_of(certificate: Any) -> dict[str, float | None]:

@@ -24,10 +24,10 @@ from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import momentum
-from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
 from substructures.quantities.result import plain_names
 from substructures.quantities.sources import Sources
+from substructures.quantities.warnings import not_judged_warnings
 from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 

@@ -10,9 +10,8 @@ from pydantic import BaseModel
 from service.analyses.source import Source
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.quantities.certificate import DYNAMICS
-from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.states import read_states
-from substructures.quantities.warnings import Notice, value_warnings
+from substructures.quantities.warnings import Notice, not_judged_warnings, value_warnings
 
 #: requests whose coordinates are only where something is looked for
 NEAR = ("EquilibriaRequest", "RootLocusRequest")

@@ -1,1 +1,1 @@
-"""The command ``substructures``: one file a group of commands."""
+"""The command ``substructures``: its frame, and what its commands share."""

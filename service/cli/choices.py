@@ -11,6 +11,8 @@ import typer
 
 from substructures.errors import among
 
+#: of functions, where none is given
+NAME = "model"
 #: as substructures.export.FORMATS in order, and substructures.printers.FORMS
 FORMATS = (
     "c",

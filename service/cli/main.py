@@ -25,8 +25,9 @@ FAILURES, RESPAWN = "service.cli.failures", "service.respawn"
 
 @dataclass(frozen=True)
 class Command:
-    """``module``: of this package; its table COMMANDS has by name a function, or for a group functions by name; what
-    they take are their parameters, what they say of themselves is their help, what they return the exit code.
+    """``module``: of :mod:`service.cli.commands`; its table COMMANDS has by name a function, or for a group functions
+    by name; what they take are their parameters, what they say of themselves is their help, what they return the exit
+    code.
     """
 
     name: str
@@ -41,7 +42,7 @@ COMMANDS = (
     Command("list", "lists", "list parts, or trees", PARTS),
     Command("search", "lists", "find parts, or trees; typing errors are forgiven", PARTS),
     Command("show", "show", "show a part, a tree, a formula, or a drawing of its structure", PARTS),
-    Command("derive", "parts", "derive and verify a definition here, without a server", PARTS),
+    Command("derive", "derive", "derive and verify a definition here, without a server", PARTS),
     Command("submit", "submit", "submit a definition to a server", PARTS),
     Command("versions", "versions", "list the versions of a part, or the revisions of a tree, the newest first", PARTS),
     Command("diff", "versions", "tell how two versions, or two revisions of a tree, differ", PARTS),
@@ -52,7 +53,7 @@ COMMANDS = (
     Command("rm", "trees", "remove trees with all their revisions", TREES),
     Command("evaluate", "evaluate", "numbers at a state: metric, christoffel, forces, ...", TREES),
     Command("simulate", "simulate", "simulate a tree and judge the motion by its first integrals", TREES),
-    Command("analyse", "analysis", "formulas and numbers that follow from the equations of motion", TREES),
+    Command("analyse", "analyse", "formulas and numbers that follow from the equations of motion", TREES),
     Command("publish", "versions", "make a part of a tree", TREES),
     Command("jobs", "jobs", "submit, watch and read batch jobs", TREES),
     Command("export", "export", "functions of a tree for other tools: C, MATLAB, Fortran, FMU, ...", FILES),
@@ -75,7 +76,7 @@ COMMANDS = (
     Command("openapi", "openapi", "print the OpenAPI document", SERVICE),
 )  # fmt: skip
 _BY_NAME = {command.name: command for command in COMMANDS}
-_FUNCTIONS: Table[Any] = Table("COMMANDS", {each.name: f"service.cli.{each.module}" for each in COMMANDS})
+_FUNCTIONS: Table[Any] = Table("COMMANDS", {each.name: f"service.cli.commands.{each.module}" for each in COMMANDS})
 
 
 class _Group(TyperGroup):

@@ -7,10 +7,12 @@ from pathlib import Path
 
 from service.analyses.source import Source
 from service.cli.documents import DOCUMENTS, definition_of, named, read_document
+from service.cli.models import imported
 from service.cli.output import tell_warnings
 from service.settings import Limits
 from substructures import catalogue
 from substructures.errors import InvalidDocument
+from substructures.interchange.content import is_foreign
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.quantities.sources import Sources, of_parts
@@ -22,6 +24,20 @@ from substructures.tree.model import couple
 def parts_beside(spec: TreeSpec, folder: Path) -> dict[str, Part]:
     """The part of every instance. Raises InvalidDocument for one that is nowhere."""
     return {i.name: _part(k, i, folder) for k, i in enumerate(spec.instances)}
+
+
+def part_or_tree(path: Path) -> Part | tuple[TreeSpec, Mapping[str, Part]]:
+    """A definition, derived, or a tree with its parts, found beside it or in the catalogue; also of robot files."""
+    if is_foreign(path.read_bytes()):
+        found = imported(path)
+        document = found.definition if found.tree is None else found.tree
+    else:
+        document = read_document(path)
+    with named(path):
+        if isinstance(document, dict) and "instances" in document:
+            spec = TreeSpec.read(document)
+            return spec, parts_beside(spec, path.parent)
+        return derive(definition_of(document))
 
 
 def local_source(path: Path) -> Source:

@@ -1,7 +1,8 @@
 """Endpoints that act: work at most once per idempotency key, within its time, and committed in one transaction.
 
-Work that takes longer than its limit (``sync_seconds``, or less by ``Prefer: wait=N``) becomes a job, as does work that
-is asked for with ``Prefer: respond-async``: the answer is 202. What was begun in time goes on to its end; its result is
+Work that takes longer than its limit (``sync_seconds`` of CPU time, or less by ``Prefer: wait=N``) becomes a job, as
+does work that is asked for with ``Prefer: respond-async``: the answer is 202. What takes long is done by a worker
+(:mod:`service.jobs.worker`), which is killed at its deadline. What was begun here goes on to its end; its result is
 dropped, and nothing is stored twice.
 """
 
@@ -10,7 +11,6 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
-from contextvars import copy_context
 from dataclasses import replace
 from functools import partial, wraps
 from typing import Annotated, Any, TypeVar
@@ -23,6 +23,7 @@ from service.http.deadline import Deadline, GivenUp
 from service.http.idempotency import IdempotencyClaim, replayed
 from service.http.requests import RawBody, spooled_body, store_of
 from service.http.responses import response_of
+from service.jobs.worker import Worker
 from service.queries.common import is_conflict
 from service.refusals import Refused, StaleError
 from service.runtime import Task
@@ -35,9 +36,8 @@ Commit = Callable[[Connection], Answer]
 Result = TypeVar("Result")
 IdempotencyKey = Annotated[str | None, Header(min_length=1, max_length=255)]
 ATTEMPTS = 8
-#: tasks for the process that computes, where there is one
-AWAY: tuple[Task, ...] = ("derive", "analyse")
-PASSED_ON = 10.0  # seconds more than the limit, for the answer of that process
+#: what workers do may take so many times its CPU time by the clock: a machine that is busy makes no request a job
+SLOWNESS = 6.0
 
 
 class Act:
@@ -50,10 +50,10 @@ class Act:
         self.principal = self.viewer.key
         limits = store.settings.limits
         wait = self._prefers("wait=([0-9]{1,6})")
-        self._deadline = Deadline(min(limits.sync_seconds, float(wait[1])) if wait else limits.sync_seconds)
         self._waits = wait[0] if wait and float(wait[1]) <= limits.sync_seconds else ""
+        self._deadline = deadline_of(store, float(wait[1]) if self._waits and wait else None)
+        self.worker = worker_of(store, self.viewer, self._deadline)
         self._claimed = IdempotencyClaim(request, body, store, key)
-        self._task: Task | None = None
 
     def run(self, prepare: Callable[[], Commit], deferred: Callable[[], Commit] | None = None) -> Response:
         """Prepare without writing, then commit in one transaction. The endpoint has to be ``timed``.
@@ -81,12 +81,17 @@ class Act:
 
     async def within_time(self, task: Task, endpoint: Callable[[], Response]) -> Response:
         """The answer of an endpoint, or, where its work takes too long, of what is to be done instead."""
-        away = self._request.app.state.away
-        if away is not None and task in AWAY:
-            found: Response = await away.answer(self._request, self._body(), stores=task == "derive")
-            return found
-        threads, self._task = self.store.runtime.threads[task], task
+        if task == "evaluate":
+            self._deadline.by_the_clock()
+        threads = self.store.runtime.threads[task]
         return await self._deadline.within(partial(threads.submit, self.principal), endpoint)
+
+    def first(self, work: Callable[[], Result]) -> Result:
+        """What has to be known before anything else is done. Raises Refused 503 when it takes too long."""
+        try:
+            return work()
+        except TimeoutError:
+            raise took_too_long(self._deadline.limit, "nothing was stored") from None
 
     def require(self, scope: str) -> None:
         """Raise Refused 403 unless whoever asks has this scope too."""
@@ -116,30 +121,15 @@ class Act:
             """What is done when there is no time left: the job, if there is one."""
             if deferred is not None:
                 return deferred()
-            detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; nothing was stored"
-            raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
+            raise took_too_long(deadline.limit, "nothing was stored")
 
         def watched() -> Commit | Answer | Stream:
             """The work under its deadline."""
             if deadline.is_over or (deferred is not None and self.prefers_async):
                 return late()
-            return deadline.watched(self._in_turn(work), late, instead=lambda: self._finish(late))
+            return deadline.watched(work, late, instead=lambda: self._finish(late))
 
         return self._finish(watched)
-
-    def _in_turn(self, work: Callable[[], Result]) -> Callable[[], Result]:
-        """The work, of those who derive one at a time, whatever else their requests wait for."""
-        if self._task != "derive":
-            return work
-
-        def begun() -> Result:
-            """The work, unless it is too late to begin."""
-            if self._deadline.is_over:
-                raise TimeoutError
-            return work()
-
-        deriving = self.store.runtime.deriving
-        return lambda: deriving.submit(self.principal, partial(copy_context().run, begun)).result()
 
     def _finish(self, prepare: Callable[[], Commit | Answer | Stream]) -> Response:
         """Commit what was prepared, and keep the answer under the key in the same transaction."""
@@ -205,30 +195,46 @@ ActOf = Annotated[Act, Depends(act)]
 SpooledActOf = Annotated[SpooledAct, Depends(spooled_act)]
 
 
+def deadline_of(store: Store, wait: float | None = None) -> Deadline:
+    """The time of a request by the clock; ``wait``: what whoever asks would wait."""
+    limit = store.settings.limits.sync_seconds
+    return Deadline(SLOWNESS * limit, limit) if wait is None else Deadline(wait)
+
+
+def worker_of(store: Store, viewer: Viewer, deadline: Deadline) -> Worker:
+    """What computes for a request, within its time."""
+    limits = store.settings.limits
+    return Worker(store.workers, viewer.owner, deadline.limit, deadline.due, limits.job_memory_bytes)
+
+
+def took_too_long(seconds: float, advice: str) -> Refused:
+    """503: no time is left, and there is no job that would do the same."""
+    detail = f"this takes longer than {seconds:g} s, the limit of a request; {advice}"
+    return Refused(503, "took-too-long", detail, limit=seconds)
+
+
 async def in_time(
-    request: Request, endpoint: Callable[[], Response], advice: str, job: Callable[[Act], Commit] | None = None
+    request: Request, endpoint: Callable[[Worker], Response], advice: str, job: Callable[[Act], Commit] | None = None
 ) -> Response:
-    """The answer of an endpoint that prints formulas. Raises Refused 503 when it takes too long.
+    """The answer of an endpoint that lets a worker print formulas. Raises Refused 503 when it takes too long.
 
     ``advice``: what to do then. ``job``: prepares the job that does the same, for those who may submit jobs; while its
     answer is kept, the same request does not become another one.
     """
-    store = store_of(request)
-    is_passed_on = request.app.state.away is not None  # then the other process says that it takes too long
-    deadline = Deadline(store.settings.limits.sync_seconds + (PASSED_ON if is_passed_on else 0))
+    store, deadline = store_of(request), deadline_of(store_of(request))
     act = None if job is None else Act(request, tuple, store, _key_of(request))
+    worker = worker_of(store, request.state.viewer, deadline)
 
     def late() -> Response:
         """What is said when there is no time left."""
         if job is not None and act is not None and act.viewer.has("jobs"):
             return act.submit(partial(job, act))
-        detail = f"this takes longer than {deadline.seconds:g} s, the limit of a request; {advice}"
-        raise Refused(503, "took-too-long", detail, limit=deadline.seconds)
+        raise took_too_long(deadline.limit, advice)
 
     def watched() -> Response:
         """The endpoint under its deadline."""
         is_late = deadline.is_over or (act is not None and act.prefers_async)
-        return late() if is_late else deadline.watched(endpoint, late, instead=late)
+        return late() if is_late else deadline.watched(partial(endpoint, worker), late, instead=late)
 
     threads = store.runtime.threads["print"]
     return await deadline.within(partial(threads.submit, request.state.principal), watched)

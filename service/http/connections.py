@@ -34,6 +34,7 @@ from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 from uvicorn.server import ServerState
 
 from service.http import problems
+from service.http.authority import origin_form
 from service.http.chunks import AT_ONCE, Chunked
 from service.http.middleware import GUARDED
 from service.http.request_id import begin_request
@@ -169,6 +170,11 @@ class Connection(HttpToolsProtocol):
             self._refusal = _too_long_head(self._limits.head_bytes)
         elif self.parser.get_method() == b"CONNECT":
             self._refusal = Refused(405, "method-not-allowed", "this is no proxy", headers={"Allow": "GET, POST"})
+        else:
+            try:
+                self.url = origin_form(self.url, self.parser.get_method(), self.headers)
+            except Refused as refused:
+                self._refusal = refused
         if self._refusal is not None:
             raise httptools.HttpParserError
         self._is_open, self._unused = True, 0

@@ -14,7 +14,7 @@ from concurrent.futures import Future
 from contextvars import copy_context
 from functools import partial
 from threading import Lock
-from time import perf_counter
+from time import monotonic
 from typing import TypeVar
 
 from fastapi import Response
@@ -30,18 +30,23 @@ class GivenUp(Exception):
 
 
 class Deadline:
-    """``seconds`` from now."""
+    """``seconds`` from now, at ``due``; ``limit``: what is told of it, where that is another one."""
 
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
-        self._due = perf_counter() + seconds
+    def __init__(self, seconds: float, limit: float | None = None) -> None:
+        self.limit = seconds if limit is None else limit
+        self._begun = monotonic()
+        self.due = self._begun + seconds
         self._lock = Lock()
         self._instead: Callable[[], Response] | None = None  # while there is work that can be given up
+
+    def by_the_clock(self) -> None:
+        """What is done by threads of this process takes no longer than ``limit``."""
+        self.due = min(self.due, self._begun + self.limit)
 
     @property
     def is_over(self) -> bool:
         """Whether the time is over."""
-        return perf_counter() >= self._due
+        return monotonic() >= self.due
 
     def watched(self, work: Callable[[], T], late: Callable[[], T], instead: Callable[[], Response]) -> T:
         """What ``work`` gives, or ``late`` when it looks at the clock itself and raises TimeoutError.
@@ -80,7 +85,7 @@ class Deadline:
         """
         future = submit(partial(copy_context().run, endpoint))
         answer = asyncio.wrap_future(future)
-        await asyncio.wait({answer}, timeout=max(0, self._due - perf_counter()))
+        await asyncio.wait({answer}, timeout=max(0, self.due - monotonic()))
         if answer.done():
             return answer.result()
         if future.cancel():  # all threads have other work: too late for this one

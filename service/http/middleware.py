@@ -10,6 +10,7 @@ from starlette.requests import ClientDisconnect
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.http import problems
+from service.http.authority import host_of
 from service.http.request_id import begin_request
 from service.metrics import Metrics
 from service.refusals import Refused
@@ -43,7 +44,6 @@ class Conventions:
 
     async def _serve(self, scope: Scope, receive: Receive, send: Send) -> None:
         headers = Headers(scope=scope)
-        host = headers.get("host", "")
         identifier = begin_request(headers.get("x-request-id"))
         start = perf_counter()
         status = 0
@@ -61,12 +61,8 @@ class Conventions:
             await send(message)
 
         try:
-            if self._accepts(host):
-                await self.app(scope, receive, send_with_id)
-            else:
-                detail = f"the Host header names '{host[:80]}', which is not served here"
-                detail += "; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts"
-                raise Refused(400, "host-not-allowed", detail)
+            self._require_accepted(host_of(scope["headers"]))
+            await self.app(scope, receive, send_with_id)
         except ClientDisconnect:  # it went before it had sent all, and nobody is there to be told
             status = status or GONE
         except Exception as error:
@@ -76,9 +72,10 @@ class Conventions:
         finally:
             self._record(scope, status, perf_counter() - start)
 
-    def _accepts(self, host: str) -> bool:
-        name = host[: host.find("]") + 1] if host.startswith("[") else host.partition(":")[0]
-        return "*" in self.allowed_hosts or name.strip("[]").lower() in self.allowed_hosts
+    def _require_accepted(self, host: str) -> None:
+        if "*" not in self.allowed_hosts and host not in self.allowed_hosts:
+            detail = f"the Host header names '{host[:80]}', which is not served here"
+            raise Refused(400, "host-not-allowed", f"{detail}; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts")
 
     def _record(self, scope: Scope, status: int, seconds: float) -> None:
         route = getattr(scope.get("route"), "path", "(none)")

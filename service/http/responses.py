@@ -11,7 +11,6 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
 from service.answers import FOR_EVER, REVALIDATE, Answer, Stream, some_of
-from service.http.away import RefusedThere
 from service.http.requests import store_of
 
 AT_ONCE = 2**22  # bytes that are handed to the connection at a time
@@ -40,30 +39,20 @@ async def _ahead(pieces: Iterator[bytes | memoryview]) -> AsyncIterator[bytes | 
             await asyncio.gather(following, return_exceptions=True)
 
 
-def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], Answer | Response]) -> Response:
+def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
     """304 when the client has the representation already, otherwise make it."""
     headers = {"ETag": tag, "Cache-Control": FOR_EVER if immutable else REVALIDATE, "Vary": "Accept"}
     known = [item.strip().removeprefix("W/") for item in request.headers.get("if-none-match", "").split(",")]
     if tag in known or "*" in known:
         return Response(status_code=304, headers=headers)
     answer = make()
-    if isinstance(answer, Response):  # of another process, with all that there is to say
-        return answer
     return Response(answer.body, answer.status, {**answer.headers, **headers})
 
 
 def remembered(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
     """:func:`conditional` for what takes long to make: the answer of this tag is kept."""
-    printed, away = store_of(request).caches.printed, request.app.state.away
-
-    def kept() -> Answer | Response:
-        """What was made before under the same tag, or is made now, by the process that computes where there is one."""
-        try:
-            return printed.once(tag, make if away is None else lambda: away.printed(request))
-        except RefusedThere as refused:
-            return refused.response
-
-    return conditional(request, tag, immutable, kept)
+    printed = store_of(request).caches.printed
+    return conditional(request, tag, immutable, lambda: printed.once(tag, make))
 
 
 def next_link(request: Request, token: str | None) -> str | None:

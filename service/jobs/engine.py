@@ -43,12 +43,16 @@ class Outcome:
 
 @dataclass(frozen=True)
 class AttemptReport:
-    """News of one attempt: ``fraction`` done while it runs; at its end an outcome, or what was seen of its death."""
+    """News of one attempt: ``fraction`` done while it runs; at its end an outcome, or what was seen of its death.
+
+    ``cpu_seconds``: what it took, where that is known.
+    """
 
     id: str
     fraction: float = 0.0
     outcome: Outcome | None = None
     death: str = ""
+    cpu_seconds: float = 0.0
 
     @property
     def is_final(self) -> bool:

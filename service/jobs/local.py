@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import selectors
+import socket
 from collections import deque
 from time import monotonic
 
 from service.jobs.engine import AttemptReport, Work
-from service.jobs.process import Process
+from service.jobs.process import CHUNK, NICE, Process
 from service.jobs.wire import WireError
 
 LONGEST_PAUSE = 30.0
@@ -22,10 +24,15 @@ class LocalEngine:
     """Computes works in ``workers`` processes of this machine. To be used by one thread, which has to outlive it:
     on Linux a runner ends with the thread that started it."""
 
-    def __init__(self, workers: int, user: str = "") -> None:
+    def __init__(self, workers: int, user: str = "", niceness: int = NICE) -> None:
         """``user``: whose rights the runners have, in place of ours."""
-        self.workers, self._user = workers, user
+        self.workers, self._user, self._niceness = workers, user, niceness
         self._selector = selectors.DefaultSelector()
+        self._told, self._tell = socket.socketpair()
+        for each in (self._told, self._tell):
+            each.setblocking(False)
+        self._selector.register(self._told, selectors.EVENT_READ)
+        self._is_interrupted = False
         self._processes: set[Process] = set()
         self._running: dict[str, Process] = {}
         self._news: deque[AttemptReport] = deque()
@@ -60,29 +67,39 @@ class LocalEngine:
             self._fill()
         self._news = deque(report for report in self._news if report.id != attempt)
 
+    def interrupt(self) -> None:
+        """Let :meth:`reports` return, or not wait at all the next time. From any thread."""
+        with contextlib.suppress(BlockingIOError):  # it has been told often enough
+            self._tell.send(b"!")
+
     def reports(self, seconds: float) -> list[AttemptReport]:
         """News, waiting at most so long for the first; none also when another runner has become free."""
         end = monotonic() + seconds
-        free = self.free
+        free, self._is_interrupted = self.free, False
         while True:
             self._fill()
             pause = 0.0 if self._news else max(0.0, self._wake(end) - monotonic())
             for key, _ in self._selector.select(pause):
-                self._handle(key.data, key.fd)
+                if key.data is None:
+                    self._is_interrupted = bool(self._told.recv(CHUNK))
+                else:
+                    self._handle(key.data, key.fd)
             self._check_limits()
-            if self._news or self.free > free or monotonic() >= end:
+            if self._news or self._is_interrupted or self.free > free or monotonic() >= end:
                 news, self._news = list(self._news), deque()
                 return news
 
     def _wake(self, end: float) -> float:
         """When to look again although nothing was heard."""
-        times = [end, monotonic() + WATCH, *(process.deadline for process in self._processes)]
+        times = [end, *(process.deadline for process in self._processes)]
+        if self._running:
+            times.append(monotonic() + WATCH)
         return min(times if len(self._processes) >= self.workers else [*times, self._not_before])
 
     def _fill(self) -> None:
         """Start runners that are missing; after failures only now and then."""
         while len(self._processes) < self.workers and monotonic() >= self._not_before:
-            process = Process(self._user)
+            process = Process(self._user, self._niceness)
             process.deadline = monotonic() + START
             self._processes.add(process)
             self._selector.register(process.reports, selectors.EVENT_READ, process)
@@ -165,3 +182,5 @@ class LocalEngine:
             self._remove(process)
         self._running.clear()
         self._selector.close()
+        self._told.close()
+        self._tell.close()

@@ -26,6 +26,7 @@ from substructures.compile.setting import VARIABLES
 ENVIRONMENT = ("PATH", "LANG", "LC_ALL", "LC_CTYPE", "TZ", "TMPDIR", "LD_LIBRARY_PATH", "PYTHONPATH", "PYTHONHOME")
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 ROOT = Path(__file__).parents[2]
+NICE = 10  # of jobs: a service that answers requests goes first
 CHUNK = 2**20
 OUTPUT = 1000  # characters that are kept of what a runner printed, of its beginning and of its end each
 BLOBS = 64 * 2**20  # bytes of blobs that a runner keeps
@@ -56,10 +57,11 @@ def rights_of(user: str) -> dict[str, Any]:
 class Process:
     """A runner. Nothing here blocks: descriptors are to be watched by the owner."""
 
-    def __init__(self, user: str = "") -> None:
+    def __init__(self, user: str = "", niceness: int = NICE) -> None:
         """``user``: whose rights it has, in place of ours. Raises OSError or LookupError when it cannot be started."""
         self.reports, inherited = _pipe()
-        command = [sys.executable, "-P", "-m", "service.jobs.runner", str(inherited), str(os.getpid())]
+        told = map(str, (inherited, os.getpid(), niceness))
+        command = [sys.executable, "-P", "-m", "service.jobs.runner", *told]
         try:
             self._child = subprocess.Popen(
                 command,

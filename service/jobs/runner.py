@@ -1,4 +1,6 @@
-"""The process that computes items: ``python -m service.jobs.runner <report fd> <parent pid>``, started by an engine.
+"""The process that computes, started by an engine: ``python -m service.jobs.runner <report fd> <parent> <niceness>``.
+
+Items of jobs and works of requests are the same to it.
 
 Works arrive on its standard input, reports leave by a descriptor of their own, so that nothing printed can disturb
 them. It serves many items, ends with its input, and on Linux with its parent. The kernel enforces the budget of an
@@ -13,7 +15,7 @@ import resource
 import signal
 import sys
 from collections.abc import Callable
-from time import monotonic
+from time import monotonic, process_time
 
 from service.jobs.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.kinds import failed, run
@@ -22,18 +24,18 @@ from service.lifetime import end_with
 from service.refusals import Refused
 
 CHUNK = 2**20
-NICE = 10  # a service that answers requests goes first
 PR_SET_NO_NEW_PRIVS = 38  # <linux/prctl.h>
 FILE = 2**24  # bytes that it may write to a file; items need none
+SOON = 0.98  # of the CPU time of a work: then it ends itself where it can
 INTERVAL = 0.2  # between reports of progress, seconds
 
 
 def main(arguments: list[str]) -> int:
     """Serve until the input ends."""
-    reports, parent = map(int, arguments)
+    reports, parent, niceness = map(int, arguments)
     end_with(parent)  # elsewhere than on Linux the end of the input does
     _give_up_rights()
-    os.nice(NICE)
+    os.nice(niceness)
     _send(reports, Message({"ready": os.getpid()}))
     reader = MessageReader()
     blobs: dict[str, bytes] = {}
@@ -56,12 +58,22 @@ def _give_up_rights() -> None:
 
 def _serve(work: Work, reports: int) -> bool:
     """Compute and report; False when the process should not be used again."""
+    begun = process_time()
     outcome, is_sound = _computed(work, _throttled(lambda fraction: _send(reports, _progress(work, fraction))))
-    _send(reports, report_frame(AttemptReport(work.id, 1.0, outcome), last=not is_sound))
+    report = AttemptReport(work.id, 1.0, outcome, cpu_seconds=process_time() - begun)
+    _send(reports, report_frame(report, last=not is_sound))
     return is_sound
 
 
-def _computed(work: Work, progress: Callable[[float], None]) -> tuple[Outcome, bool]:
+def _computed(work: Work, tell: Callable[[float], None]) -> tuple[Outcome, bool]:
+    end = process_time() + SOON * work.budget.cpu_seconds
+
+    def progress(fraction: float) -> None:
+        """Tell; who does ends by itself when its time is over, and is not killed."""
+        if process_time() > end:
+            raise Refused(422, "cpu-limit", f"the item needs more than {work.budget.cpu_seconds:g} s of CPU time")
+        tell(fraction)
+
     _limit(work.budget)
     try:
         try:

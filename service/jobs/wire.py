@@ -12,7 +12,7 @@ from __future__ import annotations
 
 import struct
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import orjson
@@ -22,7 +22,7 @@ from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 
 _LENGTH = struct.Struct(">I")
-PROTOCOL = 2  # 1: programs were not packed
+PROTOCOL = 3  # 1: programs were not packed; 2: CPU time was not told
 MAX_HEAD = 2**24
 MAX_CONTENTS = 2**31
 ITEM, SUMMARY, PROBLEM, FILE = "item", "summary", "problem", "file:"
@@ -123,7 +123,7 @@ def read_work(frame: Message, blobs: dict[str, bytes]) -> Work:
 
 def report_frame(report: AttemptReport, **more: Any) -> Message:
     """News of an attempt."""
-    head = {"id": report.id, "fraction": report.fraction, "death": report.death, **more}
+    head = {"id": report.id, "fraction": report.fraction, "death": report.death, "cpu": report.cpu_seconds, **more}
     outcome = report.outcome
     if outcome is None:
         return Message(head)
@@ -138,11 +138,12 @@ def read_report(frame: Message) -> AttemptReport:
     """The report of a frame. Raises WireError."""
     try:
         head, contents = frame.head, frame.contents
-        report = AttemptReport(str(head["id"]), float(head["fraction"]), None, str(head["death"]))
+        told = str(head["id"]), float(head["fraction"])
+        report = AttemptReport(*told, None, str(head["death"]), float(head["cpu"]))
         if SUMMARY not in contents:
             return report
         files = {name.removeprefix(FILE): data for name, data in contents.items() if name.startswith(FILE)}
         problem = read_json(contents[PROBLEM]) if PROBLEM in contents else None
-        return AttemptReport(report.id, 1.0, Outcome(read_json(contents[SUMMARY]), files, problem))
+        return replace(report, fraction=1.0, outcome=Outcome(read_json(contents[SUMMARY]), files, problem))
     except (KeyError, TypeError, ValueError, InvalidDocument) as error:
         raise WireError(f"not a report: {error}") from None

@@ -1,92 +1,126 @@
-"""Analyses of stored trees: what they work on, their limit of time, and their answers."""
+"""What follows from stored trees, as formulas, numbers and files: computed by workers, as items of jobs are."""
 
 from __future__ import annotations
 
-from time import perf_counter
+from collections.abc import Mapping
+from dataclasses import asdict
 from typing import Any
 
 import orjson
 
-from service.analyses.formulas import made
-from service.analyses.formulas.constraints import velocity_equations_of
-from service.analyses.formulas.entry import Made, Options
-from service.analyses.grouping import grouped_text
-from service.analyses.numbers import ANALYSES
-from service.analyses.printing import Style, made_text
-from service.analyses.results import trajectory_of, written
-from service.analyses.source import Source
+from service.analyses.exporting import URDF, ExportRequest
+from service.analyses.formulas.entry import Options
+from service.analyses.printing import TO_READ, Style, has_parts
+from service.analyses.results import MEDIA_TYPES
 from service.answers import Answer
-from service.negotiation import MEDIA_TYPES
+from service.jobs.engine import Outcome
+from service.jobs.worker import Worker
+from service.negotiation import MEDIA_TYPES as PRINTED
 from service.operations import trees
-from service.operations.sources import sources_of, tree_parts
+from service.operations.sources import pinned_tree
+from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.refusals import moved
 from service.store import Store
 from service.viewer import Viewer
-from substructures.export import interface_of_model
-from substructures.tree.model import Model
+from substructures.errors import InvalidInput
+
+FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
+LIMITS = ("program_nodes", "binary_bytes", "states")
 
 
-def source_of(store: Store, tree: Tree, model: Model) -> Source:
-    """What analyses of a stored tree work on."""
-    tools = store.settings.limits, store.kernels.folder, store.kernels
-    return Source(sources_of(store, tree, model), tree.digest, *tools, lambda: tree_parts(store, tree))
-
-
-def printed(source: Source, quantity: str, options: Options, style: Style) -> Answer:
-    """A quantity that follows from the model, in the format chosen; its description is in the JSON answer.
-
-    Raises InvalidDocument (pointers into the query), TooLarge, Refused 422.
-    """
-    return _printed(source, quantity, made(source, quantity, options), style)
-
-
-def grouped(source: Source, quantity: str, style: Style) -> Answer:
-    """A quantity in grouped symbols, with what they stand for. Raises InvalidDocument, TooLarge, Refused 422."""
-    interface = interface_of_model(source.model, digest=source.digest)
-    text = grouped_text(source, quantity, style, interface)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
-
-
-def velocity_equations(store: Store, viewer: Viewer, ref: str, document: Any, style: Style) -> Answer:
-    """The equations of a stored tree with velocity constraints as formulas. Raises as :func:`printed`, Refused 404."""
+def velocity_equations(store: Store, viewer: Viewer, worker: Worker, ref: str, document: Any, style: Style) -> Answer:
+    """The equations of a stored tree with velocity constraints as formulas. Raises as ``printed``, Refused 404."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        model = store.model(connection, tree)
-    source = source_of(store, tree, model)
-    return _printed(source, "velocity_equations", velocity_equations_of(source, document), style)
+    return printed(store, worker, tree, "velocity-equations", style, request=document)
 
 
-def _printed(source: Source, quantity: str, found: Made, style: Style) -> Answer:
-    interface = interface_of_model(source.model, digest=source.digest)
-    text = made_text(found, quantity, interface, source, style)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})
-
-
-def analyse(store: Store, viewer: Viewer, ref: str, name: str, request: Any, media: str) -> Answer:
+def analyse(store: Store, viewer: Viewer, worker: Worker, ref: str, name: str, request: Any, media: str) -> Answer:
     """The result of an analysis of ANALYSES in one of its media types.
 
-    Raises Refused 404, InvalidDocument, MissingValue, TooLarge, TimeoutError.
+    Raises Refused 404, InvalidDocument, Refused, TooLarge, TimeoutError.
     """
-    analysis = ANALYSES[name]
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        model = store.model(connection, tree)
-    time_limit = TimeLimit(store.settings.limits.sync_seconds)
-    result = analysis.compute(source_of(store, tree, model), request, time_limit)
+    item, blobs = pinned_tree(store, tree)
+    limits, folder = store.settings.limits, store.work_folder
+    item |= {"analysis": name, "request": request, "format": FORMATS[media], "answered": True}
+    item |= {"limits": {each: getattr(limits, each) for each in LIMITS}, "kernels": folder and str(folder)}
+    with moved(lambda pointer: pointer.removeprefix("/request")):
+        found = worker("analyse", item, blobs)
     headers = {"Content-Type": media}
-    motion = trajectory_of(result)
+    motion = found.summary.get("motion")
     if motion is not None:  # a CSV file has no place for them
-        headers |= {"Trajectory-Status": motion.status, "Trajectory-Right": orjson.dumps(motion.is_right).decode()}
-    return Answer(200, written(result, media, model), headers)
+        right = orjson.dumps(motion["is_right"]).decode()
+        headers |= {"Trajectory-Status": motion["status"], "Trajectory-Right": right}
+    return Answer(200, found.files["result"], headers)
 
 
-class TimeLimit:
-    """A listener of progress that ends the work when its time is over: nobody waits for it any longer."""
+def printed(
+    store: Store,
+    worker: Worker,
+    tree: Tree,
+    quantity: str,
+    style: Style,
+    options: Options | None = None,
+    group: bool = False,
+    **more: Any,
+) -> Answer:
+    """A quantity of a tree in the format chosen; ``more``: fields of the item, the ``request`` that a quantity takes.
 
-    def __init__(self, seconds: float) -> None:
-        self._end = perf_counter() + seconds
+    Raises InvalidDocument and Refused with pointers into query and body, TooLarge, TimeoutError.
+    """
+    item, blobs = pinned_tree(store, tree, group or has_parts(quantity) or style.format in TO_READ)
+    item |= {"quantity": quantity, **asdict(style), "group": group, **more}
+    item |= {"options": {name: list(texts) for name, texts in (options or {}).items()}}
+    item |= {"nodes": store.settings.limits.program_nodes}
+    with moved(_of_request):
+        text = worker("export", item, blobs).files["text"]
+    return Answer(200, text, {"Content-Type": PRINTED[style.format]})
 
-    def __call__(self, share: float) -> None:
-        """Raises TimeoutError, which answers as work that is waited for too long: with a job or 503."""
-        if perf_counter() > self._end:
-            raise TimeoutError(f"{100 * share:.0f} % was done in the time of a request")
+
+def _of_request(pointer: str) -> str:
+    """A pointer into an item as one into the request that it stands for."""
+    if pointer in ("/bind", "/group"):
+        return f"/query{pointer}"
+    if pointer.startswith("/options/"):
+        return "/query" + pointer.removeprefix("/options")
+    return pointer.removeprefix("/request")
+
+
+def tree_files(store: Store, worker: Worker, tree: Tree, wanted: ExportRequest) -> Answer:
+    """A tree for a target. Raises InvalidInput with pointers into the query, TooLarge, Refused, TimeoutError."""
+    item, blobs = pinned_tree(store, tree, wanted.target == URDF or any(map(has_parts, wanted.quantities)))
+    return _files(store, worker, wanted, {**item, "called": tree.name}, f"{tree.name}@{tree.revision}", blobs)
+
+
+def part_files(store: Store, worker: Worker, version: Version, wanted: ExportRequest) -> Answer:
+    """A part for a target, as it stands alone. Raises as :func:`tree_files`."""
+    blobs = store.blobs((version.digest, version.program))
+    item = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
+    return _files(store, worker, wanted, item, f"{version.name}@{version.version}", blobs)
+
+
+def _files(
+    store: Store,
+    worker: Worker,
+    wanted: ExportRequest,
+    of: Mapping[str, Any],
+    reference: str,
+    blobs: Mapping[str, bytes],
+) -> Answer:
+    asked = {**asdict(wanted), "quantities": list(wanted.quantities)}
+    limit = store.settings.limits.program_nodes
+    try:
+        found = worker("export", {**of, **asked, "reference": reference, "nodes": limit}, blobs)
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: pointer if pointer.startswith("/query") else f"/query{pointer}") from None
+    return _file(found)
+
+
+def _file(found: Outcome) -> Answer:
+    """The one file of an export, to be saved under its name."""
+    (data,) = found.files.values()
+    disposition = f'attachment; filename="{found.summary["name"]}"'
+    return Answer(200, data, {"Content-Type": found.summary["media_type"], "Content-Disposition": disposition})

@@ -1,5 +1,5 @@
 """Evaluations that are at hand: one state of a pinned tree, by kernels in memory, on the event loop itself
-(:mod:`service.http.short_way`).
+(:mod:`service.http.one_state`).
 
 They take less time than a change of threads. Everything else, also what is asked for the first time, goes the long way,
 which leaves behind here what the next request of the same kind needs. Pinned trees never change.

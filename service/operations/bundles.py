@@ -15,6 +15,7 @@ from service import bundles
 from service.bundles import BundledPart
 from service.database.connections import Connection
 from service.integrity import missing
+from service.jobs.worker import Worker
 from service.operations import catalogue
 from service.operations.catalogue import PartSubmission
 from service.operations.provenance import Origin
@@ -23,10 +24,10 @@ from service.queries.catalogue import Version
 from service.refusals import Refused, unprocessable
 from service.schemas.entries import PartEntry
 from service.store import Store
+from service.summaries import PartContent
 from service.unzipped import file_pointer, too_large
 from service.viewer import Viewer
 from substructures.errors import Fault, InvalidInput, TooLarge
-from substructures.part.part import derive
 
 IMPORTED = Origin("import")
 
@@ -49,16 +50,23 @@ def bundled(connection: Connection, version: Version) -> BundledPart:
     return BundledPart(version.name, version.digest, version.program, part.definition, part.program, part.certificate)
 
 
-def prepare(store: Store, viewer: Viewer, part: BundledPart, entry: PartEntry, max_nodes: int) -> PartSubmission:
+def prepare(
+    store: Store, viewer: Viewer, part: BundledPart, entry: PartEntry, worker: Worker, max_nodes: int
+) -> PartSubmission:
     """Derive a part of a bundle from its definition, unless its content is known.
 
-    Raises Refused 403 for a name of others, 409, 422 and InvalidDocument, with pointers to the file.
+    Raises Refused 403 for a name of others, 409, 422 and InvalidDocument, with pointers to the file, TimeoutError.
     """
     definition = bundles.definition_of(part)
     path = part.file(bundles.DEFINITION)
+
+    def make() -> PartContent:
+        """What is stored of it."""
+        return catalogue.derived(worker, definition, {"nodes": max_nodes})
+
     try:
         with _inside(part):
-            return catalogue.prepare(store, viewer, definition, entry, IMPORTED, lambda: derive(definition, max_nodes))
+            return catalogue.prepare(store, viewer, definition, entry, IMPORTED, make)
     except InvalidInput as error:
         raise error.below(file_pointer(path)) from None
     except TooLarge as error:

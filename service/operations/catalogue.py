@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from service.database.connections import Connection
+from service.jobs.worker import Worker
 from service.operations import owners
 from service.operations.provenance import Origin, derived_from, pinned, provenance
 from service.queries import aliases, audit, catalogue, content, uses
@@ -18,8 +19,9 @@ from service.schemas.entries import PLAIN, PartEntry
 from service.store import Store
 from service.summaries import PartContent, part_content
 from service.viewer import Viewer
+from substructures.documents import read_json
 from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
+from substructures.part.part import derive
 
 SUBMITTED = Origin()
 
@@ -43,13 +45,12 @@ def prepare(
     definition: Definition,
     entry: PartEntry,
     origin: Origin = SUBMITTED,
-    made: Callable[[], Part] | None = None,
-    recipe: str | None = None,
+    make: Callable[[], PartContent] | None = None,
 ) -> PartSubmission:
-    """Derive, verify and certify a definition unless its content is known and sound; ``made``: what does so, by a
-    ``recipe`` (:mod:`service.derivation`).
+    """Derive, verify and certify a definition unless its content is known and sound; ``make``: what does so, by default
+    here and with whatever time it takes.
 
-    Raises InvalidDocument, TooLarge, LongWork, Refused 403 for a name of others, 409, 422.
+    Raises InvalidDocument, TooLarge, TimeoutError, Refused 403 for a name of others, 409, 422.
     """
     is_mended = False
     with store.database.read() as connection:
@@ -64,10 +65,17 @@ def prepare(
             if known is not None and known.is_derived:
                 return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
             is_mended = known is not None
-    part = made() if made else derive(definition, store.settings.limits.program_nodes, store.admit)
-    store.remember_part(part)
-    made_of = part_content(part, recipe)
-    return PartSubmission(definition.name, definition.digest, made_of, is_mended, entry, origin)
+    found = make() if make else part_content(derive(definition, store.settings.limits.program_nodes))
+    return PartSubmission(definition.name, definition.digest, found, is_mended, entry, origin)
+
+
+def derived(worker: Worker, definition: Definition, limits: Mapping[str, int]) -> PartContent:
+    """What is stored of a definition, derived by a worker; ``limits``: as :attr:`Store.work_limits`.
+
+    Raises InvalidDocument, TooLarge, TimeoutError.
+    """
+    outcome = worker("derive", {"definition": read_json(definition.canonical()), **limits})
+    return PartContent.of_files(outcome.files)
 
 
 def _is_there(connection: Connection, viewer: Viewer, name: str, digest: str) -> bool:

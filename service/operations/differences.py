@@ -2,21 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from service.database.connections import Connection
+from service.jobs.worker import Worker
 from service.operations import catalogue, trees
-from service.operations.sources import tree_parts
+from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.refusals import Refused, unprocessable
 from service.store import Store
 from service.viewer import Viewer
-from substructures.errors import TooLarge
-from substructures.interchange.difference.difference import Difference, of_parts, of_trees
-
-MOST_SINGLE = 5000  # operations of a part, as expected, up to which each change is also looked at by itself
 
 
 def versions(store: Store, viewer: Viewer, a: str, b: str) -> tuple[Version, Version]:
@@ -40,32 +37,21 @@ def _second(find: Callable[[], Any]) -> Any:
         raise (unprocessable(error.code, error.detail, "/query/to") if error.status == 404 else error) from None
 
 
-def of_versions(store: Store, a: Version, b: Version) -> Difference:
+def of_versions(store: Store, worker: Worker, a: Version, b: Version) -> Mapping[str, Any]:
     """The difference of two versions."""
-    with store.database.read() as connection:
-        parts = [store.required_part(connection, version.digest) for version in (a, b)]
-
-    def admit(operations: int) -> None:
-        """Changes of large parts are told together."""
-        if operations > MOST_SINGLE:
-            raise TooLarge("a part of which every change is looked at alone", operations, MOST_SINGLE)
-
-    return of_parts(parts[0], parts[1], admit)
+    item = {side: {"definition": each.digest, "program": each.program} for side, each in (("a", a), ("b", b))}
+    digests = (a.digest, a.program, b.digest, b.program)
+    return worker("difference", item, store.blobs(digests)).summary
 
 
-def of_revisions(store: Store, viewer: Viewer, a: Tree, b: Tree) -> Difference:
+def of_revisions(store: Store, worker: Worker, viewer: Viewer, a: Tree, b: Tree) -> Mapping[str, Any]:
     """The difference of two revisions, whose parts are called by their versions where the viewer sees these."""
-    (first, ours), (second, theirs) = (tree_parts(store, tree) for tree in (a, b))
+    (first, blobs), (second, others) = (pinned_tree(store, tree) for tree in (a, b))
+    instances = [x for item in (first, second) for x in item["spec"].get("instances", ())]
+    references = {x["substructure"] for x in instances if "substructure" in x}
     with store.database.read() as connection:
-        models = [store.model(connection, tree) for tree in (a, b)]
-        references = {x.substructure for spec in (first, second) for x in spec.instances if x.substructure is not None}
         called = {each: _called(connection, viewer, each) for each in references}
-    common = [
-        (name, part, theirs[name])
-        for name, part in ours.items()
-        if name in theirs and part.definition.digest != theirs[name].definition.digest
-    ]
-    return of_trees((first, models[0]), (second, models[1]), common, lambda given: called.get(given, given))
+    return worker("difference", {"a": first, "b": second, "called": called}, {**blobs, **others}).summary
 
 
 def _called(connection: Connection, viewer: Viewer, reference: str) -> str:

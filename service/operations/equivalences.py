@@ -5,61 +5,43 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
-from service.operations import trees
-from service.operations.owners import absent_either
-from service.operations.sources import tree_parts
-from service.queries import catalogue
-from service.queries import trees as stored_trees
-from service.references import parse_reference
+from service.jobs.files import document_of
+from service.jobs.kinds.compare import SIDES, pinned_side
+from service.jobs.kinds.kind import inside
+from service.jobs.worker import Worker
+from service.operations.library import StoreLibrary
+from service.refusals import moved
 from service.store import Store
 from service.viewer import Viewer
-from substructures.errors import InvalidDocument, InvalidInput
-from substructures.interchange.equivalence import Equivalence, equivalence
-from substructures.interchange.importing import document_of
-from substructures.interchange.sides import Parts, sides
-from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
-from substructures.tree.document import TreeSpec
+from substructures.errors import InvalidDocument
 
 
-def compared(store: Store, viewer: Viewer, a: Any, b: Any, coordinates: Mapping[str, str]) -> Equivalence:
-    """Whether two models are the same; each a reference, a definition, a tree, or ``{"file": text}``.
+def compared(
+    store: Store, viewer: Viewer, worker: Worker, a: Any, b: Any, coordinates: Mapping[str, str]
+) -> Mapping[str, Any]:
+    """Whether two models are the same, and what makes them different; each a reference, a definition, a tree, or
+    ``{"file": text}``.
 
     A part that is compared with a tree gets its gravity; references are to what the viewer sees.
-    Raises InvalidDocument, TooLarge, LongWork.
+    Raises InvalidDocument, TooLarge, TimeoutError.
     """
-    found: list[Part | Parts] = []
-    for name, given in (("a", a), ("b", b)):
-        try:
-            found.append(_read(store, viewer, given))
-        except InvalidInput as error:
-            raise error.below(f"/{name}") from None
-    ours, theirs = sides(*found)
-    return equivalence(ours, theirs, coordinates)
+    item: dict[str, Any] = {"coordinates": dict(coordinates), **store.work_limits}
+    digests: list[str] = []
+    for name, given in zip(SIDES, (a, b), strict=True):
+        with moved(f"/{name}".__add__):
+            document = _document(worker, given)
+        with store.database.read() as connection, inside(f"/{name}"):
+            pinned, needed = pinned_side(document, item["nodes"], StoreLibrary(connection, viewer))
+            item[name] = {**pinned, **store.work_limits}
+        digests += needed
+    told = worker("compare", item, store.blobs(digests)).summary
+    return {name: value for name, value in told.items() if name not in SIDES}
 
 
-def _read(store: Store, viewer: Viewer, given: Any) -> Part | Parts:
+def _document(worker: Worker, given: Any) -> Any:
+    """A reference or a document; of a file what is read of it."""
     if isinstance(given, str):
-        return _stored(store, viewer, given)
+        return given
     if not isinstance(given, Mapping):
         raise InvalidDocument.at("", "object-expected", "a reference, a definition, a tree or a file is needed")
-    given = document_of(given)
-    if "instances" in given:
-        spec = TreeSpec.read(given)
-        with store.database.read() as connection:
-            return spec, trees.parts_of(store, connection, viewer, spec)
-    # derived also where it is stored: what is private to others takes its time as what is not there
-    return derive(Definition.read(given), store.settings.limits.program_nodes, store.admit)
-
-
-def _stored(store: Store, viewer: Viewer, reference: str) -> Part | Parts:
-    """The part of this name, or else the tree."""
-    ref = parse_reference(reference)
-    with store.database.read() as connection:
-        version = None if ref is None else catalogue.resolve(connection, viewer, ref)
-        if version is not None:
-            return store.required_part(connection, version.digest)
-        tree = None if ref is None else stored_trees.resolve(connection, viewer, ref)
-        if tree is None:
-            raise InvalidDocument.at("", "unknown-reference", absent_either(connection, viewer, reference))
-    return tree_parts(store, tree)
+    return document_of(worker, given) if "file" in given else given

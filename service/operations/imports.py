@@ -2,21 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from typing import Any
 
 from service.database.connections import Connection
+from service.jobs.worker import Worker
 from service.operations import catalogue, trees
 from service.operations.provenance import Origin
 from service.queries.trees import Tree
 from service.schemas.entries import PLAIN
 from service.store import Store
+from service.summaries import PartContent
 from service.viewer import Viewer
-from substructures.documents import write_json
-from substructures.interchange.importing import Imported
-from substructures.part.part import Part
+from substructures.documents import read_json, write_json
+from substructures.part.definition import Definition
 
 IMPORTED = Origin("import")
 
@@ -29,16 +30,18 @@ class ImportedTree:
     revision: trees.Revision
 
 
-def prepare(store: Store, viewer: Viewer, found: Imported) -> ImportedTree:
+def prepare(store: Store, viewer: Viewer, worker: Worker, tree: Mapping[str, Any]) -> ImportedTree:
     """Derive the parts of a file and couple them. Raises as submissions of parts and trees."""
-    revision = trees.prepare(store, viewer, found.tree, PLAIN, named=True)
-    parts = revision.parts.values()
-    made = [catalogue.prepare(store, viewer, p.definition, PLAIN, IMPORTED, partial(_given, p)) for p in parts]
+    revision = trees.prepare(store, viewer, worker, tree, PLAIN, named=True)
+    made = []
+    for content in revision.coupled.inline:
+        definition = Definition.stored(read_json(content.row["definition"].encode()))
+        made.append(catalogue.prepare(store, viewer, definition, PLAIN, IMPORTED, partial(_given, content)))
     return ImportedTree(made, revision)
 
 
-def _given(part: Part) -> Part:
-    return part
+def _given(content: PartContent) -> PartContent:
+    return content
 
 
 def commit(connection: Connection, viewer: Viewer, made: ImportedTree) -> tuple[Tree, bool]:
@@ -48,6 +51,6 @@ def commit(connection: Connection, viewer: Viewer, made: ImportedTree) -> tuple[
     return trees.commit(connection, viewer, made.revision)
 
 
-def answer_of(found: Imported, stored: dict[str, Any] | None = None) -> bytes:
+def answer_of(found: Mapping[str, Any], stored: dict[str, Any] | None = None) -> bytes:
     """The body of an answer: what was read, the report, and what became of it in the store."""
-    return write_json({**found.plain(), **({} if stored is None else {"stored": stored})})
+    return write_json({**found, **({} if stored is None else {"stored": stored})})

@@ -21,7 +21,7 @@ from service.queries import results
 from service.queries.attempts import Attempt
 from service.queries.jobs import submitters
 from service.schemas.entries import Entry, PartEntry
-from service.summaries import UNKNOWN, PartContent, float_of
+from service.summaries import UNKNOWN, PartContent
 from service.viewer import Viewer
 from substructures.documents import read_json, write_json
 
@@ -67,12 +67,7 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
 
 
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
-    files, told = outcome.files, outcome.summary
-    inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
-    figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
-    made = files["summary"], told["parts"], inline, told.get("software", UNKNOWN)
-    checked("the program of a tree", told["program"], unpack(files["program"]))
-    coupled = trees.TreeContent(told["name"], files["spec"], files["program"], *figures, *made)
+    coupled = trees.TreeContent.of_outcome(outcome)
     tree, _ = trees.store(connection, viewer, coupled, _entry(item), item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 

@@ -10,7 +10,8 @@ from typing import Any
 
 from service.database.connections import Connection
 from service.jobs import kinds
-from service.operations.library import StoreLibrary
+from service.jobs.files import document_of
+from service.operations.library import Reader, StoreLibrary
 from service.operations.owners import require
 from service.queries import audit, jobs, uploads
 from service.queries.jobs import Job, NewItem
@@ -20,6 +21,7 @@ from service.settings import Limits
 from service.store import Store
 from service.viewer import Viewer
 from substructures.documents import require_object, write_json
+from substructures.documents.fields import hidden
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions, of which every item names one
@@ -74,8 +76,10 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
     label = body.get("label", "")
     if not isinstance(label, str) or len(label) > LONGEST_LABEL:
         raise InvalidDocument.at("/label", "bad-label", f"a label is a text of at most {LONGEST_LABEL} characters")
+    if hidden(label):
+        raise InvalidDocument.at("/label", "control-character", hidden(label))
     with store.database.read() as connection:
-        library = StoreLibrary(connection, viewer, store.settings.mirror_sources)
+        library = StoreLibrary(connection, viewer, store.settings.mirror_sources, _reader(store, viewer))
         skipped: list[Skipped] = []
         if _skips(body):
             items, skipped = _good(kind, body, library, store.settings.limits)
@@ -87,6 +91,21 @@ def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] 
             message = f"every key would see the results, and private is {private}; make it public, or do not share"
             raise InvalidDocument.at("/shared", "private-part", message)
         return JobSubmission(kind, items, shared=shared, skipped=skipped, label=label)
+
+
+def _reader(store: Store, viewer: Viewer) -> Reader:
+    """What reads the robot files of a submission: a worker, which may take for all of them what an item may."""
+    worker, limit = store.job_worker(viewer.owner), store.settings.limits.job_cpu_seconds
+
+    def read(given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The document. Raises InvalidDocument, Refused 503."""
+        try:
+            return document_of(worker, given)
+        except TimeoutError:
+            detail = "to read the files of this submission takes longer than an item of a job may; send fewer of them"
+            raise Refused(503, "took-too-long", detail, limit=limit) from None
+
+    return read
 
 
 def _skips(body: Mapping[str, Any]) -> bool:

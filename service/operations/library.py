@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
+from typing import Any
 
 from service.database.connections import Connection
 from service.jobs.kinds.kind import ENTRY
@@ -21,17 +22,22 @@ from service.schemas.jobs import ItemDocument
 from service.sources import read_source
 from service.viewer import OPEN, PUBLIC, Viewer
 from substructures.errors import InvalidDocument
+from substructures.interchange.importing import document_of
+
+Reader = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
 
 class StoreLibrary:
     """Reads in one transaction, so that all items of a submission see the same state; answers are remembered."""
 
-    def __init__(self, connection: Connection, viewer: Viewer, sources: Sequence[str] = ()) -> None:
-        """``sources``: settings of the instances that may be mirrored. ``private``: names of what was found and is not
-        for all.
+    def __init__(
+        self, connection: Connection, viewer: Viewer, sources: Sequence[str] = (), file: Reader = document_of
+    ) -> None:
+        """``sources``: settings of the instances that may be mirrored; ``file`` reads a robot file. ``private``: names
+        of what was found and is not for all.
         """
         self._connection, self._viewer = connection, viewer
-        self._sources = sources
+        self._sources, self.file = sources, file
         self.private: set[str] = set()
         self.version = lru_cache(maxsize=None)(self._version)
         self.tree = lru_cache(maxsize=1000)(self._tree)

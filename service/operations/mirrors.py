@@ -193,7 +193,8 @@ class Mirror:
     def _committed(self, part: BundledPart) -> Imported:
         """What a part becomes; once more where another host was in the way."""
         for left in reversed(range(ATTEMPTS)):
-            ready = bundles.prepare(self._store, self._viewer, part, PLAIN, self._max_nodes)
+            worker = self._store.job_worker(self._viewer.owner)
+            ready = bundles.prepare(self._store, self._viewer, part, PLAIN, worker, self._max_nodes)
             try:
                 with self._store.database.write() as connection:
                     (found,) = bundles.commit(connection, self._viewer, [part], [ready])

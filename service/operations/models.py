@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from itertools import product
-from typing import Any
 
 import orjson
 
-from service.analyses.printing import Style, text_of
-from service.answers import Answer
-from service.negotiation import MEDIA_TYPES
 from service.queries.formulas import FormulaRow
 from service.refusals import unprocessable
-from substructures.export import Interface
 from substructures.expr.program import Output, Program
 from substructures.part.part import INTERNAL, LEADING, Part
 from substructures.quantities.quantity import outputs_of
@@ -120,18 +115,3 @@ def _slice(whole: Output, lead: tuple[int, ...], negated: Callable[[int], int]) 
         if index[: len(lead)] == lead
     }
     return Output(whole.shape[len(lead) :], tuple(sorted(kept)), tuple(kept[index] for index in sorted(kept)))
-
-
-def printed(
-    program: Program,
-    style: Style,
-    quantity: str,
-    interface: Interface,
-    members: Mapping[str, Any] | None = None,
-    glossary: Program | None = None,
-) -> Answer:
-    """The program in the format chosen; ``members`` are put before it in JSON; ``glossary``: names of steps. Raises
-    TooLarge.
-    """
-    text = text_of(program, style, quantity, interface, members, glossary=glossary)
-    return Answer(200, text.encode(), {"Content-Type": MEDIA_TYPES[style.format]})

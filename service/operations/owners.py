@@ -35,8 +35,8 @@ def _new(viewer: Viewer, entry: Entry) -> Ownership:
 
 def _checked(viewer: Viewer, kind: Kind, name: str, found: Ownership, entry: Entry) -> Ownership:
     if not viewer.may_change(found.owner):
-        # of a private name nothing is told but that it cannot be had
-        whose = f"belongs to '{found.owner}'" if found.visibility == PUBLIC else "is taken"
+        # of a private name nothing is told but that it cannot be had, be it there or not any more
+        whose = f"belongs to '{found.owner}'" if found.visibility == PUBLIC else "cannot be had"
         advice = f"take another name, for example '{_suggested(name, viewer.owner)}'"
         advice += ", and 'derived_from' to say what it was made from" if kind == "substructure" else ""
         raise Refused(403, "name-taken", f"the name '{name}' of a {kind} {whose}; {advice}")

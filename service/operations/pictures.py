@@ -10,6 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import orjson
 
+from service.jobs.kinds.reported import INSTANCE
 from service.operations.evaluations import check_size
 from service.operations.sources import tree_parts
 from service.queries.catalogue import Version
@@ -26,7 +27,6 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
 PoseValues = tuple[float, ...]
-INSTANCE = "part"
 LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 

@@ -8,9 +8,11 @@ from typing import Any
 
 from service.database.connections import Connection
 from service.derivation import recipe_of
+from service.jobs.kinds.requested import publication_of
+from service.jobs.worker import Worker
 from service.operations import catalogue, owners, trees
 from service.operations.provenance import Origin
-from service.operations.sources import tree_parts
+from service.operations.sources import pinned_tree, tree_parts
 from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree
@@ -18,19 +20,19 @@ from service.refusals import Refused
 from service.schemas.entries import PartEntry
 from service.schemas.publishing import PublishRequest
 from service.store import Store
+from service.summaries import PartContent
 from service.viewer import PRIVATE, PUBLIC, Viewer
-from substructures.documents import read_json
-from substructures.part.part import Part
-from substructures.tree.published import Publication, Published, published
-from substructures.tree.published_formulas import published_part
+from substructures.documents import read_json, read_model
+from substructures.tree.published import Published, published
 
 
 @dataclass(frozen=True, slots=True)
 class Module:
-    """A tree as a definition that is to be stored, with the parts of its instances."""
+    """A ``tree`` as a definition that is to be stored; ``request``: what it was asked to be."""
 
     found: Published
-    parts: Mapping[str, Part]
+    tree: Tree
+    request: Any
     entry: PartEntry
     origin: Origin
     recipe: str
@@ -41,8 +43,12 @@ class Module:
         return plain | self.entry.model_dump(exclude_none=True)
 
 
-def module(store: Store, viewer: Viewer, text: str, wanted: PublishRequest) -> Module:
-    """The definition of a tree as a part. Raises Refused 404, 403, 409, InvalidDocument."""
+def module(store: Store, viewer: Viewer, text: str, request: Any) -> Module:
+    """The definition of a tree as a part; ``request``: the body of a PublishRequest.
+
+    Raises Refused 404, 403, 409, InvalidDocument.
+    """
+    wanted = read_model(PublishRequest, request)
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, text)
         name = wanted.name or tree.name
@@ -52,10 +58,10 @@ def module(store: Store, viewer: Viewer, text: str, wanted: PublishRequest) -> M
         uses = {instance: part.definition.digest for instance, part in parts.items()}
         _require_visible(connection, viewer, tree, name, entry, uses)
         recipes = {instance: content.get_recipe(connection, digest) for instance, digest in uses.items()}
-    how = Publication({"name": name, **wanted.about()}, wanted.ports, tuple(wanted.free), wanted.defaults)
+    how = publication_of(wanted, name)
     found = published(spec, parts, how)
     origin = Origin("tree", tree.name, tree.revision, uses)
-    return Module(found, parts, entry, origin, recipe_of(spec, parts, recipes, how))
+    return Module(found, tree, request, entry, origin, recipe_of(spec, parts, recipes, how))
 
 
 def _require_visible(
@@ -73,11 +79,15 @@ def _require_visible(
             raise Refused(409, "private-part", f"'{part}' is private, and the part would be public: make it public")
 
 
-def prepare(store: Store, viewer: Viewer, found: Module) -> catalogue.PartSubmission:
+def prepare(store: Store, viewer: Viewer, worker: Worker, found: Module) -> catalogue.PartSubmission:
     """Couple, verify and certify it. Raises as :func:`service.operations.catalogue.prepare`."""
+    definition = found.found.definition
 
-    def made() -> Part:
-        """The part, coupled of the stored formulas."""
-        return published_part(found.found, found.parts, store.settings.limits.program_nodes, store.admit)
+    def make() -> PartContent:
+        """What is stored of it, coupled of the stored formulas."""
+        pinned, blobs = pinned_tree(store, found.tree)
+        item = {"parts": pinned["parts"], "request": found.request, "name": definition.name, **store.work_limits}
+        item["recipe"] = found.recipe
+        return PartContent.of_files(worker("publish", item, blobs).files)
 
-    return catalogue.prepare(store, viewer, found.found.definition, found.entry, found.origin, made, found.recipe)
+    return catalogue.prepare(store, viewer, definition, found.entry, found.origin, make)

@@ -3,25 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from service.answers import Answer
-from service.operations.pictures import INSTANCE
-from service.operations.sources import tree_parts
+from service.jobs.worker import Worker
+from service.operations.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.schemas.jobs import ItemDocument
 from service.store import Store
-from substructures.analysis.report.latex import latex_report
-from substructures.analysis.report.page import page_report
-from substructures.analysis.report.report import Heading, Report, report
-from substructures.analysis.report.text import text_report
-from substructures.documents import write_json
-from substructures.part.part import Part
-from substructures.pictures.latex import latex_picture
-from substructures.pictures.tree import picture
-from substructures.tree.document import TreeSpec
-from substructures.tree.glossary import glossary
-from substructures.tree.model import Model
 
 FORMATS: Mapping[str, str] = {
     "json": "application/json",
@@ -29,67 +18,35 @@ FORMATS: Mapping[str, str] = {
     "latex": "application/x-latex; charset=utf-8",
     "mathml": "application/xhtml+xml; charset=utf-8",
 }
-#: of a part alone, which does not say gravity
-GRAVITY = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": "9.81", "unit": "m/s^2"}}}
-ASSUMED = "The part stands alone on the ground, with gravity g against the third axis of its interface: an assumption."
 
 
-@dataclass(frozen=True, slots=True)
-class Subject:
-    """What a report is about."""
-
-    heading: Heading
-    spec: TreeSpec
-    parts: Mapping[str, Part]
-    model: Model
-
-
-def of_part(store: Store, version: Version) -> Subject:
-    """A part alone. Raises Refused for damaged content, TooLarge."""
-    with store.database.read() as connection:
-        part = store.required_part(connection, version.digest)
-    instance = {"name": INSTANCE, "substructure": f"{version.name}@{version.digest}"}
-    spec = TreeSpec.read({"name": version.name, "instances": [instance], **GRAVITY})
-    parts = {INSTANCE: part}
-    definition = part.definition
-    called = f"{version.name}@{version.version}"
-    heading = Heading(called, definition.title, definition.description, version.digest, (ASSUMED,))
-    return Subject(heading, spec, parts, store.coupled(spec, parts))
+def of_part(
+    store: Store,
+    worker: Worker,
+    version: Version,
+    format: str,  # noqa: A002 -- in the contract
+    document: bool,
+) -> Answer:
+    """The report about a part alone in one of FORMATS; ``document``: LaTeX with its head and end. Raises TooLarge,
+    Refused for damaged content, TimeoutError.
+    """
+    item = {"definition": version.digest, "program": version.program, "called": f"{version.name}@{version.version}"}
+    return _written(store, worker, item, store.blobs((version.digest, version.program)), format, document)
 
 
-def of_tree(store: Store, tree: Tree) -> Subject:
-    """A revision of a tree. Raises Refused for damaged content."""
-    spec, parts = tree_parts(store, tree)
-    with store.database.read() as connection:
-        model = store.model(connection, tree)
-    notes = [f"Instances: {', '.join(f'{name} ({part.name})' for name, part in parts.items())}."]
-    if model.closures:
-        closed = ", ".join(rows.name for rows in model.closures)
-        notes.append(f"The formulas are those of the tree without its closures ({closed}).")
-    heading = Heading(f"{tree.name}@{tree.revision}", f"Tree {tree.name}", "", tree.digest, tuple(notes))
-    return Subject(heading, spec, parts, model)
+def of_tree(store: Store, worker: Worker, tree: Tree, format: str, document: bool) -> Answer:  # noqa: A002 -- as above
+    """The report about a revision of a tree; as :func:`of_part`."""
+    item, blobs = pinned_tree(store, tree)
+    return _written(store, worker, {**item, "called": f"{tree.name}@{tree.revision}"}, blobs, format, document)
 
 
-def written(store: Store, about: Subject, format: str, document: bool) -> Answer:  # noqa: A002 -- the name in the contract
-    """The report in one of FORMATS; ``document``: LaTeX with its head and end. Raises TooLarge."""
-    found = report(
-        about.model,
-        {name: part.definition for name, part in about.parts.items()},
-        about.heading,
-        glossary(about.spec, about.parts, model=about.model.program),
-    )
-    text = _text(found, about, format, document, store.settings.limits.program_nodes)
-    return Answer(200, text, {"Content-Type": FORMATS[format]})
-
-
-def _text(found: Report, about: Subject, format: str, document: bool, limit: int) -> bytes:  # noqa: A002 -- as above
-    drawn = about.spec, about.parts, about.model
-    match format:
-        case "json":
-            return write_json(found.plain(limit))
-        case "latex":
-            return latex_report(found, latex_picture(*drawn), document, limit).encode()
-        case "mathml":
-            return page_report(found, picture(*drawn), limit).encode()
-        case _:
-            return text_report(found, limit).encode()
+def _written(
+    store: Store,
+    worker: Worker,
+    item: ItemDocument,
+    blobs: Mapping[str, bytes],
+    format: str,  # noqa: A002 -- as above
+    document: bool,
+) -> Answer:
+    how = {"format": format, "document": document, "nodes": store.settings.limits.program_nodes}
+    return Answer(200, worker("report", {**item, **how}, blobs).files["report"], {"Content-Type": FORMATS[format]})

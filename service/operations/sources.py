@@ -1,4 +1,6 @@
-"""What evaluations of a stored tree work with: programs, regressor, reactions, powers, and the way over its parts."""
+"""What evaluations of a stored tree work with: programs, what is derived of its parts, and the way over these; and the
+tree as an item of a work, with its digests and the contents that go with them.
+"""
 
 from __future__ import annotations
 
@@ -6,9 +8,11 @@ from functools import partial
 from typing import Any
 
 from service.integrity import reading
-from service.operations.trees import parts_of
+from service.jobs.kinds.trees import pinned
+from service.operations.library import StoreLibrary
 from service.queries import trees
 from service.queries.trees import Tree
+from service.schemas.jobs import ItemDocument
 from service.store import Store
 from service.viewer import ANYBODY
 from substructures.documents import read_json
@@ -69,14 +73,25 @@ def _numeric(store: Store, tree: Tree) -> NumericTree:
 
 def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a stored tree and its parts by instance. Raises Refused for content that is damaged or gone."""
-    # a part that is not found was there when the tree was stored
     with reading(f"the document of tree {tree.name}@{tree.revision}", tree.digest):
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         with store.database.read() as connection:
-            return spec, parts_of(store, connection, ANYBODY, spec)  # the tree was found for whoever asks
+            return spec, {each.name: store.required_part(connection, each.digest) for each in spec.instances}
 
 
 def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:
     """The digests of what is derived of a tree beside its own program is made of."""
     with store.database.read() as connection:
         return trees.part_programs(connection, tree.name, tree.revision)
+
+
+def pinned_tree(store: Store, tree: Tree, has_parts: bool = True) -> tuple[ItemDocument, dict[str, bytes]]:
+    """The fields of an item about a revision that was found for whoever asks, and its blobs; ``has_parts``: also the
+    formulas of its parts. Raises Refused for content that is damaged or gone.
+    """
+    with store.database.read() as connection:
+        reference, library = f"{tree.name}@{tree.revision}", StoreLibrary(connection, ANYBODY)
+        item, digests = pinned({"tree": reference}, library, store.settings.limits.program_nodes, has_parts)
+        if "inputs" not in item["model"]:
+            item["model"] |= store.declared(connection, tree)
+    return item, store.blobs(digests)

@@ -8,40 +8,27 @@ from typing import Any
 
 from service.answers import etag
 from service.database.connections import Connection
-from service.database.packed import pack
-from service.integrity import digest_of
+from service.database.packed import unpack
+from service.integrity import checked, digest_of
+from service.jobs.engine import Outcome
+from service.jobs.kinds.assemble import NAMED, pinned_spec
+from service.jobs.worker import Worker
 from service.operations import catalogue, owners
+from service.operations.library import StoreLibrary
 from service.queries import audit, content, trees, uses
-from service.queries import catalogue as versions
 from service.queries.common import now
-from service.queries.owners import private_parts
 from service.queries.uses import Withdrawn
 from service.references import Reference, is_pinned, parse_reference
-from service.refusals import Refused, StaleError, not_found
+from service.refusals import Refused, StaleError, moved, not_found
 from service.schemas.entries import PLAIN, Entry
 from service.store import Store
-from service.summaries import PartContent, part_content, tree_summary
+from service.summaries import UNKNOWN, PartContent, float_of
 from service.viewer import Viewer
 from substructures.documents import read_json
 from substructures.documents.tables import with_points
-from substructures.errors import InvalidDocument, InvalidInput, among
+from substructures.errors import InvalidDocument, among
 from substructures.part.parameters import counted
-from substructures.part.part import Part, derive
-from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.model import Model, couple
-from substructures.tree.plausibility import Plausibility
-
-
-@dataclass(frozen=True, slots=True)
-class Revision:
-    """A coupled tree ready to be stored; ``base`` is what it changes, ``is_exact``: named by number."""
-
-    spec: TreeSpec
-    model: Model
-    parts: Mapping[str, Part]
-    base: trees.Tree | None = None
-    is_exact: bool = False
-    entry: Entry = PLAIN
+from substructures.tree.document import TreeSpec
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,6 +53,26 @@ class TreeContent:
     inline: Sequence[PartContent] = ()
     software: str = ""
 
+    @classmethod
+    def of_outcome(cls, outcome: Outcome) -> TreeContent:
+        """What a work of the kind ``assemble`` has made. Raises Refused for a program that is not what it is called."""
+        files, told = outcome.files, outcome.summary
+        inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
+        figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
+        made = files["summary"], told["parts"], inline, told.get("software", UNKNOWN)
+        checked("the program of a tree", told["program"], unpack(files["program"]))
+        return cls(told["name"], files["spec"], files["program"], *figures, *made)
+
+
+@dataclass(frozen=True, slots=True)
+class Revision:
+    """A coupled tree ready to be stored; ``base`` is what it changes, ``is_exact``: named by number."""
+
+    coupled: TreeContent
+    base: trees.Tree | None = None
+    is_exact: bool = False
+    entry: Entry = PLAIN
+
 
 @dataclass(frozen=True, slots=True)
 class TreeChange:
@@ -77,11 +84,12 @@ class TreeChange:
     step: str
 
 
-def prepare(store: Store, viewer: Viewer, data: Any, entry: Entry, named: bool = False) -> Revision:
+def prepare(store: Store, viewer: Viewer, worker: Worker, data: Any, entry: Entry, named: bool = False) -> Revision:
     """Resolve, pin and couple a tree; ``named``: parts that it brings along are called by name, too, for they are
-    stored before it. Raises InvalidDocument, TooLarge, LongWork, Refused 403 or 409.
+    stored before it. Raises InvalidDocument, TooLarge, TimeoutError, Refused 403 or 409.
     """
-    return _coupled(store, viewer, TreeSpec.read(data), entry, named=named)
+    coupled = _coupled(store, viewer, worker, TreeSpec.read(data), entry, {NAMED: True} if named else {})
+    return Revision(coupled, entry=entry)
 
 
 def coupling(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
@@ -127,12 +135,11 @@ def unload(store: Store, viewer: Viewer, text: str, name: str, if_match: str | N
     return TreeChange(changed, base, is_pinned(text), "")
 
 
-def prepare_change(store: Store, viewer: Viewer, change: TreeChange) -> Revision:
-    """Couple a changed tree. Raises InvalidDocument, TooLarge, LongWork."""
-    try:
-        return _coupled(store, viewer, TreeSpec.read(change.document), PLAIN, change.base, change.is_exact)
-    except InvalidInput as error:  # as seen from the instance document alone
-        raise error.moved(lambda pointer: pointer.removeprefix(change.step)) from None
+def prepare_change(store: Store, viewer: Viewer, worker: Worker, change: TreeChange) -> Revision:
+    """Couple a changed tree. Raises InvalidDocument, TooLarge, TimeoutError."""
+    with moved(lambda pointer: pointer.removeprefix(change.step)):  # as seen from the instance document alone
+        coupled = _coupled(store, viewer, worker, TreeSpec.read(change.document), PLAIN, {})
+    return Revision(coupled, change.base, change.is_exact)
 
 
 def tree_tag(tree: trees.Tree, withdrawn: Sequence[Withdrawn] = ()) -> str:
@@ -172,85 +179,23 @@ def _current(tree: trees.Tree) -> dict[str, Any]:
 
 
 def _coupled(
-    store: Store,
-    viewer: Viewer,
-    spec: TreeSpec,
-    entry: Entry,
-    base: trees.Tree | None = None,
-    is_exact: bool = False,
-    named: bool = False,
-) -> Revision:
+    store: Store, viewer: Viewer, worker: Worker, spec: TreeSpec, entry: Entry, members: Mapping[str, Any]
+) -> TreeContent:
+    """What is stored of a tree; ``members``: of the item of the work."""
     with store.database.read() as connection:
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
-        parts = parts_of(store, connection, viewer, spec)
-        digests = {name: part.definition.digest for name, part in parts.items()}
-        faults = list(owners.private_parts(connection, whose, list(map(_shown, spec.instances)), digests))
+        item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer))
+        digests = {each.name: each.digest for each in TreeSpec.stored(item["tree"]).instances}
+        faults = list(owners.private_parts(connection, whose, item["tree"].get("instances", ()), digests))
     if faults:
         raise InvalidDocument(faults)
-    pinned = tuple(_pin(instance, parts[instance.name], named) for instance in spec.instances)
-    spec = spec.model_copy(update={"instances": pinned})
-    model = couple(spec, parts, store.settings.limits.program_nodes, store.admit)
-    store.remember_model(spec.digest, model)
-    store.kernels.prepare(parts.values())
-    return Revision(spec, model, parts, base, is_exact, entry)
-
-
-def _shown(instance: Instance) -> dict[str, Any]:
-    return {"name": instance.name, "substructure": instance.substructure}
-
-
-def parts_of(store: Store, connection: Connection, viewer: Viewer, spec: TreeSpec) -> dict[str, Part]:
-    """The part that every instance is; an inline definition that is not stored is derived. Raises InvalidDocument."""
-    found = [_part(store, connection, viewer, index, instance) for index, instance in enumerate(spec.instances)]
-    return {instance.name: part for instance, part in zip(spec.instances, found, strict=True)}
-
-
-def _part(store: Store, connection: Connection, viewer: Viewer, index: int, instance: Instance) -> Part:
-    if instance.definition is not None:
-        digest = instance.definition.digest
-        hidden = [owner for _, owner in private_parts(connection, [digest]).values() if not viewer.may_change(owner)]
-        # what is private takes its time as what is not there
-        return (None if hidden else store.part(connection, digest, is_newest=True)) or _derived(store, index, instance)
-    pointer = f"/instances/{index}/substructure"
-    ref = parse_reference(instance.substructure or "")
-    version = versions.resolve(connection, viewer, ref) if ref is not None else None
-    if version is None:
-        why = owners.absent_part(connection, viewer, instance.substructure or "")
-        message = f"instance '{instance.name}': {why}"
-        raise InvalidDocument.at(pointer, "unknown-substructure", message)
-    return store.required_part(connection, version.digest, is_newest=True)
-
-
-def _derived(store: Store, index: int, instance: Instance) -> Part:
-    if instance.definition is None:
-        raise ValueError("only an inline definition can be derived")
-    step = f"/instances/{index}/definition"
-    try:
-        part = derive(instance.definition, store.settings.limits.program_nodes, store.admit)
-    except InvalidInput as error:
-        raise error.below(step) from None
-    store.remember_part(part)
-    return part
-
-
-def _pin(instance: Instance, part: Part, named: bool) -> Instance:
-    if instance.definition is not None and not named:
-        return instance
-    reference = f"{part.definition.name}@{part.definition.digest}"
-    return instance.model_copy(update={"definition": None, "substructure": reference})
+    return TreeContent.of_outcome(worker("assemble", {**item, **store.work_limits, **members}, store.blobs(blobs)))
 
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:
     """Store a revision; as :func:`store`."""
-    spec, model = revision.spec, revision.model
-    inline = [part_content(revision.parts[each.name]) for each in spec.instances if each.definition is not None]
-    digests = {name: part.definition.digest for name, part in revision.parts.items()}
-    program, summary = model.program, tree_summary(spec, model)
-    mass = Plausibility(spec, {name: part.definition for name, part in revision.parts.items()}).mass
-    figures = program.digest, len(program), model.dof, model.joints, mass
-    coupled = TreeContent(spec.name, spec.canonical(), pack(program), *figures, summary, digests, inline)
     number = revision.base.revision if revision.base else None
-    return store(connection, viewer, coupled, revision.entry, number, revision.is_exact)
+    return store(connection, viewer, revision.coupled, revision.entry, number, revision.is_exact)
 
 
 def store(

@@ -15,6 +15,7 @@ from fastapi.routing import APIRoute
 from starlette.requests import cookie_parser
 
 from service import keys
+from service.http.connections import network_of
 from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials
 from service.pages.html import Html, facts, tag
 from service.pages.layout import HEADERS, document
@@ -64,11 +65,16 @@ async def sign_in(request: Request, store: StoreOf, raw: RawBody) -> Response:
     _require_own_page(request)
     given = _fields(request, raw)
     target = _target(given.get("next", "/"))
+    address, wrong = network_of(request.client.host) if request.client else "", store.runtime.wrong_keys
     try:
+        wrong.require_few(address)
         value = await run_in_threadpool(_begin, store, given.get("key", "").strip())
     except Refused as refused:
+        if refused.status == 429:
+            return _answer(_form(target, refused.detail), 429, refused.headers)
         if refused.status != 401:
             raise
+        wrong.note(address)
         return _answer(_form(target, "this is no API key of this server, or none any more"), 401, refused.headers)
     headers = {"Location": target, "Cache-Control": "no-store", "Set-Cookie": _cookie(request, value, _seconds())}
     return Response(status_code=303, headers=headers)

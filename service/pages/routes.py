@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
+from service.jobs.worker import Worker
 from service.operations import catalogue, differences, jobs, searches, trees
 from service.operations.sources import sources_of
 from service.pages.account import PageRoute
@@ -31,14 +31,12 @@ from service.queries.part_search import CatalogueSearch
 from service.queries.search import RELEVANCE
 from service.queries.tree_search import TreeSearch
 from service.queries.words import words_of
-from service.settings import Settings
 from service.viewer import ANYBODY
 from substructures.part.outputs import with_own_inertia
 
 To = Annotated[str, Query(min_length=1, max_length=160)]
 ADVICE = "compare smaller ones"
 CARDS, TREES, JOBS, BAD = 60, 100, 100, 50
-_HOST = re.compile(r"[A-Za-z0-9.-]+(:[0-9]+)?|\[[0-9A-Fa-f:.]+\](:[0-9]+)?")
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
 
@@ -59,13 +57,12 @@ def first_page(
         some = searches.trees(connection, viewer, TreeSearch(), TREES, None)
     shown = Shown(found, q, total, some.items, some.next_token is not None)
     with_key = viewer != ANYBODY
-    return answer(request, page(shown, _address(request, store.settings), with_key))
+    return answer(request, page(shown, _address(request), with_key))
 
 
-def _address(request: Request, settings: Settings) -> str:
-    """The address that the browser used, if it is one that can stand in a command line."""
-    host = request.headers.get("host", "")
-    return f"{request.url.scheme}://{host if _HOST.fullmatch(host) else f'{settings.host}:{settings.port}'}"
+def _address(request: Request) -> str:
+    """The address that the browser used."""
+    return f"{request.url.scheme}://{request.headers['host']}"
 
 
 @router.get("/substructures/{ref}")
@@ -90,11 +87,11 @@ def substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -
 async def part_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What changed between two versions."""
 
-    def shown() -> Response:
+    def shown(worker: Worker) -> Response:
         """The page, made in a thread."""
         a, b = differences.versions(store, viewer, ref, to)
         names = f"{a.name}@{a.version}", f"{b.name}@{b.version}"
-        return answer(request, difference_page("substructures", *names, differences.of_versions(store, a, b)))
+        return answer(request, difference_page("substructures", *names, differences.of_versions(store, worker, a, b)))
 
     return await in_time(request, shown, ADVICE)
 
@@ -103,11 +100,12 @@ async def part_difference(ref: str, to: To, request: Request, store: StoreOf, vi
 async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What changed between two revisions of a tree."""
 
-    def shown() -> Response:
+    def shown(worker: Worker) -> Response:
         """The page, made in a thread."""
         a, b = differences.revisions(store, viewer, ref, to)
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
-        return answer(request, difference_page("trees", *names, differences.of_revisions(store, viewer, a, b)))
+        found = differences.of_revisions(store, worker, viewer, a, b)
+        return answer(request, difference_page("trees", *names, found))
 
     return await in_time(request, shown, ADVICE)
 

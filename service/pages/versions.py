@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from service.pages.html import Content, Html, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.uses import Use, Withdrawn
 from service.queries.versions import RevisionEntry, VersionEntry
-from substructures.interchange.difference.difference import Difference
-from substructures.interchange.difference.formulas import QuantityDifference
 
 SHOWN = 20  # versions, revisions, uses
 
@@ -78,15 +77,15 @@ def withdrawn_section(withdrawn: Sequence[Withdrawn]) -> list[Html]:
     ]
 
 
-def difference_page(kind: str, a: str, b: str, found: Difference) -> bytes:
+def difference_page(kind: str, a: str, b: str, found: Mapping[str, Any]) -> bytes:
     """The bytes of the page about a difference; ``kind``: ``substructures`` or ``trees``."""
-    fields = [(tag("code", each.place), each.told(found.units)) for each in found.definition]
-    quantities = [_quantity(each) for each in found.quantities if each.differing]
+    fields = [(tag("code", each["place"]), each["words"]) for each in found["definition"]]
+    quantities = [_quantity(name, each) for name, each in found["quantities"].items() if each["differing"]]
     address = f"/v1/{kind}/{a}/difference?to={b}"
     return document(
         f"{a} and {b} - substructures",
         tag("h1", link(a, f"/{kind}/{a}"), " and ", link(b, f"/{kind}/{b}")),
-        tag("ul", [tag("li", words) for words in found.words]),
+        tag("ul", [tag("li", words) for words in found["words"]]),
         *([tag("h2", "Fields"), table(("place", "change"), fields)] if fields else []),
         *([tag("h2", "Formulas"), table(COLUMNS, quantities)] if quantities else []),
         tag("p", "Entry by entry: ", link("JSON", address)),
@@ -96,10 +95,10 @@ def difference_page(kind: str, a: str, b: str, found: Difference) -> bytes:
 COLUMNS = ("quantity", "entries", "changed", "new", "gone", "other numbers at the defaults", "at most")
 
 
-def _quantity(each: QuantityDifference) -> tuple[Content, ...]:
-    size = "" if each.change is None else f"{100 * each.change:.2g} %"
-    counts = [each.count(state) for state in ("changed", "new", "gone")]
-    return tag("code", each.name), each.entries, *counts, each.moved, size
+def _quantity(name: str, each: Mapping[str, Any]) -> tuple[Content, ...]:
+    size = "" if each["change"] is None else f"{100 * each['change']:.2g} %"
+    counts = [each[state] for state in ("changed", "new", "gone")]
+    return tag("code", name), each["entries"], *counts, each["moved"], size
 
 
 def _whence(entry: VersionEntry) -> Html:

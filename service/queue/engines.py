@@ -11,6 +11,7 @@ from urllib.parse import urlsplit
 
 from service.jobs.engine import Engine
 from service.jobs.local import LocalEngine
+from service.jobs.pool import NICE, WorkerPool
 from service.jobs.process import rights_of
 from service.settings import Settings, SettingsError
 
@@ -25,6 +26,16 @@ def engine_of(settings: Settings) -> Callable[[], Engine] | None:
         case "dask":
             return _dask(settings.engine_address)
     return None
+
+
+def worker_pool(settings: Settings, warm: bool = True) -> WorkerPool:
+    """The runners of one process that answers requests: one more than it has cores, so that one is free for others.
+
+    ``warm``: the first one is started now. Raises SettingsError.
+    """
+    _check_user(settings.runner_user)
+    cores = -(-(os.cpu_count() or 1) // settings.processes)
+    return WorkerPool(cores + 1, lambda: LocalEngine(1, settings.runner_user, NICE), warm)
 
 
 def _check_user(user: str) -> None:

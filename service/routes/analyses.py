@@ -8,12 +8,12 @@ from fastapi import APIRouter, Request, Response
 
 from service.analyses.numbers import ANALYSES
 from service.analyses.numbers.analysis import Analysis
-from service.analyses.results import JSON, MEDIA_TYPES
+from service.analyses.results import JSON
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.negotiation import MEDIA_TYPES as PRINTED
 from service.negotiation import choose_media_type
-from service.operations.analyses import analyse, velocity_equations
+from service.operations.analyses import FORMATS, analyse, velocity_equations
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, deferred
 from service.routes.style import StyleOf
@@ -23,17 +23,13 @@ router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
 READ = [needs("read")]
 
 
-FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
-
-
 def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
     @timed("analyse")
     def _run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
         item = {"tree": ref, "analysis": name, "request": body, "format": FORMATS[media]}
-        return act.compute(
-            lambda: analyse(store, act.viewer, ref, name, body, media), deferred(act, "analyse", item, "/request")
-        )
+        later = deferred(act, "analyse", item, "/request")
+        return act.compute(lambda: analyse(store, act.viewer, act.worker, ref, name, body, media), later)
 
     return _run
 
@@ -71,6 +67,5 @@ def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf,
     """
     how = {"format": style.format, "form": style.form, "bind": style.bind}
     item = {"tree": ref, "quantity": "velocity-equations", "request": body, **how}
-    return act.compute(
-        lambda: velocity_equations(store, act.viewer, ref, body, style), deferred(act, "export", item, "/request")
-    )
+    later = deferred(act, "export", item, "/request")
+    return act.compute(lambda: velocity_equations(store, act.viewer, act.worker, ref, body, style), later)

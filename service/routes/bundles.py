@@ -78,7 +78,7 @@ def import_bundle(
         ready = []
         for part in parts:
             act.require_time()
-            ready.append(bundles.prepare(store, act.viewer, part, entry, limit))
+            ready.append(bundles.prepare(store, act.viewer, part, entry, act.worker, limit))
 
         def commit(connection: Connection) -> Answer:
             """Store all that is new."""

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from collections.abc import Mapping
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
@@ -10,11 +11,11 @@ from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
+from service.jobs.worker import Worker
 from service.operations import differences
 from service.references import is_pinned
 from service.schemas.versions import DifferenceView
 from substructures.documents import write_json
-from substructures.interchange.difference.difference import Difference
 
 router = APIRouter(prefix="/v1")
 READ = [needs("read")]
@@ -26,13 +27,13 @@ ADVICE = "compare smaller parts, or their definitions"
 async def part_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """How a version differs from another one, also of another part: fields, formulas entry by entry, and in words."""
 
-    def answered() -> Response:
+    def answered(worker: Worker) -> Response:
         """The answer in a thread."""
         a, b = differences.versions(store, viewer, ref, to)
         is_fixed = is_pinned(ref) and is_pinned(to) and a.is_public and b.is_public
         names = f"{a.name}@{a.version}", f"{b.name}@{b.version}"
         tag = etag(a.digest, a.program, b.digest, b.program, "difference", *names)
-        return conditional(request, tag, is_fixed, lambda: _answer(names, differences.of_versions(store, a, b)))
+        return conditional(request, tag, is_fixed, lambda: _answer(names, differences.of_versions(store, worker, a, b)))
 
     return await in_time(request, answered, ADVICE)
 
@@ -41,18 +42,18 @@ async def part_difference(ref: str, to: To, request: Request, store: StoreOf, vi
 async def tree_difference(ref: str, to: To, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """How a revision of a tree differs from another one, or from another tree."""
 
-    def answered() -> Response:
+    def answered(worker: Worker) -> Response:
         """The answer in a thread."""
         a, b = differences.revisions(store, viewer, ref, to)
         is_fixed = is_pinned(ref) and is_pinned(to) and a.is_public and b.is_public
         names = f"{a.name}@{a.revision}", f"{b.name}@{b.revision}"
         tag = etag(a.digest, a.program, b.digest, b.program, "difference", *names)
         return conditional(
-            request, tag, is_fixed, lambda: _answer(names, differences.of_revisions(store, viewer, a, b))
+            request, tag, is_fixed, lambda: _answer(names, differences.of_revisions(store, worker, viewer, a, b))
         )
 
     return await in_time(request, answered, ADVICE)
 
 
-def _answer(names: tuple[str, str], found: Difference) -> Answer:
-    return json_answer(write_json({"a": names[0], "b": names[1], **found.plain()}))
+def _answer(names: tuple[str, str], found: Mapping[str, Any]) -> Answer:
+    return json_answer(write_json({"a": names[0], "b": names[1], **found}))

@@ -25,7 +25,7 @@ def compare(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
 
     def work() -> Answer:
         """Couple both, and compare."""
-        found = equivalences.compared(store, act.viewer, wanted.a, wanted.b, wanted.coordinates)
-        return json_answer(write_json(found.plain()))
+        found = equivalences.compared(store, act.viewer, act.worker, wanted.a, wanted.b, wanted.coordinates)
+        return json_answer(write_json(dict(found)))
 
     return act.compute(work)

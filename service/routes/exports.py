@@ -2,18 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
-from service.analyses.exporting import ALL_TARGETS, ZIP, ExportRequest, Package, part_package
-from service.answers import Answer, etag
+from service.analyses.exporting import ALL_TARGETS, ZIP, ExportRequest
+from service.answers import etag
 from service.http.acting import Act, Commit, in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
-from service.operations import catalogue
+from service.jobs.worker import Worker
+from service.operations import analyses, catalogue
 from service.references import is_pinned
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
@@ -70,7 +71,7 @@ async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, w
             version = catalogue.find(connection, viewer, ref)
         return export_job(act, {"substructure": f"{version.name}@{version.version}"}, wanted)
 
-    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), ADVICE, job)
+    return await in_time(request, lambda worker: _export(ref, request, store, viewer, wanted, worker), ADVICE, job)
 
 
 def export_job(act: Act, of: Mapping[str, str], wanted: ExportRequest) -> Commit:
@@ -82,26 +83,11 @@ def export_job(act: Act, of: Mapping[str, str], wanted: ExportRequest) -> Commit
         raise error.below("/query") from None
 
 
-def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:
+def _export(
+    ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest, worker: Worker
+) -> Response:
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
-        part = store.required_part(connection, version.digest)
-    reference = f"{version.name}@{version.version}"
-
-    def make() -> Answer:
-        """Bind, print, and pack."""
-        limit = store.settings.limits.program_nodes
-        return package_answer(lambda: part_package(part, reference, version.digest, wanted, limit))
-
-    lasting = is_pinned(ref) and version.is_public
-    return remembered(request, etag(version.digest, version.program, reference, *wanted.identity), lasting, make)
-
-
-def package_answer(make: Callable[[], Package]) -> Answer:
-    """A file to be saved under its name. Raises InvalidInput with pointers into the query."""
-    try:
-        package = make()
-    except InvalidInput as error:
-        raise error.moved(lambda pointer: pointer if pointer.startswith("/query") else f"/query{pointer}") from None
-    disposition = f'attachment; filename="{package.name}"'
-    return Answer(200, package.data, {"Content-Type": package.media, "Content-Disposition": disposition})
+    lasting, reference = is_pinned(ref) and version.is_public, f"{version.name}@{version.version}"
+    tag = etag(version.digest, version.program, reference, *wanted.identity)
+    return remembered(request, tag, lasting, lambda: analyses.part_files(store, worker, version, wanted))

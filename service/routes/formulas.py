@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Annotated, Literal
+from dataclasses import asdict, dataclass
+from typing import Annotated, Any, Literal
 
 from fastapi import APIRouter, Depends, Query, Request, Response
 
@@ -12,6 +12,8 @@ from service.answers import Answer, etag, json_answer
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional, remembered
+from service.jobs.kinds.requested import BODY
+from service.jobs.worker import Worker
 from service.negotiation import MEDIA_TYPES
 from service.operations import catalogue, models
 from service.queries import formulas as index
@@ -24,12 +26,9 @@ from service.store import Store
 from service.viewer import Viewer
 from service.views.resources import dump, formulas_view
 from substructures.errors import among, meant
-from substructures.export import first_index, interface_of_part
-from substructures.part.outputs import with_own_inertia
-from substructures.part.parameters import described_inputs
+from substructures.export import first_index
 from substructures.part.part import INTERNAL, Part
 from substructures.quantities.quantity import outputs_of
-from substructures.tree.glossary import part_glossary
 
 router = APIRouter(prefix="/v1/substructures/{ref}/formulas", tags=["formulas"])
 READ = [needs("read")]
@@ -82,7 +81,9 @@ async def get_formula(
 ) -> Response:
     """The formulas of one quantity, all or those of one body, coordinate and component."""
     advice = "ask for one body, coordinate or component, or for form=compact"
-    return await in_time(request, lambda: _formula(ref, quantity, request, store, viewer, style, chosen), advice)
+    return await in_time(
+        request, lambda worker: _formula(ref, quantity, request, store, viewer, style, chosen, worker), advice
+    )
 
 
 def _absent(part: Part, quantity: str, chosen: Chosen) -> str:
@@ -98,7 +99,14 @@ def _absent(part: Part, quantity: str, chosen: Chosen) -> str:
 
 
 def _formula(
-    ref: str, quantity: str, request: Request, store: Store, viewer: Viewer, style: printing.Style, chosen: Chosen
+    ref: str,
+    quantity: str,
+    request: Request,
+    store: Store,
+    viewer: Viewer,
+    style: printing.Style,
+    chosen: Chosen,
+    worker: Worker,
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
@@ -115,10 +123,10 @@ def _formula(
 
     def make() -> Answer:
         """Bind and print."""
-        own = with_own_inertia(part, found) if chosen.inertia == "own" else found
-        inputs = described_inputs(part.definition.inputs)
-        program = printing.with_numbers(own, part.parameters, inputs, style)
-        named = printing.names_of_steps(style, part.parameters, inputs, lambda: part_glossary(part))
-        return models.printed(program, style, quantity, interface_of_part(part, digest=version.digest), None, named)
+        content, digests = found.to_bytes(), (version.digest, version.program)
+        item: dict[str, Any] = {"digest": version.digest, "program": version.program, "selected": found.digest}
+        item |= {"quantity": quantity, "style": asdict(style), "own": chosen.inertia == "own"}
+        text = worker("print-part", item, {**store.blobs(digests), found.digest: content}).files[BODY]
+        return Answer(200, text, {"Content-Type": MEDIA_TYPES[style.format]})
 
     return remembered(request, tag, is_pinned(ref) and version.is_public, make)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -11,6 +13,7 @@ from service.answers import Answer, json_answer
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs, received
+from service.jobs.files import Wanted, read
 from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
 from service.refusals import Refused
@@ -18,9 +21,7 @@ from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import PLAIN
 from service.schemas.imports import ImportView
-from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
-from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS
 from substructures.part.definition import Definition
 
@@ -55,25 +56,23 @@ def read_file(
         accepted = ", ".join(MEDIA_TYPES)
         detail = f"send one of {accepted}; {received(request)} was received"
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept": accepted})
-    options = Options(parameters, fixed, base)
-    links = [text.strip() for text in cut.split(",") if text.strip()]
-    try:
-        found = import_file(body, options, kind=kind, name=name, file=file, license_of_file=license, cut=links)
-    except InvalidArgument as error:
-        raise error.below("/query") from None
+    links = tuple(text.strip() for text in cut.split(",") if text.strip())
+    wanted = Wanted(Options(parameters, fixed, base), kind, name, file, license, links)
     if not stored:
-        return act.compute(lambda: json_answer(imports.answer_of(found)))
+        return act.compute(lambda: json_answer(imports.answer_of(read(act.worker, body, wanted))))
     act.require("write")
-    return _part(store, act, found) if found.tree is None else _tree(store, act, found)
+    found = act.first(lambda: read(act.worker, body, wanted))
+    return _tree(store, act, found) if "tree" in found else _part(store, act, found)
 
 
-def _part(store: StoreOf, act: ActOf, found: Imported) -> Response:
+def _part(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
     """Derived and stored as a substructure, at once or by a job."""
-    definition = Definition.read(found.definition)
+    definition = Definition.read(found["definition"])
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
-        submission = catalogue.prepare(store, act.viewer, definition, PLAIN, IMPORTED)
+        make = partial(catalogue.derived, act.worker, definition, store.work_limits)
+        submission = catalogue.prepare(store, act.viewer, definition, PLAIN, IMPORTED, make)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and tell of it."""
@@ -85,15 +84,15 @@ def _part(store: StoreOf, act: ActOf, found: Imported) -> Response:
 
         return commit
 
-    return act.run(prepare, deferred(act, "derive", found.definition, members=IMPORTED.members()))
+    return act.run(prepare, deferred(act, "derive", found["definition"], members=IMPORTED.members()))
 
 
-def _tree(store: StoreOf, act: ActOf, found: Imported) -> Response:
+def _tree(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
     """Its parts stored as substructures, coupled and stored as a tree, at once or by a job."""
 
     def prepare() -> Any:
         """Derive the parts and couple them."""
-        ready = imports.prepare(store, act.viewer, found)
+        ready = imports.prepare(store, act.viewer, act.worker, found["tree"])
 
         def commit(connection: Connection) -> Answer:
             """Store the parts and the revision, and tell of it."""
@@ -103,4 +102,4 @@ def _tree(store: StoreOf, act: ActOf, found: Imported) -> Response:
 
         return commit
 
-    return act.run(prepare, deferred(act, "assemble", found.tree))
+    return act.run(prepare, deferred(act, "assemble", found["tree"]))

@@ -8,34 +8,35 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 
 from service.analyses import printing
-from service.analyses.exporting import ExportRequest, tree_package
+from service.analyses.exporting import ExportRequest
 from service.analyses.formulas import QUANTITIES, check_options
 from service.analyses.formulas.entry import Options
 from service.analyses.grouping import check_group
 from service.answers import JSON, Answer, Stream, etag
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
+from service.http.one_state import OneStateRoute
 from service.http.requests import StoreOf, ViewerOf, media_type, needs
 from service.http.responses import remembered
+from service.jobs.worker import Worker
 from service.negotiation import MEDIA_TYPES
-from service.operations import analyses, at_hand, models, trees, uploads
+from service.operations import analyses, at_hand, trees, uploads
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
-from service.operations.sources import engine_of, part_programs, sources_of, tree_parts
+from service.operations.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
 from service.references import is_pinned
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
-from service.routes.exports import ADVICE, EXPORTED, ExportOf, export_job, package_answer
+from service.routes.exports import ADVICE, EXPORTED, ExportOf, export_job
 from service.routes.options import OptionsOf
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
 from service.store import Store
 from service.viewer import Viewer
-from substructures.export import interface_of_model
 from substructures.formats.arrays import MEDIA_TYPE as NPZ
 from substructures.formats.arrow import MEDIA_TYPE as ARROW
-from substructures.tree.glossary import glossary
 
 router = APIRouter(prefix="/v1/trees/{ref}", tags=["models"])
+evaluations = APIRouter(prefix="/v1/trees/{ref}", tags=["models"], route_class=OneStateRoute)
 GROUP = "in base parameters: symbols for what masses and lengths occur in together, with their definitions"
 Group = Annotated[bool, Query(description=GROUP)]
 READ = [needs("read")]
@@ -44,7 +45,9 @@ BODY: dict[str, Any] = body_of("EvaluationRequest", others=BINARY)
 RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}, **ACCEPTED}
 
 
-@router.post("/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT)
+@evaluations.post(
+    "/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT
+)
 async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
     """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
 
@@ -112,33 +115,20 @@ async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, w
             tree = trees.find(connection, viewer, ref)
         return export_job(act, {"tree": f"{tree.name}@{tree.revision}"}, wanted)
 
-    return await in_time(request, lambda: _export(ref, request, store, viewer, wanted), ADVICE, job)
+    return await in_time(request, lambda worker: _export(ref, request, store, viewer, wanted, worker), ADVICE, job)
 
 
-def _export(ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest) -> Response:
+def _export(
+    ref: str, request: Request, store: Store, viewer: Viewer, wanted: ExportRequest, worker: Worker
+) -> Response:
     """The files in a thread."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        model = store.model(connection, tree)
-    reference = f"{tree.name}@{tree.revision}"
-
-    def make() -> Answer:
-        """Bind, print, and pack."""
-        limit = store.settings.limits.program_nodes
-        return package_answer(
-            lambda: tree_package(
-                sources_of(store, tree, model),
-                tree.name,
-                reference,
-                tree.digest,
-                wanted,
-                limit,
-                lambda: tree_parts(store, tree),
-            )
-        )
-
-    tag = etag(tree.digest, *_programs(store, tree, wanted.quantities), reference, *wanted.identity)
-    return remembered(request, tag, is_pinned(ref) and tree.is_public, make)
+    tag = etag(
+        tree.digest, *_programs(store, tree, wanted.quantities), f"{tree.name}@{tree.revision}", *wanted.identity
+    )
+    lasting = is_pinned(ref) and tree.is_public
+    return remembered(request, tag, lasting, lambda: analyses.tree_files(store, worker, tree, wanted))
 
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
@@ -157,46 +147,39 @@ async def get_quantity(
     """
     item = f'{{"tree": "{ref[:80]}", "quantity": "{quantity[:80]}", "format": "{style.format}", ...}}'
     advice = f"submit a job of kind 'export' with the item {item}"
-    return await in_time(request, lambda: _quantity(ref, quantity, request, store, style, options, group), advice)
+    return await in_time(
+        request, lambda worker: _quantity(ref, quantity, request, store, style, options, group, worker), advice
+    )
 
 
 def _quantity(
-    ref: str, quantity: str, request: Request, store: Store, style: printing.Style, options: Options, group: bool
+    ref: str,
+    quantity: str,
+    request: Request,
+    store: Store,
+    style: printing.Style,
+    options: Options,
+    group: bool,
+    worker: Worker,
 ) -> Response:
     """The formulas in a thread."""
     with store.database.read() as connection:
         tree = trees.find(connection, request.state.viewer, ref)
         model = store.model(connection, tree)
-    lasting = is_pinned(ref) and tree.is_public
     style = style.of(f"{tree.name}, revision {tree.revision}", quantity)
+    if quantity not in QUANTITIES:
+        printing.check_quantity(model, quantity)
+    programs = _programs(store, tree, [quantity])
+    chosen = [str(sorted(options.items()))]
     if group:
-        if quantity not in QUANTITIES:
-            printing.check_quantity(model, quantity)
         check_options(quantity, options)
         check_group(quantity, style)
-        source = analyses.source_of(store, tree, model)
-        tag = etag(tree.digest, tree.program, *part_programs(store, tree), quantity, "grouped", *style.identity)
-        return remembered(request, tag, lasting, lambda: analyses.grouped(source, quantity, style))
-    if quantity in QUANTITIES:
-        source = analyses.source_of(store, tree, model)
-        programs = _programs(store, tree, [quantity])
-        tag = etag(tree.digest, *programs, quantity, str(sorted(options.items())), *style.identity)
-        return remembered(request, tag, lasting, lambda: analyses.printed(source, quantity, options, style))
-    printing.check_quantity(model, quantity)
-    check_options(quantity, options, printing.options_of_quantity(quantity))
-    programs = _programs(store, tree, [quantity])
-    chosen = [f"{name}={x}" for name, x in options.items()]
+        programs, chosen = [tree.program, *part_programs(store, tree)], ["grouped"]
+    elif quantity not in QUANTITIES:
+        check_options(quantity, options, printing.options_of_quantity(quantity))
+        chosen = [f"{name}={x}" for name, x in options.items()]
     tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
-
-    def make() -> Answer:
-        """Form, bind and print."""
-        sources = printing.with_options(sources_of(store, tree, model), quantity, options)
-        members, parameters = printing.described(sources, quantity)
-        program = printing.with_numbers(sources.formulas(quantity), parameters, model.inputs, style)
-        interface = interface_of_model(model, digest=tree.digest)
-        named = printing.names_of_steps(
-            style, parameters, model.inputs, lambda: glossary(*tree_parts(store, tree), model=model.program)
-        )
-        return models.printed(program, style, quantity, interface, members, named)
-
-    return remembered(request, tag, lasting, make)
+    lasting = is_pinned(ref) and tree.is_public
+    return remembered(
+        request, tag, lasting, lambda: analyses.printed(store, worker, tree, quantity, style, options, group)
+    )

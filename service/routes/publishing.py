@@ -31,12 +31,12 @@ router = APIRouter(prefix="/v1/trees", tags=["trees"])
 @timed("derive")
 def publish(ref: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Make a part of a tree, with its ports and free parameters and a certificate of its own."""
-    wanted = read_model(PublishRequest, body)
+    read_model(PublishRequest, body)  # whatever becomes of it
 
     def prepare() -> Commit:
         """Verify, unless that is stored already."""
-        found = publishing.module(store, act.viewer, ref, wanted)
-        submission = publishing.prepare(store, act.viewer, found)
+        found = publishing.module(store, act.viewer, ref, body)
+        submission = publishing.prepare(store, act.viewer, act.worker, found)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and answer it."""
@@ -48,7 +48,7 @@ def publish(ref: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Res
 
     def later() -> Commit:
         """The job that stores the same."""
-        found = publishing.module(store, act.viewer, ref, wanted)
+        found = publishing.module(store, act.viewer, ref, body)
         return deferred(act, "derive", found.document(), members=found.origin.members())()
 
     return act.run(prepare, later)

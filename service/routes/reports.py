@@ -11,6 +11,7 @@ from service.answers import etag
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import remembered
+from service.jobs.worker import Worker
 from service.negotiation import choose_format
 from service.operations import catalogue, reports, trees
 from service.operations.sources import part_programs
@@ -62,7 +63,7 @@ async def part_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
     in LaTeX a document, as XHTML a page, both with picture, symbols, derivation, formulas and sources.
     """
 
-    def answered() -> Response:
+    def answered(worker: Worker) -> Response:
         """The report in a thread."""
         with store.database.read() as connection:
             version = catalogue.find(connection, viewer, ref)
@@ -73,7 +74,7 @@ async def part_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
             request,
             tag,
             lasting,
-            lambda: reports.written(store, reports.of_part(store, version), wanted.format, wanted.document),
+            lambda: reports.of_part(store, worker, version, wanted.format, wanted.document),
         )
 
     return await in_time(request, answered, ADVICE)
@@ -83,7 +84,7 @@ async def part_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
 async def tree_report(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: WantedOf) -> Response:
     """A tree, told to people, as the report of a part."""
 
-    def answered() -> Response:
+    def answered(worker: Worker) -> Response:
         """The report in a thread."""
         with store.database.read() as connection:
             tree = trees.find(connection, viewer, ref)
@@ -94,7 +95,7 @@ async def tree_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
             request,
             tag,
             is_pinned(ref) and tree.is_public,
-            lambda: reports.written(store, reports.of_tree(store, tree), wanted.format, wanted.document),
+            lambda: reports.of_tree(store, worker, tree, wanted.format, wanted.document),
         )
 
     return await in_time(request, answered, ADVICE)

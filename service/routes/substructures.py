@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
@@ -64,7 +65,8 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
-        submission = catalogue.prepare(store, act.viewer, definition, entry)
+        make = partial(catalogue.derived, act.worker, definition, store.work_limits)
+        submission = catalogue.prepare(store, act.viewer, definition, entry, make=make)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and answer it."""

@@ -58,7 +58,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
         members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
         return deferred(act, "assemble", found.document, found.step, members)()
 
-    return act.run(revision(act, lambda: trees.prepare_change(act.store, act.viewer, change())), later)
+    return act.run(revision(act, lambda: trees.prepare_change(act.store, act.viewer, act.worker, change())), later)
 
 
 @router.post(
@@ -73,7 +73,7 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
 def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     entry, document = Entry.parted(body)
-    prepared = revision(act, lambda: trees.prepare(store, act.viewer, document, entry))
+    prepared = revision(act, lambda: trees.prepare(store, act.viewer, act.worker, document, entry))
     return act.run(prepared, deferred(act, "assemble", body))
 
 

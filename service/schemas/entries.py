@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field
 
 from service.schemas.shapes import Shape
 from substructures.documents import read_model
+from substructures.documents.fields import Words
 from substructures.part.definition import Definition
 from substructures.tree.document import REFERENCE, TreeSpec
 
@@ -24,7 +25,7 @@ class Entry(Shape):
     model_config = ConfigDict(extra="forbid", frozen=True)
 
     visibility: Visibility | None = None
-    note: str | None = Field(None, max_length=2000)
+    note: Words | None = Field(None, max_length=2000)
 
     @classmethod
     def parted(cls, document: Any) -> tuple[Self, Any]:
@@ -48,7 +49,7 @@ class SubmittedDefinition(Definition):
     """A definition as it is sent."""
 
     visibility: Visibility = Field("public", description=VISIBILITY)
-    note: str = Field("", max_length=2000, description=NOTE)
+    note: Words = Field("", max_length=2000, description=NOTE)
     derived_from: str | None = Field(None, pattern=REFERENCE, description=DERIVED_FROM)
 
 
@@ -56,7 +57,7 @@ class SubmittedTree(TreeSpec):
     """A tree as it is sent."""
 
     visibility: Visibility = Field("public", description=VISIBILITY)
-    note: str = Field("", max_length=2000, description=NOTE)
+    note: Words = Field("", max_length=2000, description=NOTE)
 
 
 class VisibilityRequest(Shape):

@@ -8,6 +8,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
 from service.schemas.shapes import Links, Shape, Time
+from substructures.documents.fields import Words
 
 JobKind = Literal[
     "assemble",
@@ -46,7 +47,7 @@ class JobRequest(Shape):
     )
     choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
     shared: bool = Field(False, description="whether every API key may see the job, not only those of its owner")
-    label: str = Field("", max_length=200, description="what it is for, in words")
+    label: Words = Field("", max_length=200, description="what it is for, in words")
     on_invalid: Literal["refuse", "skip"] = Field(
         "refuse", description="one bad item: refuse all, or leave it out and tell of it in `skipped` of the answer"
     )
@@ -74,7 +75,7 @@ class CancelRequest(Shape):
 class RetryRequest(Shape):
     """What is tried again of a job."""
 
-    label: str | None = Field(None, max_length=200, description="of the new job (default: that of the old one)")
+    label: Words | None = Field(None, max_length=200, description="of the new job (default: that of the old one)")
 
 
 class JobProgress(Shape):

@@ -9,8 +9,8 @@ from pydantic import Field
 from service.schemas.entries import DERIVED_FROM, NOTE, VISIBILITY, Visibility
 from service.schemas.resources import VersionView
 from service.schemas.shapes import Shape
-from substructures.documents.fields import LibraryName, Name, Number, TagName
-from substructures.loads.ends import FrameOfTree
+from substructures.documents.fields import LibraryName, Name, Number, TagName, Words
+from substructures.loads.document import FrameOfTree
 from substructures.tree.document import REFERENCE
 
 ParameterOfTree = Annotated[str, Field(max_length=129)]
@@ -20,11 +20,11 @@ class PublishRequest(Shape):
     """What the part is to be; nothing has to be said."""
 
     name: LibraryName | None = Field(None, description="of the part (default: that of the tree)")
-    title: str = Field("", max_length=200)
-    description: str = Field("", max_length=20_000)
+    title: Words = Field("", max_length=200)
+    description: Words = Field("", max_length=20_000)
     tags: list[TagName] = Field([], max_length=32)
-    license: str = Field("", max_length=200)
-    source: str = Field("", max_length=4000)
+    license: Words = Field("", max_length=200)
+    source: Words = Field("", max_length=4000)
     ports: dict[Name, FrameOfTree] | None = Field(
         None, description="by name of the port instance.port or instance.body (default: all ports of all instances)"
     )
@@ -33,7 +33,7 @@ class PublishRequest(Shape):
     )
     defaults: dict[ParameterOfTree, Number] = Field({}, max_length=5000, description="new defaults of free parameters")
     visibility: Visibility | None = Field(None, description=f"{VISIBILITY}; of a private tree those of its owner")
-    note: str = Field("", max_length=2000, description=NOTE)
+    note: Words = Field("", max_length=2000, description=NOTE)
     derived_from: str | None = Field(None, pattern=REFERENCE, description=DERIVED_FROM)
 
     def about(self) -> dict[str, Any]:

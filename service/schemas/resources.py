@@ -11,6 +11,7 @@ from pydantic import BaseModel, ConfigDict, Field
 
 from service.schemas.entries import Visibility
 from service.schemas.shapes import Digest, Links, Shape, Time, Warned
+from substructures.documents.fields import Words
 from substructures.tree.document import REFERENCE
 
 DERIVED = "whether this server derived it of its document and stores it so; false in lists alone, until it is asked for"
@@ -174,7 +175,7 @@ class AliasList(Shape):
 class YankRequest(Shape):
     """Why a version is withdrawn."""
 
-    reason: str = Field("", max_length=2000)
+    reason: Words = Field("", max_length=2000)
     successor: str | None = Field(None, pattern=REFERENCE, description="reference to what to take instead")
 
 

@@ -10,7 +10,7 @@ from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
 
-from pydantic import BeforeValidator, Field, WithJsonSchema
+from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from substructures.documents.faults import PATTERNS
@@ -47,6 +47,31 @@ _UNIT = re.compile(r"[^\W\d_]|[°%]|1\s*/")
 _WITH_UNIT = re.compile(r"([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*([^\W\d_][^\s]*(?:\s[^\s]+)?|[°%])")
 LONGEST = 10_000  # characters of an expression, as its reader has it
 _EITHER = [{"type": "number"}, {"type": "string", "maxLength": LONGEST}]
+
+
+#: what says nothing and hides something: controls but for tabs and ends of lines, and those that turn text round
+_HIDDEN = re.compile(r"[\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069]")
+
+
+def hidden(text: str) -> str:
+    """What is wrong with a text that has characters which nobody sees; empty where there is none."""
+    found = _HIDDEN.search(text)
+    if found is None:
+        return ""
+    what = f"character {found.start() + 1} is U+{ord(found[0]):04X}, a control character"
+    return f"{what}; of these a text has tabs and ends of lines alone"
+
+
+def _readable(text: str, info: ValidationInfo) -> str:
+    """Refuse what is not meant to be read, unless it was stored when it was accepted."""
+    message = "" if info.context and info.context.get("stored") else hidden(text)
+    if message:
+        raise PydanticCustomError("control-character", "{message}", {"message": message})
+    return text
+
+
+#: text for people
+Words = Annotated[str, AfterValidator(_readable)]
 
 
 class Quantity(DocumentPart):

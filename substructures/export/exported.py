@@ -18,9 +18,9 @@ from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.judged import not_judged_warnings
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
+from substructures.quantities.warnings import not_judged_warnings
 from substructures.tree.model import require_stored
 
 ALL = "all"

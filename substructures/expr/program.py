@@ -19,7 +19,7 @@ import orjson
 
 from substructures.errors import InvalidProgram
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.needs import needed, totals
+from substructures.expr.needs import check_demands, needed, totals
 from substructures.expr.operations import (
     ARITHMETIC,
     ARITY,
@@ -287,4 +287,6 @@ def _operation(node: Expr, position: Sequence[int], number: Mapping[str, int]) -
 
 def read_program(document: Any) -> Program:
     """A program from its JSON document. Raises InvalidProgram."""
-    return Program(*read_parts(document))
+    symbols, operations, outputs = read_parts(document)
+    check_demands(operations, outputs.values())
+    return Program(symbols, operations, outputs)

@@ -104,10 +104,15 @@ def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
     """A definition or tree as it is; of ``{"file": text, "kind": ...}`` what is read of it. Raises InvalidDocument."""
     if "file" not in given:
         return given
+    read = import_file(text_of_file(given), kind=given.get("kind"))
+    return read.definition if read.tree is None else read.tree
+
+
+def text_of_file(given: Mapping[str, Any]) -> bytes:
+    """The bytes of ``{"file": text, "kind": ...}``. Raises InvalidDocument."""
     if set(given) - {"file", "kind"} or not isinstance(given["file"], str):
         raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
-    read = import_file(given["file"].encode("utf-8", "replace"), kind=given.get("kind"))
-    return read.definition if read.tree is None else read.tree
+    return given["file"].encode("utf-8", "replace")
 
 
 def _with_losses(document: dict[str, Any], report: Report) -> dict[str, Any]:

@@ -1,8 +1,8 @@
 """Loads of parts and of trees: one law a file, its documents, its forces and its potential (notation.md, section 7).
 
 ===========  =======================================================================================================
-document     what a load is: a document of which a law is read, which adds its forces and its potential
-ends         the frames of documents, of parts and of trees
+document     what a load is: a document of which a law is read, which adds its forces and its potential; the frames of
+             documents, of parts and of trees
 names        where loads are read and act: names in expressions, frames, coordinates; one class each for a part, a
              tree, and a part in its place in a tree
 measures     distances and angles of two frames, which laws may name

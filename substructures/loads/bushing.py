@@ -18,8 +18,7 @@ from pydantic import Field
 
 from substructures.documents.fields import NumberVector
 from substructures.documents.units import Dimension
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import NONE, EndsOfPart, EndsOfTree
+from substructures.loads.document import NONE, EndsOfPart, EndsOfTree, Load, LoadFormulas
 from substructures.loads.names import Names
 from substructures.loads.pairs import rate
 from substructures.loads.scope import ExprVector

@@ -18,11 +18,9 @@ from pydantic import Field
 
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, NumberVector
-from substructures.loads.document import LoadFormulas
-from substructures.loads.ends import NONE, FrameOfTree, OfTree
+from substructures.loads.document import NONE, ElasticLoad, FrameOfTree, LoadFormulas, OfTree
 from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import Reach, rate, scaled
-from substructures.loads.spring import ElasticLoad
 
 MOST = 100
 _ALONG = "from end to end: frames, or points of frames"

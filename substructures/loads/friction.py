@@ -17,8 +17,7 @@ from substructures.documents.units import Dimension
 from substructures.expr.graph import Expr
 from substructures.expr.laws import tanh
 from substructures.expr.units.unit_check import Place
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import CoordinateOfTree, OfTree
+from substructures.loads.document import CoordinateOfTree, Load, LoadFormulas, OfTree
 from substructures.loads.names import Names
 from substructures.loads.pairs import Reach
 from substructures.loads.scope import Lookup, Scope

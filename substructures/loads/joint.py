@@ -11,8 +11,7 @@ from pydantic import Field
 from substructures.documents.fields import Name, Number
 from substructures.expr.graph import Expr
 from substructures.expr.units.unit_check import Place
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import CoordinateOfTree, OfTree
+from substructures.loads.document import CoordinateOfTree, Load, LoadFormulas, OfTree
 from substructures.loads.names import Names
 from substructures.loads.pairs import Reach
 from substructures.loads.units import EFFORT

@@ -14,8 +14,7 @@ from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr
 from substructures.expr.syntax import measured
 from substructures.expr.walk import transfer
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import OfTree
+from substructures.loads.document import Load, LoadFormulas, OfTree
 from substructures.loads.measures import Measure
 from substructures.loads.names import Names, names_in
 from substructures.loads.pairs import Reach

@@ -14,30 +14,10 @@ from typing import Any, ClassVar, Literal
 from pydantic import Field
 
 from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number, NumberVector
-from substructures.documents.units import Dimension
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import NONE, EndsOfTree
+from substructures.documents.fields import Name, NumberVector
+from substructures.loads.document import NONE, ElasticLoad, EndsOfTree, LoadFormulas
 from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import rate, scaled
-from substructures.loads.units import DAMPING, LENGTH, STIFFNESS
-
-
-class ElasticLoad(Load):
-    """Springs and dampers along a length."""
-
-    dimensions: ClassVar[Mapping[str, Dimension]] = {"stiffness": STIFFNESS, "damping": DAMPING, "length": LENGTH}
-    is_elastic: ClassVar[bool] = True
-
-    stiffness: Number = Field(0, description="N/m")
-    damping: Number = Field(0, description="N s/m")
-    length: Number = Field(0, description="m; unstretched")
-
-    def read(self, names: Names, pointer: str) -> Elastic | None:
-        """Its ends and numbers; None after a fault of an end."""
-        ends = [names.end(end) for end in self.ends(pointer)]
-        k, c, l0 = (names.read(getattr(self, field), f"{pointer}/{field}") for field in self.dimensions)
-        return None if None in ends else Elastic(pointer, ends, (self.stiffness, self.length), k, c, l0)
 
 
 class _Spring(ElasticLoad):

@@ -15,8 +15,7 @@ from pydantic import Discriminator, Field, Tag
 
 from substructures.documents.fields import Name, NumberVector
 from substructures.documents.units import Dimension
-from substructures.loads.document import Load, LoadFormulas
-from substructures.loads.ends import NONE, EndsOfPart, EndsOfTree
+from substructures.loads.document import NONE, EndsOfPart, EndsOfTree, Load, LoadFormulas
 from substructures.loads.names import End, Names
 from substructures.loads.pairs import axes_in_world
 from substructures.loads.scope import ExprVector

@@ -1,18 +1,52 @@
-"""What acts between bodies of a part, as generalised forces, complete without a host (notation.md, section 7)."""
+"""The loads of a part: read, and what acts between its bodies as generalised forces (notation.md, section 7).
+
+Springs, bushings and what else acts between parts of the substructure do no work in a motion of the interface: their
+generalised forces are complete without a host. Forces and torques act on the host, too: kept as wrenches
+(:mod:`substructures.part.wrenches`), as are those between two frames in the axes of the world.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass, field
 from fractions import Fraction
 
 from substructures.expr.graph import Expr
-from substructures.loads.document import LoadFormulas
+from substructures.loads.document import Law, LoadFormulas
+from substructures.loads.joint import JointForce
 from substructures.loads.pairs import Reach
 from substructures.part.kinematics import Kinematics
-from substructures.part.load_names import depends_on_state, load_names
-from substructures.part.loads import Loads
+from substructures.part.load_names import depends_on_state
 from substructures.part.mechanism import Mechanism, Stops
 from substructures.part.own_names import OwnNames
 from substructures.part.potentials import found_potential
+from substructures.part.wrenches import AppliedWrench, acts_on_host, read_wrenches
+
+
+@dataclass
+class Loads:
+    """All applied loads, read: wrenches, forces on coordinates and all other laws, each in order."""
+
+    wrenches: list[AppliedWrench] = field(default_factory=list)
+    joints: list[JointForce] = field(default_factory=list)
+    laws: list[Law] = field(default_factory=list)
+
+
+def read_loads(m: Mechanism) -> Loads:
+    """Read the loads; expressions may name parameters, coordinates, velocities (q'), inputs, the time t and measures of
+    frames. Friction is a law of the joint (:mod:`substructures.part.mechanism`).
+    """
+    names, found = OwnNames(m), Loads()
+    for i, load in enumerate(m.definition.loads):
+        if acts_on_host(load):
+            found.wrenches += read_wrenches(names, load, f"/loads/{i}")
+            continue
+        law = load.law(names, f"/loads/{i}")
+        if isinstance(law, JointForce):
+            found.joints.append(law)
+        elif law is not None:
+            found.laws.append(law)
+    m.scope.finish()
+    return found
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
@@ -44,7 +78,7 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
     for law in loads.laws:
         law.acts(names, found)
     m.scope.finish()
-    return list(found.forces.values()), found.potential + found_potential(m, given)
+    return list(found.forces.values()), found.potential + found_potential(m.scope, m.topology.coordinates, given)
 
 
 def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[list[Expr]]) -> Expr:
@@ -58,10 +92,9 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
     if law.friction is not None:
         forces[a] = forces[a] - law.friction.force(velocity(m, a))
     energy = m.graph.zero
-    if depends_on_state(m.topology, law.stiffness, law.rest):
+    if depends_on_state(m.topology.coordinates, law.stiffness, law.rest):
         k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
-        lookup = load_names(m.scope, m.definition, m.topology)
-        terms = m.scope.terms(f"-({k})*({m.topology.coordinates[a]} - ({rest}))", "", lookup)
+        terms = m.scope.terms(f"-({k})*({m.topology.coordinates[a]} - ({rest}))", "", m.names)
         given[a] += terms or [-(law.stiffness * stretch)]
     else:
         energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)

@@ -1,7 +1,7 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
 Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.part.topology`,
-:mod:`substructures.part.loads`, physics by :mod:`substructures.part.physics`.
+:mod:`substructures.part.applied_forces`, physics by :mod:`substructures.part.physics`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,16 @@ from pydantic import Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
-from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, TagName, unit_of
+from substructures.documents.fields import (
+    LibraryName,
+    Name,
+    Number,
+    NumberVector,
+    Quantity,
+    TagName,
+    Words,
+    unit_of,
+)
 from substructures.documents.tables import with_points
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import InvalidDocument
@@ -44,7 +53,7 @@ class Parameter(Measured):
     """
 
     value: Number | None = Field(None, description="default; a number or a constant expression")
-    description: str = Field("", max_length=2000)
+    description: Words = Field("", max_length=2000)
 
     @model_validator(mode="before")
     @classmethod
@@ -171,7 +180,7 @@ class Input(Measured):
     """
 
     default: Number | None = Field(None, description="where it is not given; a number or a constant expression")
-    description: str = Field("", max_length=2000)
+    description: Words = Field("", max_length=2000)
 
     @model_validator(mode="before")
     @classmethod
@@ -219,11 +228,11 @@ class Definition(WithTables):
     """A substructure: bodies on a tree of joints that hangs on the interface frame ``base``, with ports and loads."""
 
     name: LibraryName
-    title: str = Field("", max_length=200)
-    description: str = Field("", max_length=20_000)
+    title: Words = Field("", max_length=200)
+    description: Words = Field("", max_length=20_000)
     tags: tuple[TagName, ...] = Field((), max_length=32)
-    license: str = Field("", max_length=200)
-    source: str = Field("", max_length=4000)
+    license: Words = Field("", max_length=200)
+    source: Words = Field("", max_length=4000)
     parameters: dict[Name, Parameter] = Field({}, max_length=5000)
     inputs: dict[Name, Input] = Field({}, max_length=500)
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)

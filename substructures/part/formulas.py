@@ -69,11 +69,10 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes, absolute
-from substructures.part.applied_forces import applied_forces
+from substructures.part.applied_forces import Loads, applied_forces
 from substructures.part.frames import joined_turns
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.kinematics import Kinematics, frame_link, kinematics
-from substructures.part.loads import Loads
 from substructures.part.mechanism import Mechanism
 from substructures.part.wrenches import wrench_point
 

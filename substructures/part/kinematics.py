@@ -11,15 +11,12 @@ from substructures.mechanics.kinematics import (
     Columns,
     Link,
     Pose,
-    base_functions,
     fixed_columns,
     fixed_link,
     from_body,
-    links,
 )
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Rotation, Turn, Vector, add, apply, cross, transpose
 from substructures.part.frames import Frame
-from substructures.part.mechanism import Mechanism
 
 
 @dataclass(frozen=True)
@@ -53,12 +50,6 @@ def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinemati
     for c, link in enumerate(chain):
         poses[c] = poses[link.parent].beyond(link)
     return Kinematics(chain, columns, poses)
-
-
-def own_kinematics(m: Mechanism) -> Kinematics:
-    """Of a part that was not coupled of others."""
-    chain = links(m.joints)
-    return kinematics(chain, base_functions(chain))
 
 
 def frame_link(k: Kinematics, frame: Frame) -> Link:

@@ -16,10 +16,9 @@ from substructures.expr.replay import replay
 from substructures.loads.document import Load
 from substructures.loads.friction import FrictionLoad
 from substructures.mechanics.kinematics import base_functions, links
-from substructures.part.applied_forces import applied_forces
+from substructures.part.applied_forces import applied_forces, read_loads
 from substructures.part.definition import Definition
 from substructures.part.kinematics import Kinematics, kinematics
-from substructures.part.loads import read_loads
 from substructures.part.mechanism import JointLaw, Mechanism, mechanism
 from substructures.part.wrenches import wrench_places
 

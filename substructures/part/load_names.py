@@ -2,24 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Collection, Iterable, Mapping
 
 from substructures.expr.calculus.integrate import symbols_of
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
 from substructures.loads.scope import Lookup, Scope
-from substructures.part.definition import Definition
-from substructures.part.parameters import si_unit
-from substructures.part.topology import Topology
 
 
-def load_names(scope: Scope, definition: Definition, topology: Topology) -> Lookup:
+def load_names(scope: Scope, inputs: Mapping[str, str], coordinates: Mapping[str, int]) -> Lookup:
     """The lookup of names in loads; a symbol is described in the scope when it is first used.
+
+    ``inputs``: their SI units by name; ``coordinates``: 1 of prismatic and 0 of revolute ones.
 
     It becomes no name of the scope, so that what has to be constant cannot name it.
     """
-    coordinates = topology.coordinates
-    scope.more = (*coordinates, *(f"{name}'" for name in coordinates), *definition.inputs)
+    scope.more = (*coordinates, *(f"{name}'" for name in coordinates), *inputs)
 
     def described(name: str, kind: str, unit: str) -> Expr:
         """The symbol of a name, with its description."""
@@ -32,28 +30,22 @@ def load_names(scope: Scope, definition: Definition, topology: Topology) -> Look
             return scope.names[name]
         if name == "t":
             return described("t", "time", "s")
-        if name in definition.inputs:
-            return described(name, "input", si_unit(definition.inputs[name].unit))
+        if name in inputs:
+            return described(name, "input", inputs[name])
         if name in coordinates:
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:
-            joint = topology.joints[coordinates.index(name[:-1])]
-            return described(name, "velocity", "m/s" if joint.s else "rad/s")
+            return described(name, "velocity", "m/s" if coordinates[name[:-1]] else "rad/s")
         return None
 
     return lookup
 
 
-def velocities(topology: Topology) -> frozenset[str]:
-    """The names of all velocities q'^a."""
-    return frozenset(f"{name}'" for name in topology.coordinates)
-
-
-def depends_on_state(topology: Topology, *exprs: Expr) -> bool:
+def depends_on_state(coordinates: Collection[str], *exprs: Expr) -> bool:
     """Whether one of the expressions contains a coordinate or a velocity."""
-    return any(name.removesuffix("'") in topology.coordinates for name in symbols_of(exprs))
+    return any(name.removesuffix("'") in coordinates for name in symbols_of(exprs))
 
 
-def velocity_in(topology: Topology, exprs: Iterable[Expr]) -> str | None:
+def velocity_in(coordinates: Collection[str], exprs: Iterable[Expr]) -> str | None:
     """A velocity that occurs in one of the expressions, if there is one."""
-    return min(symbols_of(exprs) & velocities(topology), default=None)
+    return min(symbols_of(exprs) & {f"{name}'" for name in coordinates}, default=None)

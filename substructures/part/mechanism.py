@@ -11,7 +11,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.loads.friction import Friction, FrictionLaw, FrictionLoad, read_friction
-from substructures.loads.scope import Scope, no_names
+from substructures.loads.scope import Lookup, Scope, no_names
 from substructures.mechanics.composite_form import Inertia, binet
 from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation
 from substructures.mechanics.linear3 import (
@@ -74,6 +74,7 @@ class Mechanism:
     bodies: dict[str, Frame]
     ports: dict[str, Frame]
     central: dict[int, tuple[Expr, Symmetric]]  #: mass and Binet tensor about the mass centre, by body index
+    names: Lookup  #: of loads and joint laws, without measures
 
     @property
     def graph(self) -> Graph:
@@ -111,6 +112,7 @@ def mechanism(definition: Definition) -> Mechanism:
         builder.bodies,
         ports,
         builder.central,
+        builder.names,
     )
 
 
@@ -154,7 +156,8 @@ class _Builder:
         self.laws: list[JointLaw] = []
         self.central: dict[int, tuple[Expr, Symmetric]] = {}
         self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
-        self.names = load_names(scope, definition, layout)
+        inputs = {name: si_unit(each.unit) for name, each in definition.inputs.items()}
+        self.names = load_names(scope, inputs, {entry.coordinate: entry.s for entry in layout.joints})
 
     def add(self, i: int, body: Body) -> None:
         """Place the joint(s) of a body, then give its inertia to the carrier."""

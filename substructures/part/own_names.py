@@ -10,10 +10,11 @@ from substructures.errors import among, meant
 from substructures.expr.graph import Expr
 from substructures.loads.names import LEFT_OUT, Elastic, End, Names
 from substructures.loads.pairs import Place, Reach
+from substructures.mechanics.kinematics import base_functions, links
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Vector, dot, sub
 from substructures.part.frames import Frame
-from substructures.part.kinematics import Kinematics, own_kinematics, own_place, point_kinematics
-from substructures.part.load_names import depends_on_state, load_names
+from substructures.part.kinematics import Kinematics, kinematics, own_place, point_kinematics
+from substructures.part.load_names import depends_on_state
 from substructures.part.mechanism import Mechanism
 from substructures.part.potentials import spring_potential
 
@@ -23,23 +24,25 @@ class OwnNames(Names):
 
     def __init__(self, m: Mechanism, k: Kinematics | None = None) -> None:
         self.m, self._k = m, k
-        self._plain = load_names(m.scope, m.definition, m.topology)
         self.coordinates = {name: a for a, name in enumerate(m.topology.coordinates)}
         super().__init__(m.scope)
 
     @cached_property
     def kinematics(self) -> Kinematics:
         """Poses and columns."""
-        return own_kinematics(self.m) if self._k is None else self._k
+        if self._k is not None:
+            return self._k
+        chain = links(self.m.joints)
+        return kinematics(chain, base_functions(chain))
 
     @cached_property
     def rates(self) -> Sequence[Expr]:
         """q'^a."""
-        return [rate for name in self.coordinates if (rate := self._plain(f"{name}'")) is not None]
+        return [rate for name in self.coordinates if (rate := self.m.names(f"{name}'")) is not None]
 
     def plain(self, name: str) -> Expr | None:
         """Parameters, the time, inputs, coordinates and velocities."""
-        return self._plain(name)
+        return self.m.names(name)
 
     def constant(self, name: str) -> Expr | None:
         """A parameter."""
@@ -78,10 +81,10 @@ class OwnNames(Names):
         """Where the spring depends on the state, 2 V of what is found of its force."""
         if self.measures_in(*spring.given):
             return self.kept(energy, False, spring.pointer)
-        if not depends_on_state(self.m.topology, spring.stiffness, spring.length):
+        if not depends_on_state(self.m.topology.coordinates, spring.stiffness, spring.length):
             return energy
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
-        return 2 * spring_potential(self.m, pulls(), spring.pointer)
+        return 2 * spring_potential(self.scope, self.m.topology.coordinates, pulls(), spring.pointer)
 
     def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:
         """What measures frames is a force without potential."""

@@ -14,12 +14,12 @@ from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.units.unit_check import UnitCheck
+from substructures.part.applied_forces import read_loads
 from substructures.part.certificate import certify_part, not_judged, require_no_less, told_agreement
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.left_out import left_out_warnings, require_relations, weightless_warnings
-from substructures.part.loads import read_loads
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
 from substructures.part.topology import BASE, Entries, Topology, entries_of, expected_operations, topology

@@ -17,71 +17,72 @@ from substructures.expr.graph import Expr
 from substructures.expr.rings.expand import is_zero
 from substructures.expr.walk import transfer
 from substructures.loads.names import LEFT_OUT
+from substructures.loads.scope import Scope
 from substructures.part.load_names import velocity_in
-from substructures.part.mechanism import Mechanism
 
 
-def spring_potential(m: Mechanism, forces: Mapping[int, Expr], pointer: str) -> Expr:
+def spring_potential(scope: Scope, names: Sequence[str], forces: Mapping[int, Expr], pointer: str) -> Expr:
     """The potential of one spring whose stiffness or length depends on the state; zero, with a notice, where there is
     none: with a velocity in it, or where none is found.
     """
-    names, found = m.topology.coordinates, None
-    if velocity_in(m.topology, forces.values()) is None:
-        found = potential([forces.get(a, m.graph.zero) for a in range(len(names))], names)
+    found = None
+    if velocity_in(names, forces.values()) is None:
+        found = potential([forces.get(a, scope.graph.zero) for a in range(len(names))], names)
     if found is None:
         message = "the force of this spring depends on the state, and no potential of it was found"
-        m.scope.notices.append({"pointer": pointer, "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
-    return m.graph.zero if found is None else from_zero(found, names)
+        scope.notices.append({"pointer": pointer, "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
+    return scope.graph.zero if found is None else from_zero(found, names)
 
 
-def found_potential(m: Mechanism, forces: Sequence[Sequence[Expr]]) -> Expr:
+def found_potential(scope: Scope, names: Sequence[str], forces: Sequence[Sequence[Expr]]) -> Expr:
     """The potential of as much of the forces (n,) on the coordinates, terms of a sum each, as is found to have one.
 
     Of forces that depend on each other's coordinates either all of them count, or what each has of its own alone.
     """
-    names = m.topology.coordinates
-    fixed = frozenset(s.name for s in m.scope.symbols.values() if s.kind == "parameter")
-    held = [_at_rest(m, terms, fixed.union(names)) for terms in forces]
-    result = m.graph.zero
+    fixed = frozenset(s.name for s in scope.symbols.values() if s.kind == "parameter")
+    held = [_at_rest(scope, terms, fixed.union(names)) for terms in forces]
+    result = scope.graph.zero
     for group in _groups(held, names):
         whole = potential([held[a] for a in group], [names[a] for a in group])
-        result = result + (_own(m, held, group, fixed) if whole is None else whole)
+        result = result + (_own(scope, names, held, group, fixed) if whole is None else whole)
         if whole is None:
             on = ", ".join(f"'{names[a]}'" for a in group if not held[a].is_zero)
             message = f"no potential was found of all forces of joints and loads on {on}"
-            m.scope.notices.append({"pointer": "/loads", "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
+            scope.notices.append({"pointer": "/loads", "code": "no-potential", "message": f"{message}: {LEFT_OUT}"})
     return from_zero(result, names)
 
 
-def _at_rest(m: Mechanism, terms: Sequence[Expr], steady: frozenset[str]) -> Expr:
+def _at_rest(scope: Scope, terms: Sequence[Expr], steady: frozenset[str]) -> Expr:
     """What is left of a force at rest without inputs; terms that depend on the time are left out, and those without a
     value at rest.
     """
-    result, zero = m.graph.zero, m.graph.zero
+    result, zero = scope.graph.zero, scope.graph.zero
     for term in terms:
         try:
-            (rest,) = transfer([term], m.graph, dict.fromkeys(symbols_of([term]) - steady - {"t"}, zero))
+            (rest,) = transfer([term], scope.graph, dict.fromkeys(symbols_of([term]) - steady - {"t"}, zero))
             if "t" in symbols_of([rest]):
-                rest = _without_time(m, rest)
+                rest = _without_time(scope, rest)
         except (TooLarge, ZeroDivisionError):
             continue
         result = result + rest
     return result
 
 
-def _without_time(m: Mechanism, term: Expr) -> Expr:
+def _without_time(scope: Scope, term: Expr) -> Expr:
     """A term that names the time without depending on it, or zero. Raises TooLarge, ZeroDivisionError."""
     if not is_zero(derivative(term, "t"), LIMIT):
-        return m.graph.zero
-    return transfer([term], m.graph, {"t": m.graph.zero})[0]
+        return scope.graph.zero
+    return transfer([term], scope.graph, {"t": scope.graph.zero})[0]
 
 
-def _own(m: Mechanism, forces: Sequence[Expr], group: Sequence[int], fixed: frozenset[str]) -> Expr:
+def _own(
+    scope: Scope, names: Sequence[str], forces: Sequence[Expr], group: Sequence[int], fixed: frozenset[str]
+) -> Expr:
     """V of the terms of every force that contain its own coordinate alone: each of them has a potential."""
-    names, result = m.topology.coordinates, m.graph.zero
+    result = scope.graph.zero
     for a in group:
-        alone = filtered(forces[a], fixed | {names[a]}) or m.graph.zero
-        result = result + (potential([alone], [names[a]]) or m.graph.zero)
+        alone = filtered(forces[a], fixed | {names[a]}) or scope.graph.zero
+        result = result + (potential([alone], [names[a]]) or scope.graph.zero)
     return result
 
 

@@ -25,7 +25,6 @@ from substructures.quantities.accelerations import (
 from substructures.quantities.canonical import momentum
 from substructures.quantities.conditioning import Look, solved_anew
 from substructures.quantities.derivative_directions import Direction, direction_values
-from substructures.quantities.judged import doubted, not_judged_warnings
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
@@ -55,7 +54,7 @@ from substructures.quantities.states import (
     read_states,
     require,
 )
-from substructures.quantities.warnings import Notice, value_warnings
+from substructures.quantities.warnings import Notice, doubted, not_judged_warnings, value_warnings
 from substructures.tree.model import Model
 
 __all__ = [

@@ -13,12 +13,11 @@ from substructures.array import Array
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
-from substructures.quantities.judged import doubted, not_judged_warnings
 from substructures.quantities.quantity import CONDITION, FORWARD, REACTIONS, TABLE
 from substructures.quantities.result import Evaluation, without_axis
 from substructures.quantities.sources import PARTS, Sources, read_quantities, steps
 from substructures.quantities.states import default_numbers, input_defaults
-from substructures.quantities.warnings import value_warnings
+from substructures.quantities.warnings import doubted, not_judged_warnings, value_warnings
 
 #: the arguments that it takes, beside the quantities
 STATE = ("q", "qd", "qdd", "t")

@@ -1,13 +1,14 @@
-"""Warnings about the values that a model is evaluated with."""
+"""Warnings about the values that a model is evaluated with, and about formulas that could not be judged."""
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Collection, Iterable, Mapping, Sequence
 from typing import Any
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.quantities.sources import Sources
+from substructures.quantities.quantity import MODEL, TABLE
+from substructures.quantities.sources import Sources, steps
 
 Notice = Mapping[str, str]
 #: warnings about a tree that its parameters decide, so that those given here are looked at instead
@@ -59,3 +60,27 @@ def no_coordinates(dof: int) -> list[Notice]:
 def _without_effect(kind: str, name: str) -> Notice:
     message = f"no formula depends on the {kind} '{name}'"
     return {"pointer": f"/{kind}s/{escape(name)}", "code": "no-effect", "message": message}
+
+
+def not_judged_warnings(quantities: Iterable[str]) -> list[dict[str, str]]:
+    """A warning for each of these quantities, whose programs have outputs that are not judged."""
+    return [
+        {
+            "pointer": "",
+            "code": "not-judged",
+            "message": f"'{name[:80]}' could not be judged: some of what it has to be by the documents has no finite "
+            "value at any state that was tried",
+        }
+        for name in dict.fromkeys(quantities)
+    ]
+
+
+def doubted(sources: Sources, quantities: Sequence[str]) -> list[str]:
+    """Those of the quantities whose numbers come from formulas that are not judged. Raises as :func:`steps`."""
+    marks: dict[str, frozenset[str]] = {}
+    for source, program, names in steps(sources, quantities):
+        if program is not None and program.not_judged:
+            marks[source] = program.not_judged.intersection(names)
+    found = {name: marks.get(TABLE[name].source, frozenset()) for name in quantities}
+    # of several outputs of a program its own; numbers that are solved for come from all
+    return [n for n, some in found.items() if some & set(TABLE[n].outputs) or (some and TABLE[n].source != MODEL)]

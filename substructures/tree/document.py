@@ -13,7 +13,7 @@ from substructures.documents import DocumentPart, read_model
 from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
 from substructures.errors import among, listed, meant
-from substructures.loads.ends import AT
+from substructures.loads.document import AT
 from substructures.loads.kinds import LoadOfTree
 from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
 

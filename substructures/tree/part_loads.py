@@ -14,7 +14,7 @@ from substructures.mechanics.linear3 import Vector
 from substructures.part.wrenches import acts_on_host
 from substructures.tree.assembly import Assembly
 from substructures.tree.frame_points import place_of
-from substructures.tree.load_names import LoadNames
+from substructures.tree.loads import LoadNames
 from substructures.tree.mounted_part import PlacedPart
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from substructures.loads.ends import OfTree
+from substructures.loads.document import OfTree
 from substructures.tree.published_names import PartNames
 
 #: fields that are no numbers

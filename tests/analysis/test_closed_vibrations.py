@@ -208,10 +208,15 @@ def test_a_structure_does_not_move() -> None:
 
 
 def test_a_root_at_zero_is_named() -> None:
-    loads: list[Plain] = [{"type": "joint", "coordinate": "table", "force": "-sqrt(table'^2)*table'"}]
+    """|v| has no derivative at rest; |v| v has, which is 0."""
+    loads: list[Plain] = [{"type": "joint", "coordinate": "table", "force": "-sqrt(table'^2)"}]
     found = linearise(damped(loads=loads), [-np.pi / 2, -np.pi / 2, np.pi / 2])
     assert found.status == "failed"
     assert "'x.table'" in found.message
+    loads[0]["force"] += "*table'"
+    smooth = linearise(damped(loads=loads), [-np.pi / 2, -np.pi / 2, np.pi / 2])
+    assert smooth.status == "finished"
+    np.testing.assert_allclose(smooth.D, linearise(damped(), [-np.pi / 2, -np.pi / 2, np.pi / 2]).D, atol=1e-12)
 
 
 def test_bodies_without_mass_between_others() -> None:

@@ -52,6 +52,7 @@ def test_operations_kinds_and_symmetries() -> None:
     assert f"{MAX_ELEMENTS:,} elements" in PAGE
     assert f"{MAX_BITS // 3} characters" in PAGE
     assert f"at most {MAX_EXPONENT} either way" in PAGE
+    assert f"exponents of more than {MAX_BITS} bits" in PAGE
     assert EXAMPLE["version"] == VERSION
 
 

@@ -7,6 +7,7 @@ import json
 import re
 import subprocess
 import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -154,6 +155,51 @@ def test_damaged_operations_are_refused_with_their_position(operation: Any) -> N
     with pytest.raises(InvalidProgram) as caught:
         Program.from_bytes(json.dumps(document).encode())
     assert caught.value.position == 1
+
+
+@pytest.mark.parametrize("more", [["sin", 0], ["powi", 0, 64], ["int", "7"]])
+def test_operations_that_no_output_needs_are_refused(more: list[Any]) -> None:
+    """At the end or before others; the first of them is named."""
+    document = copy.deepcopy(BASE)
+    document["operations"].append(more)
+    with pytest.raises(InvalidProgram, match="no output needs it") as caught:
+        Program.from_bytes(json.dumps(document).encode())
+    assert caught.value.position == 5
+    document["outputs"]["f"]["entries"] = [3]
+    with pytest.raises(InvalidProgram) as caught:
+        Program.from_bytes(json.dumps(document).encode())
+    assert caught.value.position == 4
+
+
+def growing(first: list[Any], step: Callable[[int], list[Any]], count: int) -> bytes:
+    """A program whose one output is what comes of so many steps, each of the one before it."""
+    operations = [first, *map(step, range(count))]
+    output = {"shape": [], "symmetry": "none", "index": [[]], "entries": [count]}
+    return json.dumps({**BASE, "operations": operations, "outputs": {"f": output}}).encode()
+
+
+@pytest.mark.parametrize(
+    ("first", "step", "most"),
+    [
+        (["sym", 0], lambda i: ["powi", i, 64], 682),  # 64^682 = 2^4092
+        (["sym", 0], lambda i: ["powi", i, -64], 682),
+        (["sym", 0], lambda i: ["mul", i, i], 4096),
+        (["int", "3"], lambda i: ["powi", i, 64], 1),  # 2 bits of 3, 128, 8192
+        (["int", "-3"], lambda i: ["mul", i, i], 11),
+        (["rat", "1", "3"], lambda i: ["add", i, i], 10),  # 2, 5, 11, ..., 3 * 2^10 - 1
+    ],
+)
+def test_powers_and_numbers_without_bound_are_refused(first: Any, step: Any, most: int) -> None:
+    """Also where an output needs them: exponents and numbers have 4096 bits at most."""
+    assert len(Program.from_bytes(growing(first, step, most))) == most + 1
+    with pytest.raises(InvalidProgram, match="of more than 4096 bits") as caught:
+        Program.from_bytes(growing(first, step, most + 1))
+    assert caught.value.position == most + 1
+
+
+def test_long_sums_and_functions_are_no_powers() -> None:
+    for step in (lambda i: ["add", i, i], lambda i: ["sin", i], lambda i: ["neg", i]):
+        assert len(Program.from_bytes(growing(["sym", 0], step, 20_000))) == 20_001
 
 
 @pytest.mark.parametrize(

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from time import process_time
+from typing import Any
+
 import pytest
 
 from substructures import Definition, derive
@@ -101,3 +104,32 @@ def test_bad_files_are_refused_with_their_place(name: str) -> None:
     text, message = BAD[name]
     with pytest.raises(InvalidDocument, match=message):
         import_file(text.encode())
+
+
+def ports(content: str) -> dict[str, Any]:
+    """The ports by name of a model of one link and more."""
+    text = f'<sdf version="1.9"><model name="m"><link name="a"/>{content}</model></sdf>'
+    found = import_file(text.encode()).definition.get("ports", [])
+    return {port["name"]: port for port in found}
+
+
+def test_chains_of_frames_are_read_once() -> None:
+    """20,000 frames, each attached to the one before it or behind it: what one takes does not grow with all."""
+    count = 20_000
+    frames = [
+        f'<frame name="f{k}" attached_to="{f"f{k - 1}" if k else "a"}"><pose>0 0 0.001 0 0 0</pose></frame>'
+        for k in range(count)
+    ]
+    for given in (frames, frames[::-1]):
+        start = process_time()
+        found = ports("".join(given))
+        assert process_time() - start < 30
+        assert {port["body"] for port in found.values()} == {"a"}
+        for name, port in found.items():
+            assert float(port["position"][2]) == pytest.approx((int(name[1:]) + 1) / 1000)
+
+
+def test_frames_in_a_circle_are_on_no_link() -> None:
+    circle = "".join(f'<frame name="f{k}" attached_to="f{(k + 1) % 3}"/>' for k in range(3))
+    assert not ports(circle).keys() & {"f0", "f1", "f2"}
+    assert "g" not in ports(f'{circle}<frame name="g" attached_to="f0"/>')

@@ -151,7 +151,7 @@ class Fault:
             if self.output and self.output not in found.outputs:
                 return found
             self.right = found
-            return self.wrong or found
+            return found if self.wrong is None else self.wrong
 
         return planted
 

@@ -17,6 +17,7 @@ from typing import Any, Self
 import httpx2
 import numpy as np
 
+from service.jobs.pool import NICE
 from service.respawn import VARIABLE
 from substructures.client import Client, ProblemError
 
@@ -40,6 +41,13 @@ def children(pid: int) -> list[int]:
     return found
 
 
+def niceness(pid: int) -> int:
+    """How much a process leaves to others; 0 of one that is gone."""
+    with contextlib.suppress(OSError):
+        return int(Path(f"/proc/{pid}/stat").read_text().rpartition(")")[2].split()[16])
+    return 0
+
+
 class Server:
     """One server, always on the same port."""
 
@@ -47,7 +55,6 @@ class Server:
         self.port, self.log = free_port(), log
         command = [sys.executable, "-m", "service.cli.main", "serve", "--port", str(self.port), "--database", database]
         self.command = [*command, *settings]
-        self.count = int(settings[settings.index("--processes") + 1]) if "--processes" in settings else 1
         self.environment = {**os.environ, "SUBSTRUCTURES_CATALOGUE": "false"}
         self.process: subprocess.Popen[bytes] | None = None
         self.kills = 0
@@ -86,11 +93,12 @@ class Server:
 
     def serving(self) -> list[int]:
         """The processes that answer, while there are some: children of the one that was started."""
-        return [pid for pid, number in self._numbered() if number < self.count]
+        return [pid for pid, _ in self._numbered()]
 
-    def computing(self) -> list[int]:
-        """The processes that compute for those that answer."""
-        return [pid for pid, number in self._numbered() if number >= self.count]
+    def computing(self, serving: int | None = None) -> list[int]:
+        """The processes that compute what requests need, for all that answer or for one of them."""
+        processes = self.serving() if serving is None else [serving]
+        return [each for pid in processes for each in children(pid) if niceness(each) - niceness(pid) == NICE]
 
     def _numbered(self) -> list[tuple[int, int]]:
         found = []

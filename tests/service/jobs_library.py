@@ -12,6 +12,7 @@ from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.settings import Limits
 from service.summaries import tree_summary
 from substructures.documents import write_json
+from substructures.interchange.importing import document_of
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.tree.document import TreeSpec
@@ -44,6 +45,9 @@ class MemoryLibrary:
         self.blobs[model.program.digest] = model.program.to_bytes()
         texts = spec.canonical().decode(), tree_summary(spec, model).decode()
         self._trees[spec.name] = StoredTree(spec.name, spec.digest, model.program.digest, *texts)
+
+    def file(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        return document_of(given)
 
     def version(self, reference: str) -> StoredVersion | None:
         part = self.parts.get(reference.partition("@")[0])

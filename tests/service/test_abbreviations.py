@@ -12,8 +12,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.operations import analyses
-from service.settings import Settings
+from service.settings import Limits, Settings
 from service.store import Store
 from substructures import Definition, Program, TreeSpec, abbreviate, catalogue, couple, derive
 from substructures.expr.interpret import interpret
@@ -106,11 +105,8 @@ def test_bad_requests(client: TestClient, changes: dict[str, Any], pointer: str)
 
 
 def test_work_that_takes_too_long_becomes_a_job(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(analyses, "TimeLimit", lambda _: over_at_once)
+    store = client.app.state.store  # type: ignore[attr-defined]
+    short = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.01)})
+    monkeypatch.setattr(store, "settings", short)
     answer = client.post("/v1/trees/cell/abbreviations", json=REQUEST)
     assert (answer.status_code, "Location" in answer.headers) == (202, True), answer.text
-
-
-def over_at_once(_: float) -> None:
-    """A limit that is over at once."""
-    raise TimeoutError

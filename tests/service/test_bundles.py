@@ -539,13 +539,13 @@ def test_what_takes_too_long_is_not_gone_on_with(files: Files, tmp_path: Path, m
 
     def slow(_store: Any, _viewer: Any, part: Any, *_: Any) -> Any:
         begun.append(part.name)
-        sleep(0.3)
+        sleep(0.6)
 
     monkeypatch.setattr("service.operations.bundles.prepare", slow)
-    with opened(tmp_path / "slow", limits=Limits(sync_seconds=0.2)) as client:
+    with opened(tmp_path / "slow", limits=Limits(sync_seconds=0.05)) as client:
         answer = sent(client, packed(files))
         assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")
-        sleep(0.4)
+        sleep(0.7)
     assert begun == ["pendulum"]
 
 

@@ -9,7 +9,7 @@ from typing import Any
 
 import pytest
 
-from service.cli import demo
+from service.cli.commands import demo
 from service.cli.main import main
 from service.database.connections import Database
 from service.server import background

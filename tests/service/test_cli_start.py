@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import subprocess
 import sys
@@ -10,7 +9,12 @@ from pathlib import Path
 
 import pytest
 
+from service.analyses import exporting, numbers
+from service.analyses.formulas import _QUANTITIES, OF_PARTS
+from service.cli import choices
 from service.cli.main import COMMANDS, main
+from substructures import catalogue, export, printers
+from substructures.documents import write_json
 
 HEAVY = {"fastapi", "sqlalchemy", "numpy", "scipy", "sympy", "pydantic", "llvmlite", "httpx2", "heyoka"}
 
@@ -30,7 +34,7 @@ def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
 
 def test_a_server_starts_without_what_few_requests_need() -> None:
     late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
-    program = "import sys, service.cli.server; print(*sys.modules)"
+    program = "import sys, service.cli.commands.server; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not late & set(done.stdout.split())
 
@@ -38,15 +42,76 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
 TREE = {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]}
 
 
-@pytest.mark.parametrize("words", [["evaluate", "{}", "metric"], ["export", "{}", "--target", "c", "--out", "{}.zip"]])
-def test_a_file_needs_no_database_and_no_analyses(words: list[str], tmp_path: Path) -> None:
-    path = tmp_path / "t.json"
-    path.write_text(json.dumps(TREE))
-    given = [word.format(path) for word in words]
-    program = f"import sys\nfrom service.cli.main import main\nassert main({given!r}) == 0\nprint(*sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
-    late = {"fastapi", "sqlalchemy", "scipy.linalg", "scipy.optimize", "sympy", "service.analyses.numbers"}
-    assert not late & set(done.stdout.split())
+#: of a server, of those who talk to one, of robot files, of few motions, of terminals
+SERVED = {"fastapi", "sqlalchemy", "uvicorn", "service.database", "service.store"}
+TALKING = {"httpx2", "substructures.client.client"}
+ROBOTS = {"substructures.interchange.kinds", "substructures.interchange.importing"}
+SCIPY = {"scipy.integrate", "scipy.linalg", "scipy.optimize", "scipy.special"}
+NEVER = {"asyncio", "pint", "sympy", "rich.console", *SERVED}
+#: the names of formats and targets are not those who write them
+WRITERS = {"substructures.export", "substructures.printers"}
+ANALYSES = {
+    "service.analyses.abbreviations",
+    "substructures.analysis.control",
+    "substructures.analysis.identification",
+    "substructures.analysis.stability",
+    "substructures.abbreviation",
+}
+MOTIONS = {"substructures.analysis.simulate", "service.schemas.motions"}
+HERE = NEVER | TALKING | ROBOTS
+STARTS = {
+    "derive d.json": HERE | SCIPY | WRITERS | ANALYSES | MOTIONS | {"substructures.quantities.evaluation"},
+    "derive d.json --show metric": HERE | SCIPY | ANALYSES | MOTIONS,
+    "evaluate t.json metric": HERE | SCIPY | WRITERS | ANALYSES | MOTIONS | {"llvmlite"},
+    "export t.json --target c --out t.zip": HERE | SCIPY | ANALYSES | MOTIONS | {"llvmlite"},
+    "analyse t.json metric": HERE | SCIPY | MOTIONS | {"llvmlite", "substructures.analysis.stability"},
+    "analyse t.json first_integrals": HERE | SCIPY | MOTIONS | {"substructures.analysis.stability"},
+    "simulate t.json m.json": HERE | ANALYSES | {"service.analyses.printing"},
+    "same d.json d.json": (HERE - ROBOTS) | SCIPY | ANALYSES | MOTIONS,
+}
+DOCUMENTS = {
+    "d.json": catalogue.load("simple-pendulum"),
+    "t.json": {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]},
+    "m.json": {"q": [0.5], "span": [0, 0.1]},
+}
+
+
+def imported(words: list[str], folder: Path) -> set[str]:
+    """The modules that are there after a command, in a process of its own."""
+    program = f"import sys\nfrom service.cli.main import main\nmain({words!r})\nprint('modules', *sys.modules)"
+    done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True, check=True)
+    return set(done.stdout.splitlines()[-1].split())
+
+
+@pytest.mark.parametrize("command", STARTS)
+def test_a_command_on_files_imports_what_it_needs(command: str, tmp_path: Path) -> None:
+    for name, document in DOCUMENTS.items():
+        (tmp_path / name).write_bytes(write_json(document))
+    found = imported(command.split(), tmp_path)
+    assert not STARTS[command] & found
+    assert "numpy" in found
+
+
+@pytest.mark.parametrize("command", ["list", "search x", "versions x", "show x"])
+def test_a_command_on_a_server_computes_nothing_itself(command: str, tmp_path: Path) -> None:
+    """Nothing answers there."""
+    found = imported([*command.split(), "--server", "http://127.0.0.1:9"], tmp_path)
+    computing = {"flint", "llvmlite", "scipy", "substructures.part.part", "substructures.tree.model"}
+    assert not (NEVER | ROBOTS | WRITERS | ANALYSES | MOTIONS | computing) & found
+    assert "httpx2" in found
+
+
+def test_names_of_formats_are_those_of_who_writes_them() -> None:
+    assert tuple(sorted(export.FORMATS)) == choices.FORMATS
+    assert choices.FORMS == printers.FORMS
+    assert choices.NAME == exporting.NAME
+
+
+def test_tables_name_the_modules_of_their_entries() -> None:
+    assert [name for name, entry in _QUANTITIES.items() if entry.needs_parts] == list(OF_PARTS)
+    assert all(analysis.schema.__doc__ for analysis in numbers.ANALYSES.values())
+    with pytest.raises(KeyError):
+        numbers.ANALYSES["simulation"]
 
 
 @pytest.mark.parametrize("name", [command.name for command in COMMANDS])

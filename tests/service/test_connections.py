@@ -96,6 +96,15 @@ BROKEN = {
     "two lengths": (POST + b"Content-Length: 5\r\nTransfer-Encoding: chunked\r\n\r\n", 400, "invalid-http"),
     "bad chunk": (POST + b"Transfer-Encoding: chunked\r\n\r\nzz\r\n", 400, "invalid-http"),
     "proxy": (b"CONNECT a:80 HTTP/1.1\r\n" + HOST + b"\r\n", 405, "method-not-allowed"),
+    "another host": (b"GET http://evil.com/livez HTTP/1.1\r\n" + HOST + b"\r\n", 400, "invalid-host"),
+    "credentials": (b"GET http://localhost@evil.com/livez HTTP/1.1\r\n" + HOST + b"\r\n", 400, "invalid-host"),
+    "another scheme": (b"GET ftp://localhost/livez HTTP/1.1\r\n" + HOST + b"\r\n", 400, "invalid-host"),
+    "no path": (b"GET *x HTTP/1.1\r\n" + HOST + b"\r\n", 400, "invalid-host"),
+    "two hosts, one address": (
+        b"GET http://localhost/livez HTTP/1.1\r\n" + 2 * HOST + b"\r\n",
+        400,
+        "invalid-host",
+    ),
     "very long url": (b"GET /" + b"a" * 70_000 + b" HTTP/1.1\r\n" + HOST + b"\r\n", 414, "url-too-long"),
     "long head": (b"GET / HTTP/1.1\r\nA: " + b"a" * 70_000 + b"\r\n\r\n", 431, "head-too-large"),
     "endless head": (b"GET / HTTP/1.1\r\nA: " + b"a" * 700_000, 431, "head-too-large"),
@@ -114,6 +123,11 @@ def test_what_is_no_request_gets_a_problem_document(tmp_path: Path) -> None:
             assert problem(asked(port, text)) == (status, code), what
         trace = asked(port, b"TRACE / HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
         assert problem(trace) == (405, "method-not-allowed")
+        for address in (b"http://localhost/livez", b"HTTP://LOCALHOST/livez?"):
+            whole = b"GET " + address + b" HTTP/1.1\r\n" + HOST + b"Connection: close\r\n\r\n"
+            assert asked(port, whole).startswith(b"HTTP/1.1 200"), address
+        bare = b"GET http://localhost HTTP/1.1\r\n" + HOST + b"Connection: close\r\n\r\n"
+        assert asked(port, bare).startswith(b"HTTP/1.1 200")  # the first page
         assert asked(port).startswith(b"HTTP/1.1 200")
 
 

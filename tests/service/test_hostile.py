@@ -15,6 +15,8 @@ from urllib.parse import quote
 import pytest
 from fastapi.testclient import TestClient
 
+from substructures.compile.target import math_library
+
 from .conftest import HAND, PENDULUM, SLIDER, TREE
 from .one_store import double, filled, store
 
@@ -105,6 +107,7 @@ sys.addaudithook(WATCH)
 def _guard(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
     """Starting a process or compiling a payload fails the test."""
     monkeypatch.chdir(tmp_path)
+    math_library()  # is looked for by a process, once, when the first kernel is compiled
     WATCH.is_active, WATCH.executed = True, []
     yield
     WATCH.is_active = False

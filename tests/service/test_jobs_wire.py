@@ -42,7 +42,7 @@ def test_blobs_are_sent_once() -> None:
         (b"\xff\xff\xff\xff", "a head of 4294967295 bytes"),
         (b"\x00\x00\x00\x02[]", "cannot be read"),
         (b"\x00\x00\x00\x02{}", "cannot be read: 'contents'"),
-        (b'\x00\x00\x00\x28{"protocol": 2, "contents": [["a", -1]]}', "impossible size"),
+        (b'\x00\x00\x00\x28{"protocol": 3, "contents": [["a", -1]]}', "impossible size"),
         (b"\x00\x00\x00\x03nul", "cannot be read"),
     ],
 )
@@ -57,6 +57,6 @@ def test_a_head_without_what_a_report_needs_is_refused() -> None:
 
 
 def test_the_other_version_of_a_cluster_is_named() -> None:
-    data = work_frame(Work("a", "verify", {}, {}, BUDGET)).to_bytes().replace(b'"protocol":2', b'"protocol":9')
-    with pytest.raises(WireError, match="protocol 9 instead of 2: the service and its workers differ in version"):
+    data = work_frame(Work("a", "verify", {}, {}, BUDGET)).to_bytes().replace(b'"protocol":3', b'"protocol":9')
+    with pytest.raises(WireError, match="protocol 9 instead of 3: the service and its workers differ in version"):
         list(MessageReader().feed(data))

@@ -16,7 +16,8 @@ from fastapi.testclient import TestClient
 from service.analyses.numbers import ANALYSES
 from service.analyses.results import JSON, written
 from service.app import open_store
-from service.operations.analyses import source_of
+from service.jobs.kinds.trees import source_of
+from service.operations.sources import pinned_tree
 from service.operations.trees import find
 from service.settings import Settings
 from service.store import Store
@@ -102,7 +103,7 @@ def test_numbers_of_every_type(client: TestClient, store: Store, analysis: str, 
     tree, request = request_of(client, analysis)
     with store.database.read() as connection:
         found = find(connection, ANYBODY, tree)
-        source = source_of(store, found, store.model(connection, found))
+    source = source_of(*pinned_tree(store, found), {})
     answers = []
     for number in (float, NUMBERS[kind]):
         result = ANALYSES[analysis].compute(source, converted(request, number), lambda _: None)

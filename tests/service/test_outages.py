@@ -92,8 +92,8 @@ def test_deadlocks_are_tried_again(address: str, monkeypatch: pytest.MonkeyPatch
         commit, meet, seen = trees.commit, threading.Barrier(2), list[str]()
 
         def crossed(connection: connections.Connection, viewer: Viewer, revision: trees.Revision) -> object:
-            seen.append(revision.spec.name)
-            first, second = ("x", "y") if revision.spec.name == "one" else ("y", "x")
+            seen.append(revision.coupled.name)
+            first, second = ("x", "y") if revision.coupled.name == "one" else ("y", "x")
             put(connection, first)
             if len(seen) <= 2:
                 meet.wait(10)

@@ -34,7 +34,7 @@ HOSTILE = [
     "&lt;b&gt; &#60;b&#62;",
     "{{7*7}} ${7*7} <%= 7*7 %>",
     "javascript:alert(1)",
-    "\u202e\u0007\u0000 right to left",
+    "\u200f\u00ad right to left",
 ]  # fmt: skip
 
 
@@ -78,7 +78,7 @@ def test_the_example_can_be_sent(filled: TestClient) -> None:
 
 @pytest.mark.parametrize("host", ["localhost:80'; touch x", "localhost:<b>", "localhost:$(x)"])
 def test_the_address_cannot_be_made_up(filled: TestClient, host: str) -> None:
-    assert "curl -s http://127.0.0.1:8000/v1/trees" in read(filled, "/", Host=host).text
+    assert filled.get("/", headers={"Host": host}).status_code == 400
 
 
 def test_an_empty_store(client: TestClient) -> None:
@@ -147,12 +147,12 @@ def test_texts_are_escaped(filled: TestClient, text: str) -> None:
     assert filled.post("/v1/trees", json={**TREE, "name": "hostile"}).status_code == 201
     filled.post("/v1/substructures/pendulum@2/yank", json={"reason": text})
     filled.post("/v1/substructures", json={**definition, "description": text + text})
-    seen = "".join("\ufffd" if c in "\u202e\u0007" else c for c in text.replace("\0", "\ufffd"))
+    seen = text.replace("\u200f", "\ufffd")
     for path in ("/", "/substructures/pendulum", "/substructures/pendulum@2", "/trees/hostile"):
         page = read(filled, path)
         if path.startswith("/substructures"):
             assert " ".join(seen.split()) in page.text
-        assert "\u202e" not in page.text
+        assert "\u200f" not in page.text
     draw(filled, "/v1/substructures/pendulum/picture")
     draw(filled, "/v1/trees/hostile/picture")
 

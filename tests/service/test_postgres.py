@@ -54,8 +54,9 @@ def test_main_flow(client: TestClient) -> None:
 
 def test_nul_is_harmless(client: TestClient) -> None:
     definition = {**PENDULUM, "name": "nul", "title": "a\0b", "description": "\0"}
-    assert client.post("/v1/substructures", json=definition).status_code == 201
-    assert client.get("/v1/substructures/nul/definition").json()["title"] == "a\0b"
+    refused = client.post("/v1/substructures", json=definition)
+    assert [each["code"] for each in refused.json()["errors"]] == ["control-character"] * 2
+    assert client.post("/v1/substructures", json={**PENDULUM, "name": "nul"}).status_code == 201
     assert client.get("/v1/substructures?q=%00").json()["items"] == []
     for path in ("?tag=%00", "/nul/formulas/%00", "/nul/formulas/metric?coordinate=%00"):
         answer = client.get(f"/v1/substructures{path}")

@@ -197,14 +197,14 @@ def test_formulas_keep_the_time_limit(filled: TestClient, store: Store, monkeypa
     """What takes longer is refused with what to do instead, and others are answered meanwhile."""
     let_go = threading.Event()
 
-    def slow(*_: Any) -> Any:
+    def slow(*_: Any, **__: Any) -> Any:
         assert let_go.wait(60)
         raise ValueError("too late")
 
     limits = store.settings.limits.model_copy(update={"sync_seconds": 0.3})
     monkeypatch.setattr(store, "settings", store.settings.model_copy(update={"limits": limits}))
-    monkeypatch.setattr("substructures.quantities.sources.Sources.formulas", slow)
-    monkeypatch.setattr("service.operations.analyses.printed", slow)
+    monkeypatch.setattr("service.jobs.kinds.export.text_of", slow)
+    monkeypatch.setattr("service.jobs.kinds.export.made_text", slow)
     monkeypatch.setattr("service.operations.models.part_formulas", slow)
     try:
         answer = filled.get("/v1/substructures/pendulum/formulas/metric")

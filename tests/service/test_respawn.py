@@ -122,7 +122,7 @@ def test_told_to_end_when_it_is_dead(server: Server) -> None:
             # before that its parent takes it for one that was killed when it was told to end
             until(lambda k=k: server.log.read_text().count("was killed by signal 9") == k)
         server.process.send_signal(signal.SIGTERM)
-        assert server.process.wait(30) == 0  # the process that computes ended as it was told to
+        assert server.process.wait(30) == 0
     assert "in 0.5 s" in server.log.read_text()
 
 

@@ -13,6 +13,7 @@ from service import keys
 from service.database.tables import api_keys, sessions
 from service.http.requests import SESSION
 from service.queries.common import now
+from service.refusals import Refused
 from service.store import Store
 
 from .conftest import PENDULUM
@@ -150,3 +151,33 @@ def test_trees_beyond_the_first_page(filled: TestClient) -> None:
     assert {each for each in read(filled, "/trees?q=MANY-05").links if "@" in each and "/v1" not in each} == {
         f"/trees/many-{k:03d}@1" for k in range(50, 60)
     }
+
+
+def test_wrong_keys_meet_a_brake(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """After ten in a minute no more of the address are looked at, right or wrong, until the minute is over."""
+    clock = [1000.0]
+    monkeypatch.setattr("service.keys.monotonic", lambda: clock[0])
+    right = token(store, "read")
+    for k in range(keys.TRIES):
+        clock[0] += 1
+        assert sign_in(client, f"sub_{k:012x}_wrong").status_code == 401
+    for key in ("sub_000000000000_wrong", right):
+        braked = sign_in(client, key)
+        assert (braked.status_code, braked.headers["retry-after"]) == (429, "51")
+        assert "10 wrong keys came from this address in 60 s" in braked.text
+    assert client.get("/v1/trees", headers={"Authorization": f"Bearer {right}"}).status_code == 200
+    clock[0] += 51
+    assert sign_in(client, right).status_code == 303
+    assert sign_in(client, "sub_000000000000_wrong").status_code == 401
+
+
+def test_the_brake_remembers_some_addresses() -> None:
+    wrong = keys.WrongKeys(addresses=2)
+    for _ in range(keys.TRIES):
+        wrong.note("first")
+    with pytest.raises(Refused, match="wrong keys"):
+        wrong.require_few("first")
+    wrong.require_few("second")
+    for address in ("second", "third"):
+        wrong.note(address)
+    wrong.require_few("first")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from concurrent.futures import Future
 from threading import Event, Thread
 from time import sleep
 from typing import Any
@@ -9,8 +10,8 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from service.jobs.pool import THREADS, InProcess
 from service.operations import catalogue
-from service.runtime import DERIVING
 from service.schemas.entries import PLAIN
 from service.settings import Limits
 from service.store import Store
@@ -54,13 +55,21 @@ def test_what_is_not_begun_is_dropped_at_the_end() -> None:
     assert (begun.result(10), waiting.cancelled()) == (True, True)
 
 
+def busy(store: Store, gate: Event, count: int = THREADS) -> list[Future[bool]]:
+    """So many works of another one, which end when the gate is open."""
+    assert isinstance(store.workers, InProcess)
+    begun = [Event() for _ in range(count)]
+    works = [store.workers.threads.submit("other", lambda one=one: one.set() or gate.wait(10)) for one in begun]
+    assert all(one.wait(10) for one in begun)
+    return works
+
+
 def test_evaluations_do_not_wait_for_derivations(filled: TestClient, store: Store) -> None:
     gate = Event()
-    waiting = [store.runtime.deriving.submit("other", lambda: gate.wait(10)) for _ in range(DERIVING)]
+    waiting = busy(store, gate)
     store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.5)})
     assert filled.post("/v1/substructures", json=chain(2)).status_code == 202
     assert filled.post("/v1/trees/cell/evaluations", json={"quantities": ["metric"], "q": [0.1]}).status_code == 200
-    assert filled.post("/v1/trees/cell/simulations", json={"q": [0.1], "span": [0, 0.1]}).status_code == 200
     gate.set()
     assert all(each.result(10) for each in waiting)
 
@@ -69,14 +78,14 @@ def test_what_has_waited_too_long_is_not_begun(
     client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     begun: list[Any] = []
-    monkeypatch.setattr("service.operations.catalogue.derive", lambda *given: begun.append(given))
+    monkeypatch.setattr("service.jobs.kinds.derive.derive", lambda *given: begun.append(given))
     store.settings = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.3)})
     gate = Event()
-    waiting = store.runtime.deriving.submit("other", lambda: gate.wait(10))
+    waiting = busy(store, gate)
     assert client.post("/v1/substructures", json=chain(2)).status_code == 202
     gate.set()
-    assert waiting.result(10)
-    store.runtime.deriving.submit("local", lambda: None).result(10)  # whatever waited before it has had its turn
+    assert all(each.result(10) for each in waiting)
+    store.workers.close()  # whatever waited has had its turn
     assert begun == []
 
 

@@ -18,6 +18,7 @@ from service.jobs.kinds.export import EXPORT
 from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.mirror import MIRROR, MIRROR_KIND
+from service.jobs.kinds.requested import REQUESTED
 from service.jobs.kinds.upgrade import UPGRADE
 from service.jobs.kinds.verify import VERIFY
 from service.refusals import Refused, known_refusal, problem
@@ -100,14 +101,19 @@ def resolve(kind: str, item: ItemDocument, library: Library) -> tuple[ItemDocume
 
 
 def run(kind: str, item: ItemDocument, blobs: Mapping[str, bytes], progress: ItemProgress) -> Outcome:
-    """Compute a resolved item; what fails on its own account becomes a problem document. Raises MemoryError.
+    """Compute a resolved item, or what a request needs; what fails on its own account becomes a problem document.
+
+    Raises MemoryError.
 
     Blobs are compared with their digests whenever they are read.
     """
+    checked = CheckedBlobs(blobs)
     try:
-        return _KINDS[kind].run(item, CheckedBlobs(blobs), progress)
+        return REQUESTED[kind](item, checked) if kind in REQUESTED else _KINDS[kind].run(item, checked, progress)
     except MemoryError:
         raise
+    except TimeoutError as error:  # what would take too long is not begun
+        return failed(Refused(503, "took-too-long", str(error)))
     except InvalidProgram as error:
         return failed(Refused(500, "damaged-content", str(error)))
     except Exception as error:  # one item never takes the others with it

@@ -8,6 +8,8 @@ body for that endpoint; ``format`` is json (default), npz, or what else the resu
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import orjson
@@ -90,10 +92,13 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
-    """File ``result``, also of what has failed or is wrong, beside a problem that says so. Raises InvalidDocument
+    """File ``result``, also of what has failed or is wrong, beside a problem that says so. An item of a request is
+    ``answered``, and has a folder of ``kernels`` if there is one. Raises InvalidDocument
     (pointers into the request), MissingValue, TooLarge.
     """
     source, name = source_of(item, blobs, item["limits"]), item["analysis"]
+    if item.get("kernels"):
+        source = replace(source, folder=Path(item["kernels"]))
     model = source.model
     result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
     media = MEDIA_TYPES[item["format"]]
@@ -101,6 +106,10 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     told = orjson.loads(data if media == JSON else written(_brief(result), JSON, model))
     summary = {"tree": item["tree"], "analysis": name, "media_type": media, "bytes": len(data)}
     summary |= {key: told[key] for key in TOLD if key in told}
+    motion = trajectory_of(result)
+    if item.get("answered"):  # whatever a result says of itself, a request got it
+        more = {} if motion is None else {"motion": {"status": motion.status, "is_right": motion.is_right}}
+        return Outcome(summary | more, {"result": data})
     fault = fault_of(name, told)
     return Outcome(summary, {"result": data}, None if fault is None else problem(fault))
 

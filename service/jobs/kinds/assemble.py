@@ -9,7 +9,7 @@ from service.database.packed import pack
 from service.derivation import software
 from service.jobs.engine import Outcome
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, parted, stored_definition
+from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, admitted, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
 from service.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
@@ -26,7 +26,7 @@ from substructures.tree.model import couple
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.units import check_tree_units
 
-WORLD = "world"
+NAMED = "named"  # field of an item whose parts that come along are to be called by name
 DEFINITIONS = 1000  # kept decoded
 _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
 
@@ -41,7 +41,15 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
 
     ``is_stored``: the tree comes out of the store.
     """
-    spec = TreeSpec.stored(item["tree"]) if is_stored else TreeSpec.read(item["tree"])
+    return pinned_spec(
+        TreeSpec.stored(item["tree"]) if is_stored else TreeSpec.read(item["tree"]), item, library, is_stored
+    )
+
+
+def pinned_spec(
+    spec: TreeSpec, item: ItemDocument, library: Library, is_stored: bool = False
+) -> tuple[ItemDocument, tuple[str, ...]]:
+    """As :func:`pinned_tree`, of a document that was read."""
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
     faults = [
         Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance, library))
@@ -63,6 +71,8 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
+    if "gravity" in spec.model_fields_set:  # also where it is none: it was given
+        tree.setdefault("gravity", [0, 0, 0])
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
@@ -120,12 +130,13 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     """Files ``program`` (packed), ``spec``, ``summary``; of every inline definition ``<instance>.program``,
     ``.content``. Raises InvalidDocument, TooLarge.
     """
-    spec, parts = tree_parts(item, blobs)
+    given, parts = tree_parts(item, blobs)
+    spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
-    model = couple(spec, parts, item["nodes"])
+    model = couple(spec, parts, item["nodes"], admitted(item))
     progress(0.9)
     files = {"program": pack(model.program), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
-    for instance in spec.instances:
+    for instance in given.instances:
         if instance.definition is not None:
             content = part_content(parts[instance.name]).files()
             files |= {f"{instance.name}.{name}": data for name, data in content.items()}
@@ -145,6 +156,15 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     return Outcome(summary, files)
 
 
+def _named(spec: TreeSpec, parts: Mapping[str, Part]) -> TreeSpec:
+    """The tree whose parts that come along are stored before it, and called by name."""
+    named = [
+        each.model_copy(update={"definition": None, "substructure": f"{part.name}@{part.definition.digest}"})
+        for each, part in ((each, parts[each.name]) for each in spec.instances)
+    ]
+    return spec.model_copy(update={"instances": tuple(named)})
+
+
 def tree_parts(item: ItemDocument, blobs: Blobs) -> tuple[TreeSpec, dict[str, Part]]:
     """The document of a pinned tree and its parts by instance. Raises InvalidDocument, TooLarge."""
     spec = TreeSpec.stored(item["tree"])
@@ -156,7 +176,7 @@ def _part(index: int, instance: Instance, item: ItemDocument, blobs: Blobs) -> P
         digest = (instance.substructure or "").partition("@")[2]
         return part_of(digest, item["programs"][digest], blobs)
     try:
-        return derive(instance.definition, item["nodes"])
+        return derive(instance.definition, item["nodes"], admitted(item))
     except InvalidInput as error:
         raise error.below(f"/instances/{index}/definition") from None
 

@@ -7,7 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.jobs.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, parted
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, parted
 from service.jobs.kinds.library import Library
 from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
@@ -86,7 +86,7 @@ def _names(text: str) -> frozenset[str]:
 
 def _run(item: ItemDocument, _blobs: Blobs, _progress: ItemProgress) -> Outcome:
     """Files ``program``, ``content``. Raises InvalidDocument, TooLarge."""
-    part = derive(Definition.read(item["definition"]), item["nodes"])
+    part = derive(Definition.read(item["definition"]), item["nodes"], admitted(item))
     summary = {
         "name": part.name,
         "digest": part.definition.digest,

@@ -231,7 +231,8 @@ def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 def _part_package(item: ItemDocument, blobs: Blobs) -> Package:
     digest = item[PART].partition("@")[2]
-    return part_package(part_of(digest, item["program"], blobs), item[PART], digest, read_item(item), item["nodes"])
+    reference, part = str(item.get("reference", item[PART])), part_of(digest, item["program"], blobs)
+    return part_package(part, reference, digest, read_item(item), item["nodes"])
 
 
 def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
@@ -240,7 +241,7 @@ def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     return tree_package(
         source.sources,
         item["called"],
-        item["tree"],
+        str(item.get("reference", item["tree"])),
         source.digest,
         request,
         item["nodes"],
@@ -283,7 +284,7 @@ def _followed(source: Source, item: ItemDocument, style: Style) -> str:
             found = follow(source, item["request"])
     else:
         found = made(source, name, options)
-    return made_text(found, name, _interface(source), source, style, item["nodes"])
+    return made_text(found, name.replace("-", "_"), _interface(source), source, style, item["nodes"])
 
 
 def _interface(source: Source) -> Interface:

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from service.integrity import missing, reading
 from service.jobs.engine import Outcome
 from service.jobs.kinds.library import Library, StoredTree, StoredVersion
+from service.refusals import LongWork
 from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -62,6 +63,18 @@ def parted(document: ItemDocument, of: type[Entry] = Entry) -> tuple[ItemDocumen
     entry, rest = of.parted(document)
     given = entry.model_dump(exclude_none=True)
     return ({ENTRY: given} if given else {}), rest
+
+
+def admitted(item: ItemDocument) -> Callable[[int], None] | None:
+    """What refuses, by LongWork, a derivation or coupling of more operations than ``admit`` of the item says."""
+    most = item.get("admit")
+
+    def admit(operations: int) -> None:
+        """Raise LongWork where so many operations would take others their time."""
+        if most is not None and operations > most:
+            raise LongWork(f"about {operations:,} operations")
+
+    return None if most is None else admit
 
 
 def stored_definition(digest: str, library: Library) -> Definition:

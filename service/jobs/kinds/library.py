@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Protocol
+from typing import Any, Protocol
 
 
 @dataclass(frozen=True)
@@ -60,6 +60,9 @@ class Library(Protocol):
 
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""
+
+    def file(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
+        """The definition or tree in a robot file, ``{"file": text, "kind": ...}``. Raises InvalidDocument."""
 
     def sources(self) -> Sequence[str]:
         """Addresses of the instances that may be mirrored."""

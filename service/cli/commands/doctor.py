@@ -51,7 +51,7 @@ def doctor(server: Server, json: Json = False) -> int:
 
 
 def _installed() -> Iterator[Line]:
-    yield "substructures", f"{__version__} in {Path(__file__).parents[2]}", False
+    yield "substructures", f"{__version__} in {Path(__file__).parents[3]}", False
     yield "Python", f"{platform.python_version()} ({sys.executable}), {platform.system()} {platform.machine()}", False
     for name, purpose in OPTIONAL.items():
         try:

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
 
 from service.cli import completion
-from service.cli.choices import Form, Format
-from service.cli.drawing import drawn_part, drawn_tree
+from service.cli.choices import FORMS, Form, Format
 from service.cli.options import Json, Server, with_server
 from service.cli.output import console, further, print_json, table, tell_warnings
 from substructures.client import Client, ProblemError
 from substructures.client.steps import step
-from substructures.printers import FORMS
 
 #: formulas of trees whose first index is that of a frame
 OF_FRAMES = ("position", "rotation", "U", "Omega")
@@ -58,7 +57,9 @@ def show(
         if json:
             print_json(found)
         elif drawing:
-            console().print(drawn_tree(client, found) if "revision" in found else drawn_part(client, path, found))
+            draw = import_module("service.cli.drawing")
+            drawn = draw.drawn_tree(client, found) if "revision" in found else draw.drawn_part(client, path, found)
+            console().print(drawn)
         else:
             _tell(found)
     return 0

@@ -12,10 +12,9 @@ from service.analyses.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportReque
 from service.cli import completion
 from service.cli.choices import one_of
 from service.cli.documents import is_document
-from service.cli.models import part_or_tree
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, waiting
-from service.cli.tree_files import coupled_source
+from service.cli.tree_files import coupled_source, part_or_tree
 from service.settings import Limits
 from substructures.client.steps import step
 from substructures.part.part import Part

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from service.cli import completion
-from service.cli.choices import Format
+from service.cli.choices import NAME, Format
 from service.cli.documents import definition_of, named
 from service.cli.models import read_definition
 from service.cli.options import File, Json
@@ -31,7 +31,7 @@ def derive(
         ),
     ] = "",
     format: Format = "text",  # noqa: A002 -- name of the option
-    name: Annotated[str, typer.Option(help="Prefix of functions, where the format is a language.")] = "model",
+    name: Annotated[str, typer.Option(help="Prefix of functions, where the format is a language.")] = NAME,
     json: Json = False,
 ) -> int:
     """Derive and verify a definition here, without a server."""

@@ -12,7 +12,7 @@ import typer
 from service.analyses.formulas import OPTIONS, QUANTITIES
 from service.analyses.numbers import ANALYSES
 from service.cli import completion
-from service.cli.choices import FORMS, Form, Format
+from service.cli.choices import FORMS, NAME, Form, Format
 from service.cli.documents import is_document
 from service.cli.numbers import Out, Tree, Wanted, numbers
 from service.cli.options import Json, Server, with_more, with_server
@@ -42,7 +42,7 @@ def analyse(
     format: Format = "text",  # noqa: A002 -- name of the option
     form: Form = FORMS[0],
     bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
-    name: Annotated[str, typer.Option(help="Prefix of functions, where the format is a language.")] = "model",
+    name: Annotated[str, typer.Option(help="Prefix of functions, where the format is a language.")] = NAME,
     json: Json = False,
     **options: Any,
 ) -> int:

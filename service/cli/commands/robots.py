@@ -11,9 +11,9 @@ import typer
 
 from service.cli.choices import one_of
 from service.cli.documents import named
-from service.cli.models import part_or_tree
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json
+from service.cli.tree_files import part_or_tree
 from substructures.documents import write_json
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence

@@ -1,0 +1,77 @@
+"""What requests let runners compute beside what jobs are made of: files are read, trees become parts, and what is to be
+read by people is written. No submission names these kinds; their items come from the service itself.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from service.analyses.printing import Style, names_of_steps, text_of, with_numbers
+from service.jobs.engine import Outcome
+from service.jobs.kinds.assemble import tree_parts
+from service.jobs.kinds.decoded import part_of
+from service.jobs.kinds.kind import Blobs, admitted
+from service.jobs.kinds.reported import difference_of, report_of
+from service.schemas.jobs import ItemDocument
+from service.schemas.publishing import PublishRequest
+from service.summaries import part_content
+from substructures.documents import read_model
+from substructures.errors import InvalidArgument
+from substructures.export import interface_of_part
+from substructures.expr.program import Program
+from substructures.interchange.as_part import Options
+from substructures.interchange.importing import import_file
+from substructures.part.outputs import with_own_inertia
+from substructures.part.parameters import described_inputs
+from substructures.tree.glossary import part_glossary
+from substructures.tree.published import Publication, published
+from substructures.tree.published_formulas import published_part
+
+BODY = "body"  # file of an outcome that is an answer
+
+
+def _read_file(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """The document of a robot file, with the report. Raises InvalidDocument with line and element, or with pointers
+    into the query."""
+    options = Options(item["parameters"], item["fixed"], item["base"])
+    about = {"name": item["name"], "file": item["called"], "license_of_file": item["license"]}
+    try:
+        found = import_file(blobs[item["file"]], options, kind=item["kind"], cut=item["cut"], **about)
+    except InvalidArgument as error:
+        raise error.below("/query") from None
+    return Outcome(found.plain())
+
+
+def publication_of(request: PublishRequest, name: str) -> Publication:
+    """What a tree shall become; ``name``: of the part."""
+    return Publication({"name": name, **request.about()}, request.ports, tuple(request.free), request.defaults)
+
+
+def _publish(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """What is stored of the part that a tree becomes."""
+    spec, parts = tree_parts(item["parts"], blobs)
+    found = published(spec, parts, publication_of(read_model(PublishRequest, item["request"]), item["name"]))
+    part = published_part(found, parts, item["nodes"], admitted(item))
+    return Outcome(files=part_content(part, item["recipe"]).files())
+
+
+def _print_part(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """Formulas of a part that were ``selected``, in the style chosen."""
+    part = part_of(item["digest"], item["program"], blobs)
+    selected = Program.from_bytes(blobs[item["selected"]])
+    style, quantity = Style(**item["style"]), item["quantity"]
+    own = with_own_inertia(part, selected) if item["own"] else selected
+    inputs = described_inputs(part.definition.inputs)
+    program = with_numbers(own, part.parameters, inputs, style)
+    named = names_of_steps(style, part.parameters, inputs, lambda: part_glossary(part))
+    text = text_of(program, style, quantity, interface_of_part(part, digest=item["digest"]), glossary=named)
+    return Outcome(files={BODY: text.encode()})
+
+
+REQUESTED: Mapping[str, Callable[[ItemDocument, Blobs], Outcome]] = {
+    "import": _read_file,
+    "publish": _publish,
+    "print-part": _print_part,
+    "report": report_of,
+    "difference": difference_of,
+}
