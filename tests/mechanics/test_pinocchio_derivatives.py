@@ -12,7 +12,7 @@ from in_depth import seeds
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
-from substructures.quantities.evaluation import Direction, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional
@@ -32,7 +32,7 @@ def jacobian(model: Model, quantity: str, state: Plain, along: Plain, inputs: Pl
     """Columns: derivatives along the directions, one for every state of a batch of equal states."""
     request = {key: np.tile(v, (model.dof, 1)) for key, v in state.items()} | {
         "inputs": inputs,
-        "along": Direction(**along),
+        "options": EvaluationOptions(along=Direction(**along)),
     }
     return evaluate(model, **(request | {"quantities": [quantity]}))[quantity].T
 

@@ -14,7 +14,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.quantities.derivatives import inverse_dynamics_derivative, inverse_dynamics_jacobians
-from substructures.quantities.evaluation import Direction, evaluate
+from substructures.quantities.evaluation import Direction, EvaluationOptions, evaluate
 from substructures.quantities.states import default_number
 
 N = 2
@@ -91,7 +91,7 @@ def close(found: Any, expected: Any, tolerance: float = TOLERANCE) -> None:
 def forward_dynamics_derivative(model: Model, request: Plain, along: Plain) -> Any:
     wanted = request | {
         "quantities": ["forward_dynamics_derivative"],
-        "along": None if along is None else Direction(**along),
+        "options": EvaluationOptions(along=None if along is None else Direction(**along)),
     }
     answer = evaluate(model, **wanted)
     assert not answer.failures
