@@ -38,7 +38,7 @@ def tree_warnings(tree: Tree) -> Sequence[Mapping[str, str]]:
 def version_view(
     version: Version, aliases: Sequence[str], withdrawn: Sequence[Withdrawn] | None = None
 ) -> dict[str, Any]:
-    """A version (HTTP contract, section 2); ``withdrawn``: of the parts that it is built of, where that was looked up."""
+    """A version (HTTP contract, section 2); ``withdrawn``: of the parts that it is built of, where looked up."""
     path = version_path(version)
     built_of = {} if withdrawn is None else {"withdrawn": withdrawn_view(withdrawn)}
     return built_of | {

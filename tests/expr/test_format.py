@@ -11,7 +11,6 @@ import numpy as np
 import pytest
 from catalogue_entries import shipped_part
 
-import substructures
 from substructures import TreeSpec, couple
 from substructures.expr.construction.exact import MAX_BITS, MAX_EXPONENT
 from substructures.expr.interpret import interpret

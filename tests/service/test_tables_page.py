@@ -13,7 +13,6 @@ import pytest
 from fastapi.testclient import TestClient
 from sqlalchemy import inspect
 
-import service
 from service.database.tables import metadata
 from service.store.store import Store
 from substructures import catalogue

@@ -1,4 +1,4 @@
-"""Loads of trees over HTTP: stored, changed by revisions, evaluated, printed, made by jobs (HTTP contract, section 3)."""
+"""Loads of trees over HTTP: stored, changed by revisions, evaluated, printed, by jobs (HTTP contract, section 3)."""
 
 from __future__ import annotations
 

@@ -11,10 +11,10 @@ from substructures.analysis.arguments import require_read
 from substructures.analysis.equations.cofactors import determinant
 from substructures.analysis.equations.velocity_constraints import VelocityRows, linear_row
 from substructures.errors import InvalidArgument, among
-from substructures.export import render
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
+from substructures.printers.render import write
 from substructures.quantities.workspace import Workspace
 
 MatrixRows = list[list[Expr]]
@@ -108,7 +108,7 @@ def vanishing(f: Workspace, rows: MatrixRows) -> str:
     if not (found.min() < 0 < found.max()):
         return ""
     return (
-        render(source, "text", "readable").partition("determinant = ")[2].strip() or "the determinant of the velocities"
+        write(source, "text", "readable").partition("determinant = ")[2].strip() or "the determinant of the velocities"
     )
 
 
