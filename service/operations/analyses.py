@@ -9,6 +9,7 @@ from typing import Any
 import orjson
 
 from service.jobs.engines.engine import Outcome
+from service.jobs.kinds.decoded import marks_of
 from service.jobs.worker import Worker
 from service.messages.answers import Answer
 from service.messages.negotiation import MEDIA_TYPES as PRINTED
@@ -98,7 +99,8 @@ def tree_files(store: Store, worker: Worker, tree: Tree, wanted: ExportRequest) 
 def part_files(store: Store, worker: Worker, version: Version, wanted: ExportRequest) -> Answer:
     """A part for a target, as it stands alone. Raises as :func:`tree_files`."""
     blobs = store.blobs((version.digest, version.program))
-    item = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
+    item: dict[str, Any] = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
+    item |= {"not_judged": list(marks)} if (marks := marks_of(version.certificate)) else {}
     return _files(store, worker, wanted, item, f"{version.name}@{version.version}", blobs)
 
 

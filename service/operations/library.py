@@ -7,6 +7,7 @@ from functools import lru_cache
 from typing import Any
 
 from service.database.connections import Connection
+from service.jobs.kinds.decoded import marks_of
 from service.jobs.kinds.kind import ENTRY
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.messages.references import parse_reference
@@ -49,7 +50,8 @@ class StoreLibrary:
         if found is None:
             return None
         recipe = content.get_recipe(self._connection, found.digest)
-        return StoredVersion(found.name, found.digest, found.program, found.software, recipe)
+        marks = marks_of(found.certificate)
+        return StoredVersion(found.name, found.digest, found.program, found.software, recipe, marks)
 
     def _tree(self, reference: str) -> StoredTree | None:
         ref = parse_reference(reference)

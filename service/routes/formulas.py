@@ -125,7 +125,12 @@ def _formula(
         """Bind and print."""
         content, digests = found.to_bytes(), (version.digest, version.program)
         item: dict[str, Any] = {"digest": version.digest, "program": version.program, "selected": found.digest}
-        item |= {"quantity": quantity, "style": asdict(style), "own": chosen.inertia == "own"}
+        item |= {
+            "quantity": quantity,
+            "style": asdict(style),
+            "own": chosen.inertia == "own",
+            "not_judged": sorted(found.not_judged),
+        }
         text = worker("print-part", item, {**store.blobs(digests), found.digest: content}).files[BODY]
         return Answer(200, text, {"Content-Type": MEDIA_TYPES[style.format]})
 

@@ -106,7 +106,7 @@ def test_bad_requests(client: TestClient, changes: dict[str, Any], pointer: str)
 
 def test_work_that_takes_too_long_becomes_a_job(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     store = client.app.state.store  # type: ignore[attr-defined]
-    short = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.01)})
+    short = store.settings.model_copy(update={"limits": Limits(sync_seconds=0.001)})
     monkeypatch.setattr(store, "settings", short)
     answer = client.post("/v1/trees/cell/abbreviations", json=REQUEST)
     assert (answer.status_code, "Location" in answer.headers) == (202, True), answer.text

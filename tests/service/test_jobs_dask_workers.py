@@ -21,7 +21,7 @@ from .conftest import PENDULUM, SLIDER, TREE
 from .jobs_library import BUDGET, MemoryLibrary, chain, compute
 from .test_jobs_dask import Cluster, cells, check, check_limits, connected, runners
 
-OTHER = "import service.jobs.engines.wire\nservice.jobs.wire.PROTOCOL += 1\n"
+OTHER = "import service.jobs.engines.wire\nservice.jobs.engines.wire.PROTOCOL += 1\n"
 WITHOUT = "import sys\nsys.modules['service'] = None\n"
 linux = pytest.mark.skipif(sys.platform != "linux", reason="/proc is that of Linux")
 

@@ -32,6 +32,11 @@ def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
     return part
 
 
+def marks_of(certificate: str) -> tuple[str, ...]:
+    """The outputs that a stored certificate of a part, as JSON, could not decide."""
+    return tuple(not_judged(read_json(certificate.encode()))) if "null" in certificate else ()
+
+
 @lru_cache(maxsize=64)
 def summary_of(text: str) -> dict[str, Any]:
     """The stored summary of a tree as plain data, which is not to be changed."""

@@ -192,7 +192,9 @@ def _is_options(given: object) -> bool:
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     if PART in item:
         part = known_part(item, library)
-        return {**item, PART: f"{part.name}@{part.digest}", "program": part.program}, (part.digest, part.program)
+        told = {"not_judged": list(part.not_judged)} if part.not_judged else {}
+        pinned_part = {PART: f"{part.name}@{part.digest}", "program": part.program, **told}
+        return {**item, **pinned_part}, (part.digest, part.program)
     summary = summary_of(known_tree(item, library).summary)
     if "target" in item:
         item = {**item, "called": item["tree"].partition("@")[0]}
@@ -232,6 +234,7 @@ def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
 def _part_package(item: ItemDocument, blobs: Blobs) -> Package:
     digest = item[PART].partition("@")[2]
     reference, part = str(item.get("reference", item[PART])), part_of(digest, item["program"], blobs)
+    part = replace(part, program=part.program.marked(item.get("not_judged", ())))
     return part_package(part, reference, digest, read_item(item), item["nodes"])
 
 

@@ -13,7 +13,7 @@ class StoredVersion:
 
     The blob of ``digest`` is the canonical definition (:meth:`substructures.part.definition.Definition.canonical`), the
     blob of ``program`` the canonical program, which ``software`` derived; ``recipe``: of a published tree
-    (:mod:`service.content.derivation`).
+    (:mod:`service.content.derivation`); ``not_judged``: outputs that its certificate could not decide.
     """
 
     name: str
@@ -21,6 +21,7 @@ class StoredVersion:
     program: str
     software: str
     recipe: str | None = None
+    not_judged: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -58,7 +58,7 @@ def _publish(item: ItemDocument, blobs: Blobs) -> Outcome:
 def _print_part(item: ItemDocument, blobs: Blobs) -> Outcome:
     """Formulas of a part that were ``selected``, in the style chosen."""
     part = part_of(item["digest"], item["program"], blobs)
-    selected = Program.from_bytes(blobs[item["selected"]])
+    selected = Program.from_bytes(blobs[item["selected"]]).marked(item["not_judged"])
     style, quantity = Style(**item["style"]), item["quantity"]
     own = with_own_inertia(part, selected) if item["own"] else selected
     inputs = described_inputs(part.definition.inputs)

@@ -197,8 +197,8 @@ class RestSearch:
                 ).x
             q[moving] += self._last_step(q, moving)
         F, K = self.at(q)
-        # |Q_a| <= 1e-10 max(1, |K_ab|)
-        if not (np.abs(F) <= RESIDUAL * np.maximum(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all():
+        # |Q_a| <= 1e-10 max(1, |K_ab|), or 1 at a corner of a force, where K has no value
+        if not (np.abs(F) <= RESIDUAL * np.fmax(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all():
             return None
         return self._wound(q)
 

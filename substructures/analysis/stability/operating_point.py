@@ -116,4 +116,4 @@ def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:
 def unit_accelerations(K: Array, M: Array) -> Array:
     """Of each coordinate the largest acceleration that a unit displacement of any causes, or 1, (r,)."""
     # max(1, |M^-1 K|) by rows: what is stiff elsewhere excuses nothing here
-    return np.asarray(np.maximum(1.0, np.abs(np.linalg.solve(M, K)).max(axis=1, initial=0)), dtype=np.float64)
+    return np.asarray(np.fmax(1.0, np.abs(np.linalg.solve(M, K)).max(axis=1, initial=0)), dtype=np.float64)
