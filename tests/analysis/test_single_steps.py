@@ -15,7 +15,8 @@ from rolling_bodies import FLOOR, R, disc
 from simulated import simulated
 
 from substructures.analysis.closed import simulation as closed
-from substructures.analysis.motion import fixed_step, integration, rolling, simulation, single_steps
+from substructures.analysis.motion import rolling, simulation, single_steps
+from substructures.analysis.motion.integrators import fixed_step, integration
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, FixedStep, Outputs, simulate
 
