@@ -65,6 +65,7 @@ def killed(server: Server, how: signal.Signals) -> None:
     assert server.serving() != [serving]
 
 
+@pytest.mark.deep  # 12 s of CPU: many kills; one is in the test before
 def test_killed_under_load(server: Server) -> None:
     """Requests in flight break off, all others are answered; a job ends as if nothing had been."""
     with running([server]), Client(server.address, timeout=60) as client:

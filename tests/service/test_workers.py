@@ -211,6 +211,7 @@ def test_what_takes_too_long_is_told_as_that(tmp_path: Path) -> None:
         assert client.post(path, json=body).status_code == 202
 
 
+@pytest.mark.deep  # 6 s of CPU: two more processes, each with its imports
 def test_each_of_several_processes_has_its_own(tmp_path: Path) -> None:
     one = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log", ("--workers", "1", "--processes", "2"))
     with running([one]), ThreadPoolExecutor(8) as pool:
