@@ -24,9 +24,11 @@ from starlette.exceptions import HTTPException
 
 from service.http.request_id import current_request_id
 from service.messages.refusals import Refused, known_refusal, not_found, problem, unprocessable
+from service.models.formulas import QUANTITIES
 from service.queries.common import is_conflict, is_full, is_outage
 from substructures.documents import message_of, pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed, among
+from substructures.quantities.quantity import TABLE
 
 MEDIA_TYPE = "application/problem+json"
 _log = logging.getLogger(__name__)
@@ -93,6 +95,8 @@ def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRo
     if not words:
         return None
     word = request.url.path.rpartition("/")[2]
+    if word in TABLE or word in QUANTITIES:  # which GET answers
+        return None
     detail = f"{request.method} knows no '{word[:80]}' at this path{among(word, words)}"
     return not_found(detail, "unknown-analysis")
 

@@ -62,6 +62,11 @@ def hidden(text: str) -> str:
     return f"{what}; of these a text has tabs and ends of lines alone"
 
 
+def shown(text: str) -> str:
+    """A text without what nobody sees."""
+    return _HIDDEN.sub("", text)
+
+
 def _readable(text: str, info: ValidationInfo) -> str:
     """Refuse what is not meant to be read, unless it was stored when it was accepted."""
     message = "" if info.context and info.context.get("stored") else hidden(text)

@@ -12,7 +12,7 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from substructures.interchange.merge import Seat, minus, plus, together
-from substructures.interchange.names import Names, library_name
+from substructures.interchange.names import Names, library_name, title_of
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
 from substructures.interchange.report import Place, refuse
 from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion, Robot
@@ -102,7 +102,7 @@ class _Builder:
         self.symbols_taken()
         document: dict[str, Any] = {
             "name": library_name(name or self.robot.name),
-            "title": self.robot.name[:200],
+            "title": title_of(self.robot.name),
             "bodies": [self._document(body) for body in self.bodies.values()],
             "ports": self.ports[:MAX_PORTS],
             "loads": self.loads,

@@ -9,6 +9,7 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 from typing import Any
 
+from substructures.documents.fields import shown
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
@@ -71,6 +72,11 @@ def symbols_in(text: str) -> list[str] | None:
     except (ValueError, ArithmeticError, InvalidDocument):
         return None
     return list(found)
+
+
+def title_of(text: str) -> str:
+    """A name in a file as the title of a definition."""
+    return shown(text)[:200]
 
 
 @dataclass

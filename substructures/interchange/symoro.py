@@ -13,7 +13,7 @@ from typing import Any
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
-from substructures.interchange.names import library_name
+from substructures.interchange.names import library_name, title_of
 from substructures.interchange.report import Place, Report, refuse
 
 _WORD = re.compile(r"\w+")
@@ -67,7 +67,7 @@ class _Reader:
             raise refuse(self.place("NF"), "loops", message)
         bodies = [self._body(k) for k in range(links)]
         name = library_name(self.title, "symoro")
-        document = {"name": name, "title": self.title[:200], "bodies": bodies, "parameters": self.parameters}
+        document = {"name": name, "title": title_of(self.title), "bodies": bodies, "parameters": self.parameters}
         document["ports"] = [{"name": f"end{k + 1}", "body": f"link{k + 1}"} for k in self._leaves(links)]
         return document, self.report
 

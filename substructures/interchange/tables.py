@@ -21,10 +21,11 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
 
+from substructures.documents.fields import NAME
 from substructures.documents.text import decoded
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import meant
-from substructures.interchange.names import Names, Symbols, library_name, symbols_in
+from substructures.interchange.names import Names, Symbols, library_name, symbols_in, title_of
 from substructures.interchange.numbers import number_of
 from substructures.interchange.report import Place, Report, refuse
 
@@ -125,7 +126,7 @@ def _definition(table: _Table, symbolic: bool) -> tuple[dict[str, Any], Report]:
         report.warning(table.rows[0][0], "no masses: the part has a geometry, but its metric is zero", "physics")
     title = table.settings.get("name", "")
     ports = [{"name": names.new("tip"), "body": bodies[-1]["name"]}]
-    document = {"name": library_name(title, "dh-table"), "title": title[:200], "bodies": bodies, "ports": ports}
+    document = {"name": library_name(title, "dh-table"), "title": title_of(title), "bodies": bodies, "ports": ports}
     parameters = symbols.parameters(body["joint"]["coordinate"] for body in bodies if "coordinate" in body["joint"])
     if symbolic:
         parameters |= _parameters(bodies, parameters)
@@ -241,5 +242,8 @@ class _Cells:
         if is_scaled and found != [text.strip()]:
             message = f"'{text[:60]}' beside numbers in {unit}: write the table in SI units, or a parameter alone"
             raise refuse(place, "unit-of-expression", message)
+        for symbol in found:
+            if re.match(NAME, symbol) is None:
+                raise refuse(place, "bad-name", f"'{symbol[:60]}' is no name: a letter and letters, digits and '_'")
         self.reading.symbols.add(found, text, _SI.get(kind) or _SI.get(name[0] if name != "mass" else name, ""))
         return text.strip()

@@ -136,7 +136,10 @@ def test_acrobot() -> None:
         "bounds": {"tau.x.q2": [-40, 40]},
         "segments": 12,
     }
-    found = optimal_control(shipped("acrobot"), **control_arguments(**request))
+    rough = optimal_control(shipped("acrobot"), **control_arguments(**request))
+    assert rough.status == "failed"  # what is optimal for so few steps is not so for the motion
+    assert "steps" in rough.message
+    found = optimal_control(shipped("acrobot"), **control_arguments(**request), error_limit=1e3)
     assert found.status == "optimal"
     assert found.violation < 1e-6
 

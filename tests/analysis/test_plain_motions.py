@@ -210,7 +210,9 @@ def test_costs_gradients_and_optimal_controls(seed: int) -> None:
     gradient = slope(lambda w: rollout(case, w, hold, running, terminal)[1], u)
     np.testing.assert_allclose(found.controls.ravel(), gradient, rtol=0, atol=1e-7 * np.abs(gradient).max())
     best = optimal_control(
-        case.model, **control_arguments(**request, end=End(case.q + 0.3, [0.0] * n), tolerance=1e-12, segments=3)
+        case.model,
+        **control_arguments(**request, end=End(case.q + 0.3, [0.0] * n), tolerance=1e-12, segments=3),
+        error_limit=1e3,  # of the scheme with its one step, however far it is from the motion
     )
     assert best.status == "optimal"
 
