@@ -201,6 +201,7 @@ def test_what_takes_too_long_is_told_as_that(tmp_path: Path) -> None:
     """Not as a process that was ended; what is no job is 503 with the limit, the rest becomes one."""
     one = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log", ("--workers", "1"))
     one.environment |= {"SUBSTRUCTURES_LIMIT_SYNC_SECONDS": "0.5", "SUBSTRUCTURES_LIMIT_SYNC_NODES": "10000000"}
+    one.environment |= {"SUBSTRUCTURES_LIMIT_PROGRAM_NODES": "10000000"}  # not refused for its size before that
     with running([one]), httpx2.Client(base_url=one.address, timeout=60) as client:
         path, body = HOSTILE["compare"]
         late = client.post(path, json=body)
