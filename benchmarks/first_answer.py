@@ -24,7 +24,7 @@ from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, 
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.from_parts import CompiledParts, NumericTree
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.states import default_number
 
 NAMES = ("forces", "metric")
 STATES = (1, 16, 256, 4096, 65536)

@@ -27,7 +27,7 @@ from substructures.array import Array
 from substructures.client import Client
 from substructures.expr.program import Program
 from substructures.formats.arrays import read_npz, view_npz, write_npz
-from substructures.quantities.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 
 STATES = 100_000
 TURNS, SECONDS = 5, 3.0

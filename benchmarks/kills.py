@@ -2,13 +2,13 @@
 
 Nothing that was acknowledged may be lost, or be there twice.
 
-python -m benchmarks.kills [--kills N] [--seed S] [--database URL] [--file FILE]
+python -m benchmarks.kills [--kills N] [--seed S] [--processes N] [--database URL] [--file FILE]
 
 The database is empty: an SQLite file by default. Kills of every run add up in the file, so that many may be had in
 parts. The exit status is 1 where anything was lost, doubled or wrong.
 
 server   all of a server: the process that holds the port, with those that answer; it is started again here
-process  one of the two that answer, which the server starts again by itself
+process  where several answer: one of them, which the server starts again by itself
 runner   a process that computes items of jobs; after three deaths an item may fail, and says so
 worker   on PostgreSQL: a process of its own that hands items out; it is started again here
 """
@@ -59,16 +59,18 @@ PAUSE = 0.3  # seconds between the requests of a client
 
 
 class Farm:
-    """A server of two processes, and on PostgreSQL a worker beside it, which are killed and started again."""
+    """A server of one or more processes, on PostgreSQL a worker beside it, which are killed and started again."""
 
-    def __init__(self, database: str, folder: Path) -> None:
+    def __init__(self, database: str, folder: Path, processes: int) -> None:
         with socket.create_server(("127.0.0.1", 0)) as listener:
             self.port = int(listener.getsockname()[1])
         self.address = f"http://127.0.0.1:{self.port}"
-        self.has_worker = not database.startswith("sqlite")
+        self.has_worker, self.has_processes = not database.startswith("sqlite"), processes > 1
         program = [sys.executable, "-m", "service.cli.main"]
         common = ["--workers", "1", "--database", database]
-        self._commands = {"server": [*program, "serve", "--port", str(self.port), "--processes", "2", *common]}
+        self._commands = {
+            "server": [*program, "serve", "--port", str(self.port), "--processes", str(processes), *common]
+        }
         if self.has_worker:
             self._commands["worker"] = [*program, "worker", *common]
         settings = {"SUBSTRUCTURES_CATALOGUE": "0", "SUBSTRUCTURES_LIMIT_LEASE_SECONDS": "3"}
@@ -116,7 +118,8 @@ class Farm:
             if kind == "server":
                 self.wait()
             return True
-        answering = children(self._processes["server"].pid)
+        server = self._processes["server"].pid
+        answering = children(server) if self.has_processes else [server]
         parents = [*answering, *(p.pid for name, p in self._processes.items() if name == "worker")]
         found = answering if kind == "process" else [pid for parent in parents for pid in children(parent)]
         with suppress(ProcessLookupError):
@@ -236,9 +239,9 @@ def faults_of_jobs(client: Client, writers: list[Writer]) -> Iterator[str]:
                 client.request("GET", file["href"])
 
 
-def besieged(database: str, folder: Path, kills: int, seed: int) -> tuple[Counter[str], list[str]]:
+def besieged(database: str, folder: Path, kills: int, seed: int, processes: int) -> tuple[Counter[str], list[str]]:
     """Kills by kind, with numbers of what was acknowledged; and what is wrong."""
-    farm, chance, counts = Farm(database, folder), random.Random(seed), Counter[str]()  # noqa: S311 -- a simulation
+    farm, chance, counts = Farm(database, folder, processes), random.Random(seed), Counter[str]()  # noqa: S311 -- a simulation
     with farm.running():
         with Client(farm.address) as client:
             client.submit(PENDULUM)
@@ -247,7 +250,8 @@ def besieged(database: str, folder: Path, kills: int, seed: int) -> tuple[Counte
         writers = {name: Writer(farm, name, requests(name)) for name, requests in made.items()}
         for writer in writers.values():
             writer.start()
-        kinds = [kind for kind in SHARES if kind != "worker" or farm.has_worker]
+        there = {"worker": farm.has_worker, "process": farm.has_processes}
+        kinds = [kind for kind in SHARES if there.get(kind, True)]
         while counts.total() < kills and not any(writer.error for writer in writers.values()):
             sleep(chance.uniform(0.0, 0.6))
             kind = chance.choices(kinds, [SHARES[kind] for kind in kinds])[0]
@@ -272,13 +276,14 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--kills", type=int, default=50, help="how many")
     parser.add_argument("--seed", type=int, default=0, help="of the moments")
+    parser.add_argument("--processes", type=int, default=2, help="that answer")
     parser.add_argument("--database", help="URL of an empty database")
     parser.add_argument("--file", type=Path, help="where kills add up")
     given = parser.parse_args()
     with tempfile.TemporaryDirectory() as folder:
         database = given.database or f"sqlite:///{folder}/store.db"
-        counts, faults = besieged(database, Path(folder), given.kills, given.seed)
-    kind = database.partition(":")[0].partition("+")[0]
+        counts, faults = besieged(database, Path(folder), given.kills, given.seed, given.processes)
+    kind = f"{database.partition(':')[0].partition('+')[0]}, processes: {given.processes}"
     so_far = json.loads(given.file.read_text()) if given.file and given.file.exists() else {}
     total = Counter(so_far.get(kind, {})) + counts + Counter({"runs": 1, "faults": len(faults)})
     if given.file:

@@ -14,8 +14,8 @@ from typing import Any
 
 from benchmarks.timing import alternating
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
-from substructures.tree.published import Publication, Published, published
-from substructures.tree.published_formulas import published_part
+from substructures.tree.publishing.published import Publication, Published, published
+from substructures.tree.publishing.published_formulas import published_part
 
 QUANTITIES = ("metric", "christoffel", "forces")
 ARM = {"name": "arm", "substructure": "puma560"}

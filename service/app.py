@@ -13,13 +13,17 @@ from sqlalchemy.exc import DBAPIError
 from service import __version__
 from service.database.connections import Database, DatabaseError, told
 from service.http import openapi, problems
+from service.http.compression import Compression
 from service.http.middleware import Conventions
 from service.http.not_derived import DerivesFirst
 from service.jobs.engines.pool import InProcess
 from service.metrics import Metrics
 from service.operations.seed import Told, import_catalogue
-from service.pages import account
+from service.pages import account, documents
 from service.pages import routes as pages
+from service.pages.errors import error_page
+from service.pages.model import assets
+from service.pages.model import routes as model_pages
 from service.processes.parent import Kept
 from service.queries import idempotency
 from service.routes import (
@@ -29,12 +33,8 @@ from service.routes import (
     bundles,
     differences,
     equivalences,
-    exports,
     formulas,
     imports,
-    job_streams,
-    jobs,
-    kernels,
     models,
     pictures,
     publishing,
@@ -45,6 +45,8 @@ from service.routes import (
     versions,
     visibility,
 )
+from service.routes.jobs import job_streams, jobs, tables
+from service.routes.programs import exports, kernels, modules
 from service.settings import Settings
 from service.store.store import Store
 
@@ -56,6 +58,7 @@ ROUTES = (
     bundles,
     differences,
     exports,
+    modules,
     formulas,
     pictures,
     reports,
@@ -66,12 +69,16 @@ ROUTES = (
     kernels,
     jobs,
     job_streams,
+    tables,
     imports,
     equivalences,
     system,
     audit,
     account,
+    documents,
     pages,
+    assets,
+    model_pages,
 )
 DESCRIPTION = "Stored formulas of mechanisms, coupled into equations of motion: metric, Christoffel symbols, forces."
 
@@ -90,7 +97,7 @@ def open_store(
     ``require`` does.
     """
     kept = kept or Kept()
-    database = Database(settings.database, claim=kept.claim)
+    database = Database(settings.database, claim=kept.claim, seal_key=settings.seal_key)
     label = str(kept.number) if settings.processes > 1 else ""
     store = Store(settings, database, Metrics(label), InProcess())
     try:
@@ -138,7 +145,9 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
     routers = [models.evaluations, *(module.router for module in ROUTES)]  # what is asked for most is looked for first
     for router in routers:
         app.include_router(router)
-    problems.install(app, [route for router in routers for route in router.routes if isinstance(route, APIRoute)])
+    known = [route for router in routers for route in router.routes if isinstance(route, APIRoute)]
+    problems.install(app, known, error_page)
+    app.add_middleware(Compression)
     app.add_middleware(DerivesFirst)
     app.add_middleware(Conventions, allowed_hosts=allowed_hosts, metrics=metrics or Metrics())
     return app

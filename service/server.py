@@ -12,6 +12,7 @@ import signal
 import socket
 import sys
 import threading
+import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
@@ -24,6 +25,7 @@ from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engines.engine import Engine
 from service.operations.seed import Told
 from service.processes.parent import bound, kept, listeners
+from service.queries.jobs.jobs import waiting
 from service.queries.keys import any_key
 from service.queue.engines import engine_of, worker_pool
 from service.queue.supervisor import Supervisor
@@ -37,6 +39,7 @@ MAPPED, KEPT = 32 * 2**20, 64 * 2**20  # bytes: memory that is got from the syst
 TURN = 0.001  # seconds that a thread computes while others wait
 M_TRIM_THRESHOLD, M_MMAP_THRESHOLD = -1, -3  # malloc.h
 TICKS = 10  # of uvicorn in a second
+IDLE, LOOK = 5.0, 0.5  # seconds without a job after which a worker may end, and between looks
 GRACE = 4  # seconds for answers that were begun, when the server is told to end
 AT_A_STRETCH, WAITING = 32, 1024  # connections that are accepted, and that wait to be
 
@@ -119,8 +122,11 @@ def _prepare_to_answer() -> None:
     gc.freeze()
 
 
-def work(settings: Settings) -> None:
-    """Compute jobs of a database that servers share, until interrupted. Raises SettingsError for SQLite."""
+def work(settings: Settings, exit_when_idle: bool = False) -> None:
+    """Compute jobs of a database that servers share, until interrupted; ``exit_when_idle``: until all jobs have ended.
+
+    Raises SettingsError for SQLite.
+    """
     if not settings.database.startswith("postgres"):
         raise SettingsError("a worker of its own needs PostgreSQL; with SQLite the server computes the jobs itself")
     if settings.engine == "none":
@@ -129,7 +135,22 @@ def work(settings: Settings) -> None:
     with open_store(settings) as store:
         store.workers = worker_pool(settings, warm=False)  # of mirrors
         with supervised(store, engine_of(settings)):
-            threading.Event().wait()
+            wait_for_end(store) if exit_when_idle else threading.Event().wait()
+
+
+def wait_for_end(store: Store) -> None:
+    """Until nothing waits or runs anywhere, seen for IDLE seconds."""
+    end = time.monotonic() + IDLE
+    while time.monotonic() < end:
+        time.sleep(LOOK)
+        try:
+            with store.database.read() as connection:
+                is_needed = waiting(connection) > 0
+        except Exception as error:
+            logging.getLogger(__name__).error("the queue cannot be read: %s", error)
+            is_needed = True
+        if is_needed:
+            end = time.monotonic() + IDLE
 
 
 def _stop(_signal: int, _frame: object) -> None:

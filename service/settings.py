@@ -102,6 +102,10 @@ class Settings(BaseModel):
     workers: int = Field(0, ge=0, le=10_000, description="processes that compute jobs; 0: one per core")
     runner_user: str = Field("", description="user of the processes that compute jobs; empty: that of the server")
     kernels: str = Field("", description="folder of compiled kernels; empty: beside the SQLite file, '-': none")
+    seal_key: str = Field(
+        "",
+        description="file of 32 random bytes, the key of seals of a store; empty: that beside the SQLite file",
+    )
     mirror_sources: tuple[str, ...] = Field(
         (), repr=False, description="instances that may be mirrored, with commas: https://host or https://key@host"
     )

@@ -14,6 +14,7 @@ tree           tree                    parts on ports of parts: tree.coupling ma
                                        listed in tree.model_outputs
 quantities     quantities              what a model can be asked, as formulas and as numbers of one state or many
 analysis       analysis                what follows: first integrals, motion, closed loops, stability, control
+many at once   ensembles, sweeps       motions from many starts; numbers of many combinations of parts
 =============  ======================  ===========================================================================
 
 Where the symbols of the notation (notation.md) are made:
@@ -23,6 +24,7 @@ U, Omega       partial velocities: mechanics.kinematics (base_functions), carrie
 g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric), of parallel axes
                mechanics.parallel_axes
 Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: the same modules (christoffel)
+N_ai           dq^a / dq^i of joints that relations move (gears, mimic joints): mechanics.ratios, part.relations
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
                (loads.kinds), summed in part.applied_forces (own forces of a part), tree.coupling (gravity, and
                wrenches on what others carry) and tree.loads (between parts)
@@ -76,8 +78,12 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
         simulate,
     )
     from substructures.analysis.stability.equilibria import equilibria
+    from substructures.analysis.stability.frequency_response import frequency_response
     from substructures.analysis.stability.linearise import linearise
+    from substructures.analysis.stability.regulator import regulator
     from substructures.analysis.stability.steady_motions import steady_motions
+    from substructures.ensembles.columns import MotionColumn
+    from substructures.ensembles.ensemble import simulate_ensemble
     from substructures.errors import (
         Fault,
         InvalidArgument,
@@ -90,9 +96,13 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     )
     from substructures.export import render
     from substructures.expr.program import Program
+    from substructures.interchange.symbolic.equations import linearizer, symbolic_system
+    from substructures.interchange.symbolic.expressions import to_sympy
+    from substructures.interchange.symbolic.systems import tree_of_system
+    from substructures.interchange.symbolic.texts import from_sympy
     from substructures.part.definition import Definition
     from substructures.part.part import Formula, Part, derive
-    from substructures.quantities.evaluation import EvaluationOptions, evaluate
+    from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
     from substructures.tree.document import Instance, TreeSpec, read_instance
     from substructures.tree.model import Model, couple
 
@@ -121,6 +131,7 @@ __all__ = [
     "Linear",
     "MissingValue",
     "Model",
+    "MotionColumn",
     "Outputs",
     "Part",
     "Program",
@@ -140,13 +151,21 @@ __all__ = [
     "equilibria",
     "evaluate",
     "first_integrals",
+    "frequency_response",
+    "from_sympy",
     "linearise",
+    "linearizer",
     "optimal_control",
     "read_instance",
+    "regulator",
     "render",
     "sensitivities",
     "simulate",
+    "simulate_ensemble",
     "steady_motions",
+    "symbolic_system",
+    "to_sympy",
+    "tree_of_system",
 ]
 
 __version__: str
@@ -165,8 +184,12 @@ _WHERE = {
         *("KnifeEdge", "Linear", "Rolling", "Table", "TreeMotion", "simulate"),
     ),
     "substructures.analysis.stability.equilibria": ("equilibria",),
+    "substructures.analysis.stability.frequency_response": ("frequency_response",),
     "substructures.analysis.stability.linearise": ("linearise",),
+    "substructures.analysis.stability.regulator": ("regulator",),
     "substructures.analysis.stability.steady_motions": ("steady_motions",),
+    "substructures.ensembles.columns": ("MotionColumn",),
+    "substructures.ensembles.ensemble": ("simulate_ensemble",),
     "substructures.errors": (
         *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),
         *("SubstructuresError", "TooLarge"),
@@ -175,7 +198,11 @@ _WHERE = {
     "substructures.expr.program": ("Program",),
     "substructures.part.definition": ("Definition",),
     "substructures.part.part": ("Formula", "Part", "derive"),
-    "substructures.quantities.evaluation": ("EvaluationOptions", "evaluate"),
+    "substructures.quantities.numbers.evaluation": ("EvaluationOptions", "evaluate"),
+    "substructures.interchange.symbolic.equations": ("linearizer", "symbolic_system"),
+    "substructures.interchange.symbolic.expressions": ("to_sympy",),
+    "substructures.interchange.symbolic.systems": ("tree_of_system",),
+    "substructures.interchange.symbolic.texts": ("from_sympy",),
     "substructures.tree.document": ("Instance", "TreeSpec", "read_instance"),
     "substructures.tree.model": ("Model", "couple"),
 }

@@ -10,7 +10,7 @@ from made_once import coupled_once
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
 from substructures import Model, catalogue
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.states import default_number
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
 FINE: Plain = {"relative_tolerance": 1e-13, "absolute_tolerance": 1e-14}

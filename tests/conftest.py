@@ -13,6 +13,10 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import checked_graph
 
+#: tests that took 0.7 s of CPU or more when they were last measured (``python -m benchmarks.tests_by_folder``), a line
+#: each, but for one of every file: they run with the deep ones, so that the others take minutes
+LONG = Path(__file__).with_name("long.txt")
+
 
 def pytest_addoption(parser: pytest.Parser) -> None:
     """The test mode of tests/checked_graph.py."""
@@ -23,6 +27,20 @@ def pytest_configure(config: pytest.Config) -> None:
     """Before anything is imported that makes formulas."""
     if config.getoption("--checked"):
         checked_graph.install()
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """What LONG names is deep. Raises UsageError for names of tests that are no longer there."""
+    names = frozenset(LONG.read_text().splitlines())
+    for item in items:
+        if item.nodeid in names:
+            item.add_marker("deep")
+    files = {item.nodeid.partition("::")[0] for item in items}
+    known = {item.nodeid.partition("[")[0] for item in items}
+    lost = {n for n in names if n.partition("::")[0] in files and n.partition("[")[0] not in known}
+    if lost and not any("::" in argument for argument in config.args):
+        raise pytest.UsageError(f"{LONG.name} names tests that are not there: {', '.join(sorted(lost))}")
 
 
 @pytest.hookimpl(wrapper=True)

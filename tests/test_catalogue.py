@@ -19,7 +19,7 @@ from substructures.documents import read_yaml
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.part.topology import CHAINS
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree.document import TreeSpec
 
 ENTRIES = pytest.mark.parametrize("name", names())
@@ -36,7 +36,7 @@ def strings(data: Any) -> list[str]:
 
 
 def test_enough_entries() -> None:
-    assert len(names()) >= 48
+    assert len(names()) >= 49
     assert list(names()) == sorted(names())
     with pytest.raises(KeyError, match="no catalogue entry 'nothing'"):
         load("nothing")
@@ -84,7 +84,7 @@ def test_names_are_used_and_known(name: str) -> None:
     entry = load(name)
     parameters, inputs = set(entry["parameters"]), set(entry.get("inputs", ()))
     words = "placement axis psi theta d sigma phi tau stiffness rest damping armature limits mass com inertia position"
-    numeric = f"{words} rotation at vector force length".split()
+    numeric = f"{words} rotation at vector force length multiplier offset".split()
 
     def expressions(data: Any) -> list[str]:
         if isinstance(data, list):
@@ -93,7 +93,7 @@ def test_names_are_used_and_known(name: str) -> None:
             return []
         return [t for key, value in data.items() for t in (strings(value) if key in numeric else expressions(value))]
 
-    texts = [text for key in ("bodies", "ports", "loads") for text in expressions(entry.get(key, []))]
+    texts = [text for key in ("bodies", "ports", "loads", "relations") for text in expressions(entry.get(key, []))]
     found = {word for text in texts for word in re.findall(r"[A-Za-z]\w*", text)} - {"pi", "sin", "cos", "sqrt"}
     assert found == parameters | inputs
 

@@ -15,7 +15,7 @@ from independent import defaults, value
 from substructures import couple, derive
 from substructures.catalogue import load, load_tree
 from substructures.part.definition import Definition
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
@@ -158,3 +158,18 @@ def test_four_legs_make_a_quadruped() -> None:
     np.testing.assert_allclose(legs[0], mirror @ legs[1] @ mirror, rtol=1e-12, atol=1e-15)
     for one, other in pairwise(legs):
         np.testing.assert_allclose(np.diag(one)[1:], np.diag(other)[1:], rtol=1e-12)
+
+
+def test_a_spindle_moves_two_jaws() -> None:
+    """I + I_r + 2 m (h / 2 pi)^2 and d + 2 b (h / 2 pi)^2 at the spindle of lead h; jaws 6 mm out after 1.5 turns."""
+    model = mounted(("x", "screw-gripper", "world"))
+    assert model.coordinates == ("x.turn",)
+    turn = 1.5 * 2 * np.pi
+    answer = evaluate(model, ["metric", "forces", "bias", "limits", "kinematics"], q=[turn], qd=[2.0])
+    ratio = 0.004 / (2 * np.pi)
+    np.testing.assert_allclose(answer["metric"], [[2e-6 + 1e-5 + 2 * 0.12 * ratio**2]], rtol=1e-12)
+    np.testing.assert_allclose(answer["forces"], [-2 * (2e-5 + 2 * 4 * ratio**2)], rtol=1e-12)
+    np.testing.assert_allclose(answer["bias"], [0], atol=1e-18)
+    np.testing.assert_allclose(answer["limits"], [[0, 0.03 / ratio]], rtol=1e-12)
+    jaws = [answer["kinematics"]["position"][model.frames.index(f"x.{jaw}_pad"), 0] for jaw in ("left", "right")]
+    np.testing.assert_allclose(jaws, [1.5 * 0.004, -1.5 * 0.004], rtol=1e-12)

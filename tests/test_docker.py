@@ -19,6 +19,8 @@ import pytest
 import yaml
 
 from service import __version__
+from service.cli.main import main
+from service.settings import from_environment
 
 ROOT = Path(__file__).parents[1]
 DOCKERFILE = ROOT / "docker" / "Dockerfile"
@@ -148,6 +150,56 @@ def test_what_computes_knows_nothing_of_the_database() -> None:
     command = SERVICES["scheduler"]["command"]
     assert environment["SUBSTRUCTURES_ENGINE_ADDRESS"] == f"tcp://scheduler:{command[command.index('--port') + 1]}"
     assert environment["SUBSTRUCTURES_ENGINE_ADDRESS"] in SERVICES["worker"]["command"]
+
+
+KUBERNETES = [
+    document
+    for name in ("kubernetes.yaml", "kubernetes-night.yaml")
+    for document in yaml.safe_load_all((ROOT / "docker" / name).read_text())
+]
+
+
+@pytest.mark.parametrize("kind", ["Deployment", "Job"])
+def test_pods_are_locked_down_and_of_the_image(kind: str) -> None:
+    (document,) = [each for each in KUBERNETES if each["kind"] == kind]
+    pod = document["spec"]["template"]["spec"]
+    (container,) = pod["containers"]
+    assert container["image"] == f"substructures:{__version__}"
+    assert pod["securityContext"]["runAsNonRoot"] is True
+    assert [str(pod["securityContext"]["runAsUser"])] == given("USER")
+    assert pod["automountServiceAccountToken"] is False
+    rights = container["securityContext"]
+    assert (rights["readOnlyRootFilesystem"], rights["allowPrivilegeEscalation"]) == (True, False)
+    assert rights["capabilities"] == {"drop": ["ALL"]}
+    mounted = {each["name"]: each["mountPath"] for each in container["volumeMounts"]}
+    assert mounted.keys() == {each["name"] for each in pod["volumes"]}
+    assert {"/data", "/tmp", "/keys"} == set(mounted.values())  # noqa: S108 -- of the container
+    environment = {each["name"]: each for each in container["env"]}
+    assert "valueFrom" in environment.pop("SUBSTRUCTURES_DATABASE")
+    settings = {name: each["value"] for name, each in environment.items()}
+    assert from_environment(settings).seal_key.startswith(mounted["keys"])
+
+
+def test_the_service_of_the_cluster_is_that_of_the_pods() -> None:
+    found = {each["kind"]: each for each in KUBERNETES}
+    pods = found["Deployment"]["spec"]["template"]
+    assert found["Service"]["spec"]["selector"] == pods["metadata"]["labels"]
+    (container,) = pods["spec"]["containers"]
+    assert {"containerPort": found["Service"]["spec"]["ports"][0]["port"]} in container["ports"]
+    assert "metadata" in found["Job"]
+    assert found["Job"]["spec"]["template"]["spec"]["restartPolicy"] == "OnFailure"
+
+
+def test_commands_of_clusters_are_those_of_the_command_line() -> None:
+    script = (ROOT / "docker" / "night.sbatch").read_text()
+    subprocess.run(["bash", "-n"], input=script, text=True, check=True)  # noqa: S607 -- the shell that there is
+    commands = [re.sub(r"^srun ", "", script.splitlines()[-1]).replace('"$SLURM_CPUS_PER_TASK"', "8").split()]
+    pods = [each["spec"]["template"]["spec"] for each in KUBERNETES if "template" in each["spec"]]
+    commands += [pod["containers"][0]["args"] for pod in pods]
+    assert [words[:2] for words in commands] == [["substructures", name] for name in ("worker", "serve", "worker")]
+    for _, name, *options in commands:
+        # click reads the options, and --help after them ends it
+        assert main([name, *options, "--help"]) == 0
 
 
 class Replay:

@@ -11,7 +11,7 @@ import pytest
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive
 from substructures.documents import tables
 from substructures.documents.tables import with_points, with_tables
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 Plain = dict[str, Any]
 BUMP = "x,y\n0,0\n0.1,5\n\n2e-1,-3.50\n"

@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 
 from substructures.export import interface_of_part, render
 from substructures.part.outputs import with_own_inertia
-from substructures.part.part import LEADING, OF_FRAMES, Part
+from substructures.part.part import OF_FRAMES, Part
 
 
 def shown(part: Part, quantity: str, format_: str, name: str) -> str:
@@ -21,9 +21,9 @@ def shown(part: Part, quantity: str, format_: str, name: str) -> str:
 
 def _numbered(part: Part, names: Sequence[str]) -> Iterator[str]:
     """What the leading indices of quantities stand for, as comments."""
-    known = {"frame": part.frames, **{axis: part.labels(axis) for axis in ("joint", "port", "coordinate")}}
-    axes = dict.fromkeys(axis for name in names for axis in LEADING.get(name, OF_FRAMES.get(name, ())))
+    known = {"frame": part.frames, **{axis: part.labels(axis) for axis in ("joint", "mover", "port", "coordinate")}}
+    axes = dict.fromkeys(axis for name in names for axis in part.axes_of(name) or OF_FRAMES.get(name, ()))
     for axis in axes:
         if labels := known.get(axis):
-            of = " carry" if axis == "joint" else ""
+            of = " carry" if axis in ("joint", "mover") else ""
             yield f"# {axis}s{of}: {', '.join(f'{k} {label}' for k, label in enumerate(labels, 1))}\n"

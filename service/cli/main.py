@@ -55,6 +55,7 @@ COMMANDS = (
     Command("simulate", "simulate", "simulate a tree and judge the motion by its first integrals", TREES),
     Command("analyse", "analyse", "formulas and numbers that follow from the equations of motion", TREES),
     Command("publish", "versions", "make a part of a tree", TREES),
+    Command("sweep", "sweeps", "a table of all combinations of parts and numbers", TREES),
     Command("jobs", "jobs", "submit, watch and read batch jobs", TREES),
     Command("export", "export", "functions of a tree for other tools: C, MATLAB, Fortran, FMU, ...", FILES),
     Command("import", "robots", "read a robot file as a definition, with a report", FILES),

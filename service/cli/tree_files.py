@@ -15,8 +15,8 @@ from substructures.errors import InvalidDocument
 from substructures.interchange.content import is_foreign
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
+from substructures.quantities.numbers.warnings import BY_VALUE, TOLD
 from substructures.quantities.sources import Sources, of_parts
-from substructures.quantities.warnings import BY_VALUE, TOLD
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.model import couple
 

@@ -18,8 +18,8 @@ from substructures.part.definition import Definition
 from substructures.part.part import MAX_NODES, Part, derive
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
-from substructures.tree.published import Publication, published
-from substructures.tree.published_formulas import published_part
+from substructures.tree.publishing.published import Publication, published
+from substructures.tree.publishing.published_formulas import published_part
 
 #: packages of the science that formulas and certificates come from
 SOURCES = ("certificate", "documents", "expr", "mechanics", "part", "tree")

@@ -17,7 +17,7 @@ from sqlalchemy.exc import ArgumentError, DBAPIError
 from service.database.clock import set_by
 from service.database.file import Claim, DatabaseError, Watch
 from service.database.schema import is_newest
-from service.database.seals import KEY, key_beside
+from service.database.seals import KEY, key_beside, key_in
 
 READERS = 16
 BUSY_MS = 10_000
@@ -34,16 +34,16 @@ __all__ = ["Connection", "Database", "DatabaseError", "normalised", "told"]
 class Database:
     """The store. Use ``read()`` and ``write()``; a ``write()`` commits as a whole or not at all."""
 
-    def __init__(self, address: str, *, exclusive: bool = True, claim: int | None = None) -> None:
+    def __init__(self, address: str, *, exclusive: bool = True, claim: int | None = None, seal_key: str = "") -> None:
         """Open and migrate the database at an SQLAlchemy URL.
 
         ``exclusive`` claims an SQLite file for this server, and makes one; without, it has to be there. ``claim``: the
-        descriptor of a claim that another of its processes has made, known as ``self.claim`` here. Raises DatabaseError
-        when there is none, when another server holds it, when it is damaged, when it does not answer and for an unknown
-        kind of URL, MigrationError for one of a newer version.
+        descriptor of a claim that another of its processes has made, known as ``self.claim`` here. ``seal_key``: the
+        file of the key of its seals, if not that beside an SQLite file. Raises DatabaseError when there is no database
+        or key, when another server holds it, when it is damaged, when it does not answer and for an unknown kind of
+        URL, MigrationError for one of a newer version.
         """
         self.url = normalised(address)
-        key = b""
         self.claim: int | None = None
         self._watch: Watch | None = None
         with ExitStack() as opened:
@@ -53,8 +53,7 @@ class Database:
                 claimed = opened.enter_context(closing(Claim(self.file, claim)))
                 self.claim = claimed.shared
                 self._watch = opened.enter_context(closing(Watch(claimed.path)))
-            if self.is_sqlite:
-                key = key_beside(self.file)
+            key = key_in(Path(seal_key)) if seal_key else key_beside(self.file) if self.is_sqlite else b""
             self.writer = _engine(self.url, key, writer=True)
             opened.callback(self.writer.dispose)
             self.reader = _engine(self.url, key, writer=False) if self.is_sqlite else _snapshots(self.writer)
@@ -131,7 +130,7 @@ def _engine(url: URL, key: bytes, *, writer: bool) -> Engine:
     """``key``: of seals (:mod:`service.database.seals`)."""
     if url.get_backend_name() != "sqlite":
         try:
-            return _postgres(url)
+            return _postgres(url, key)
         except ImportError:
             how = "pip install 'substructures[postgres]' (in a clone: pip install -e '.[postgres]')"
             raise DatabaseError(f"PostgreSQL needs the extra: {how}") from None
@@ -152,13 +151,14 @@ def _engine(url: URL, key: bytes, *, writer: bool) -> Engine:
     return engine
 
 
-def _postgres(url: URL) -> Engine:
+def _postgres(url: URL, key: bytes) -> Engine:
     """What the URL says itself goes before."""
     limits = {"connect_timeout": CONNECT_SECONDS, **TCP}
     given = {name: value for name, value in limits.items() if name not in url.query}
     engine = create_engine(url, pool_size=READERS, pool_pre_ping=True, connect_args=given)
     event.listen(engine, "connect", _watch_client)
     event.listen(engine, "connect", _set_clock)
+    event.listen(engine, "connect", lambda _, record: record.info.update({KEY: key}))
     return engine
 
 

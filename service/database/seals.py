@@ -3,7 +3,8 @@
 A seal is an HMAC (RFC 2104) with SHA-256 over all that is stored of a part or of a revision of a tree, so that each of
 its figures is bound to its document and to its program. The key of an SQLite store is in a file beside it, which is
 made with it: a file that comes from elsewhere comes without, and a digit that was changed breaks the seal. Servers that
-share a PostgreSQL database have no key in common; there a seal shows damage alone.
+share a PostgreSQL database are given one in common (``SUBSTRUCTURES_SEAL_KEY``); without, a seal there shows damage
+alone.
 """
 
 from __future__ import annotations
@@ -32,7 +33,18 @@ def key_beside(file: Path) -> bytes:
     try:
         if not path.exists():
             _make(path)
+    except OSError as error:
+        raise DatabaseError(f"cannot use {path}: {error.strerror}") from None
+    return key_in(path)
+
+
+def key_in(path: Path) -> bytes:
+    """The key in a file. Raises DatabaseError."""
+    try:
         key = path.read_bytes()
+    except FileNotFoundError:
+        how = f"make one for all servers of the store: head -c {BYTES} /dev/urandom > {path}"
+        raise DatabaseError(f"there is no key of seals {path}; {how}") from None
     except OSError as error:
         raise DatabaseError(f"cannot use {path}: {error.strerror}") from None
     if len(key) != BYTES:

@@ -12,13 +12,14 @@ from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
 from service.models.numbers import ANALYSES
+from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.schemas.entries import SubmittedDefinition, SubmittedTree, VisibilityRequest
 from service.schemas.equivalences import EquivalenceRequest
 from service.schemas.jobs import CancelRequest, JobRequest, RetryRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.publishing import PublishRequest
 from service.schemas.resources import AliasRequest, Problem, YankRequest
-from service.schemas.velocity_constraints import VelocityConstraints
+from service.schemas.sweeps import RowTree
 from substructures.loads.kinds import AnyTreeLoad
 from substructures.part.definition import Definition
 from substructures.tree.document import Instance
@@ -49,6 +50,7 @@ _REQUESTS = (
     EquivalenceRequest,
     PublishRequest,
     RetryRequest,
+    RowTree,
 )
 _READ_BY_US: tuple[type[BaseModel], ...] = (
     Definition,

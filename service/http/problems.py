@@ -11,7 +11,7 @@
 from __future__ import annotations
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import orjson
@@ -31,6 +31,8 @@ from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, Ve
 from substructures.quantities.quantity import TABLE
 
 MEDIA_TYPE = "application/problem+json"
+#: the page of a problem document, and its headers
+Page = Callable[[Mapping[str, Any]], tuple[bytes, Mapping[str, str]]]
 _log = logging.getLogger(__name__)
 
 
@@ -79,10 +81,13 @@ def document(refused: Refused, instance: str) -> dict[str, Any]:
     return problem(refused, instance=instance, request_id=current_request_id())
 
 
-def response(error: Exception, instance: str) -> Response:
-    """The answer to a request that ended in an exception."""
+def response(error: Exception, instance: str, page: Page | None = None) -> Response:
+    """The answer to a request that ended in an exception; ``page``: what makes a page of it."""
     refused = as_refused(error)
     headers = {"Cache-Control": "no-store", **refused.headers}
+    if page is not None:
+        content, of_page = page(document(refused, instance))
+        return Response(content, refused.status, {**of_page, **headers})
     body = orjson.dumps(document(refused, instance))
     return Response(body, refused.status, headers, MEDIA_TYPE)
 
@@ -107,8 +112,16 @@ def _other_method(request: Request, found: Sequence[APIRoute]) -> Refused:
     return Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
 
 
-def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
-    """Let the app answer with problem documents; ``service.http.middleware`` catches what no handler is for."""
+def _is_browser(request: Request) -> bool:
+    """Whether a person reads the answer."""
+    accepted = request.headers.get("accept", "")
+    return request.method in ("GET", "HEAD") and not request.url.path.startswith("/v1/") and "text/html" in accepted
+
+
+def install(app: FastAPI, routes: Sequence[APIRoute], page: Page) -> None:
+    """Let the app answer with problem documents, and browsers with pages; ``service.http.middleware`` catches what no
+    handler is for.
+    """
 
     def handle(request: Request, error: Exception) -> Response:
         """The problem document of an error; of a wrong method with those that the path has."""
@@ -119,7 +132,7 @@ def install(app: FastAPI, routes: Sequence[APIRoute]) -> None:
             free = min((len(route.param_convertors) for route in found), default=0)
             found = [route for route in found if len(route.param_convertors) == free]
             error = _unknown(request, found, routes) or _other_method(request, found)
-        return response(error, request.url.path)
+        return response(error, request.url.path, page if _is_browser(request) else None)
 
     for kind in (
         *(Refused, InvalidInput, TooLarge, MissingValue, VerificationFailed),

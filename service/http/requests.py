@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, closing
 from typing import Annotated, Any
+from urllib.parse import urlsplit
 
 from fastapi import Depends, Request
 from fastapi.concurrency import run_in_threadpool
@@ -39,6 +40,8 @@ async def get_store(request: Request) -> Store:
     return store_of(request)
 
 
+#: what a form of any site can send without being asked
+FORM_TYPES = ("application/x-www-form-urlencoded", "multipart/form-data", "text/plain")
 StoreOf = Annotated[Store, Depends(get_store)]
 
 
@@ -75,16 +78,22 @@ def _query_names(dependant: Any) -> Iterator[str]:
 
 
 def credentials(method: str, headers: Headers) -> keys.Credentials:
-    """What a request shows. The cookie of a session lets pages and what they link to be read, by our own pages only.
+    """What a request shows. The cookie of a session has the scopes of its key, for scripts of our own pages only.
 
-    Raises Refused 403 for a request that another site makes with it.
+    Raises Refused 403 for a request that another site makes with it, or that a form can send.
     """
     authorization = headers.get("authorization", "")
     session = cookie_parser(headers.get("cookie", "")).get(SESSION, "")
-    if authorization or not session or method not in ("GET", "HEAD"):
+    if authorization or not session:
         return keys.Credentials(authorization)
-    if headers.get("sec-fetch-site", "none") not in ("none", "same-origin"):
-        raise Refused(403, "cross-site", "another site asks with the session of a page here")
+    site = headers.get("sec-fetch-site", "none")
+    if method in ("GET", "HEAD"):
+        is_ours = site in ("none", "same-origin")
+    else:  # browsers say where a script stands, and no form has such a body
+        origin, kind = headers.get("origin", ""), headers.get("content-type", "").partition(";")[0].strip().lower()
+        is_ours = site == "same-origin" and urlsplit(origin).netloc == headers.get("host") and kind not in FORM_TYPES
+    if not is_ours:
+        raise Refused(403, "cross-site", "another site, or a form, asks with the session of a page here")
     return keys.Credentials(session=session)
 
 

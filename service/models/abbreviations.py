@@ -7,7 +7,7 @@ from typing import Any
 import orjson
 
 from service.models.source import Source
-from service.schemas.abbreviations import AbbreviationRequest
+from service.schemas.analyses.abbreviations import AbbreviationRequest
 from substructures.abbreviation.abbreviate import Abbreviation, ElementError, abbreviate
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.export import interface_of_model, render

@@ -24,9 +24,10 @@ from substructures.export.stages import staged
 from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
 from substructures.expr.program import Program
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.quantity import FORWARD, askable
 from substructures.tree.document import TreeSpec
+from substructures.tree.glossary import glossary, part_glossary
 
 #: prefix of functions where none is given
 NAME = "model"
@@ -45,15 +46,21 @@ OF_TREES, OF_PARTS = ("metric", "christoffel", "forces"), ("metric", "christoffe
 #: a tree as a model to be simulated, with its energies and the poses of its frames where nothing is named
 FMU, FMU2 = "fmu", "fmu2"
 MOVING = (FMU, "simulink")  # targets that need accelerations
-#: versions of FMUs, precisions; the first ones are the defaults
-FMI, PRECISIONS = ("3.0", "2.0"), ("double", "single")
-DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "stages": False}
+#: versions of FMUs, precisions, standards of C; the first ones are the defaults
+FMI, PRECISIONS, STANDARDS = ("3.0", "2.0"), ("double", "single"), ("c99", "c89")
+DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "stages": False, "standard": STANDARDS[0]}
+#: options of some targets by name
+OF_TARGETS = {"fmi": ("fmu",), "precision": ("c",), "stages": ("c",), "standard": ("c",)}
 OF_FMUS = ("metric", "forces", "kinetic_energy", "potential_energy", "position", "rotation")
 #: formulas to be read, which have the independent elements anyway
 WRITTEN = ("text", "latex", "mathml")
+#: code, in which intermediate values have names
+WITH_STEPS = tuple(name for name in TARGETS if name not in (*WRITTEN, FMU, FMU2, "interface", "javascript"))
 #: the mechanism itself as a file, beside the targets that are functions
 URDF = "urdf"
 ALL_TARGETS = (*(name for name in TARGETS if name != FMU2), URDF)
+#: targets for which a tree is asked for with its parts
+WITH_PARTS = (*WITH_STEPS, URDF)
 #: a tree document and its parts by instance
 Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
 
@@ -61,7 +68,7 @@ Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
     """``together``: also a function with all quantities; ``packed``: independent elements alone; ``fmi``: the version
-    of an FMU; ``precision`` of the functions in C; ``stages``: what depends on parameters alone apart."""
+    of an FMU; of the functions in C ``precision``, ``stages``: what depends on parameters alone apart, ``standard``."""
 
     target: str
     quantities: tuple[str, ...] = ()
@@ -72,11 +79,12 @@ class ExportRequest:
     fmi: str = FMI[0]
     precision: str = PRECISIONS[0]
     stages: bool = False
+    standard: str = STANDARDS[0]
 
     @property
     def identity(self) -> tuple[str, ...]:
         """What an ETag depends on beside the content."""
-        flags = str(self.together), str(self.packed), self.fmi, self.precision, str(self.stages)
+        flags = str(self.together), str(self.packed), self.fmi, self.precision, str(self.stages), self.standard
         return "export", self.target, ",".join(self.quantities), self.name, self.bind, *flags
 
 
@@ -100,10 +108,18 @@ def prefix(wanted: str, called: str) -> str:
 
 
 def tree_package(
-    sources: Sources, called: str, reference: str, digest: str, request: ExportRequest, limit: int, document: Document
+    sources: Sources,
+    called: str,
+    reference: str,
+    digest: str,
+    request: ExportRequest,
+    limit: int,
+    document: Document,
+    others: Mapping[str, Callable[[], Program]],
 ) -> Package:
     """A tree for a target. Raises InvalidArgument, InvalidDocument, TooLarge, MissingValue, Refused 422 for bad
-    bindings. ``document``: what the tree is made of, where the target asks for it.
+    bindings. ``document``: what the tree is made of, where the target asks for it; ``others``: what makes quantities
+    that follow from it by an analysis.
     """
     _check(request)
     parameters = sources.model.parameters
@@ -121,8 +137,9 @@ def tree_package(
         """The program with numbers in place of parameters."""
         return bound(program, parameters, request.bind)
 
+    words = glossary(*document(), model=sources.model.program) if request.target in WITH_STEPS else None
     name, flags = prefix(request.name, called), (request.together, request.packed)
-    exported = exported_model(sources, interface, names, name, numbers, *flags)
+    exported = exported_model(sources, interface, names, name, numbers, *flags, words, others)
     return _package(exported, request, limit)
 
 
@@ -140,17 +157,19 @@ def part_package(part: Part, reference: str, digest: str, request: ExportRequest
         return bound(program, part.parameters, request.bind)
 
     name, flags = prefix(request.name, part.name), (request.together, request.packed)
-    exported = exported_part(part, interface, names, name, numbers, *flags)
+    words = part_glossary(part) if request.target in WITH_STEPS else None
+    exported = exported_part(part, interface, names, name, numbers, *flags, words)
     return _package(exported, request, limit)
 
 
 def _check(request: ExportRequest) -> None:
-    given = {
-        name: getattr(request, name) for name in ("quantities", "together", "packed", "fmi", "precision", "stages")
-    }
+    given = {name: getattr(request, name) for name in ("quantities", "together", "packed", *OF_TARGETS)}
     field = misplaced(request.target, given)
     if field is not None:
         raise InvalidArgument.at(f"/{field}", "not-of-target", f"target={request.target} does not take '{field}'")
+    if request.standard == "c89" and request.precision == "single":
+        message = "C89 has no functions of single precision, such as sinf: take precision=double, or standard=c99"
+        raise InvalidArgument.at("/standard", "not-of-target", message)
 
 
 def _urdf_name(request: ExportRequest, called: str) -> str:
@@ -173,7 +192,8 @@ def _left(interface: Interface, request: ExportRequest) -> Interface:
 
 def _package(exported: Exported, request: ExportRequest, limit: int) -> Package:
     target = FMU2 if request.target == FMU and request.fmi == "2.0" else request.target
-    made = files(replace(staged(exported) if request.stages else exported, precision=request.precision), target, limit)
+    exported = staged(exported) if request.stages else exported
+    made = files(replace(exported, precision=request.precision, standard=request.standard), target, limit)
     if len(made) > 1:
         return Package(f"{exported.name}_{request.target}.zip", ZIP, archive(made))
     ((name, data),) = made.items()
@@ -183,13 +203,12 @@ def _package(exported: Exported, request: ExportRequest, limit: int) -> Package:
 def read_item(item: Mapping[str, Any]) -> ExportRequest:
     """The export that an item of a job asks for; its fields are checked already."""
     given = tuple(item["quantities"])
-    more = {name: item[name] for name in ("packed", "fmi", "precision", "stages") if name in item}
+    more = {name: item[name] for name in ("packed", *OF_TARGETS) if name in item}
     return ExportRequest(item["target"], given, item["name"], item["bind"], item["together"], **more)
 
 
 def misplaced(target: str, given: Mapping[str, Any]) -> str | None:
     """The first field, of those that differ from their defaults, that a target does not take."""
-    taken = {"fmi": ("fmu",), "precision": ("c",), "stages": ("c",)}
     without = {URDF: ("quantities", "together", "packed"), **dict.fromkeys(WRITTEN, ("packed",))}
-    fields = [*without.get(target, ()), *(name for name, targets in taken.items() if target not in targets)]
+    fields = [*without.get(target, ()), *(name for name, targets in OF_TARGETS.items() if target not in targets)]
     return next((name for name in fields if given[name] and given[name] != DEFAULT_OPTIONS.get(name)), None)

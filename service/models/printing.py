@@ -24,10 +24,10 @@ from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.canonical import momentum
+from substructures.quantities.numbers.result import plain_names
+from substructures.quantities.numbers.warnings import not_judged_warnings
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
-from substructures.quantities.result import plain_names
 from substructures.quantities.sources import Sources
-from substructures.quantities.warnings import not_judged_warnings
 from substructures.tree.glossary import glossary
 from substructures.tree.model import Model, require_stored
 
@@ -219,7 +219,7 @@ def _with_entries(text: str, program: Program, style: Style, coordinates: Sequen
         listed = [{"index": list(index), "formula": None} for index in program.outputs[CHRISTOFFEL].index]
     members = {
         "coordinates": list(coordinates),
-        "symmetry_rule": symmetry_rule(CHRISTOFFEL, "Gamma"),
+        "symmetry_rule": symmetry_rule(program.outputs[CHRISTOFFEL].symmetry, "Gamma"),
         "indices_from": 0,
         "entries": [dict(zip("abc", e["index"], strict=True)) | {"formula": e["formula"]} for e in listed],
     }

@@ -7,8 +7,8 @@ from typing import Any
 
 from pydantic import BaseModel
 
+from service.schemas.analyses.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.measured import read_measured
-from service.schemas.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
 from service.schemas.parts import RequestPart
 from substructures.documents import escape, require_object
 from substructures.errors import Fault, InvalidArgument

@@ -28,9 +28,14 @@ DRAWN = (*PLAIN, SVG)
 PROPERTIES: dict[str, dict[str, str]] = {
     "Linearisation": {"is_equilibrium": "modes"},
     "Identification": {"is_right": "checks"},
+    "Orbit": {"is_right": "checks"},
+    "Family": {"is_right": "found"},
+    "LyapunovExponents": {"is_right": "checks"},
     "FoundPlaces": {"is_right": "message", "checks": "message"},
     "CostGradient": {"is_right": "trajectory", "checks": "trajectory"},
     "Optimum": {"is_right": "trajectory", "checks": "trajectory"},
+    "FrequencyResponse": {"magnitude": "response", "phase": "response"},
+    "Regulator": {"is_right": "checks"},
     "Mode": {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},
 }
 

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from service.settings import Limits
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Evaluator, Sources, interpreted
+from substructures.quantities.numbers.evaluation import Evaluator, Sources, interpreted
 from substructures.quantities.quantity import REGRESSOR
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.document import TreeSpec

@@ -15,12 +15,12 @@ from service.messages.answers import Answer
 from service.messages.negotiation import MEDIA_TYPES as PRINTED
 from service.messages.refusals import moved
 from service.messages.viewer import Viewer
-from service.models.exporting import URDF, ExportRequest
+from service.models.exporting import WITH_PARTS, ExportRequest
 from service.models.formulas.entry import Options
 from service.models.printing import TO_READ, Style, has_parts
 from service.models.results import MEDIA_TYPES
 from service.operations import trees
-from service.operations.sources import pinned_tree
+from service.operations.sharing.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
@@ -92,7 +92,7 @@ def _of_request(pointer: str) -> str:
 
 def tree_files(store: Store, worker: Worker, tree: Tree, wanted: ExportRequest) -> Answer:
     """A tree for a target. Raises InvalidInput with pointers into the query, TooLarge, Refused, TimeoutError."""
-    item, blobs = pinned_tree(store, tree, wanted.target == URDF or any(map(has_parts, wanted.quantities)))
+    item, blobs = pinned_tree(store, tree, wanted.target in WITH_PARTS or any(map(has_parts, wanted.quantities)))
     return _files(store, worker, wanted, {**item, "called": tree.name}, f"{tree.name}@{tree.revision}", blobs)
 
 

@@ -13,10 +13,10 @@ from service.messages.references import ALIAS, Reference, parse_reference
 from service.messages.refusals import Refused, not_found, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import owners
-from service.operations.provenance import Origin, derived_from, pinned, provenance
+from service.operations.sharing.provenance import Origin, derived_from, pinned, provenance
 from service.queries import aliases, audit, catalogue, content, uses
-from service.queries.formulas import FormulaRow
 from service.queries.owners import is_version, ownership
+from service.queries.searching.formulas import FormulaRow
 from service.schemas.entries import PLAIN, PartEntry
 from service.store.store import Store
 from substructures.documents import read_json

@@ -10,7 +10,7 @@ from service.jobs.worker import Worker
 from service.messages.refusals import Refused, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
-from service.operations.sources import pinned_tree
+from service.operations.sharing.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store

@@ -10,7 +10,7 @@ import orjson
 
 from service.settings import Limits
 from substructures.errors import TooLarge
-from substructures.quantities.evaluation import Evaluation, Sources, cost
+from substructures.quantities.numbers.evaluation import Evaluation, Sources, cost
 from substructures.quantities.quantity import has_numbers
 
 

@@ -11,14 +11,15 @@ from service.messages.answers import JSON, Answer, Stream, json_answer, streamed
 from service.messages.negotiation import by_preference
 from service.messages.refusals import Refused
 from service.messages.spool import Spool
-from service.operations import batches, evaluations
+from service.operations import evaluations
+from service.operations.jobs import batches
 from service.schemas import forms
 from service.schemas.numbers import EvaluationRequest
 from service.settings import Limits
 from substructures.documents import read_json
 from substructures.documents.grouped import take
 from substructures.formats import arrays, arrow
-from substructures.quantities.evaluation import (
+from substructures.quantities.numbers.evaluation import (
     Evaluation,
     EvaluationOptions,
     Evaluator,
@@ -26,7 +27,7 @@ from substructures.quantities.evaluation import (
     evaluate,
     evaluate_in_parts,
 )
-from substructures.quantities.states import longest
+from substructures.quantities.numbers.states import longest
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time

@@ -12,7 +12,7 @@ from service.database.connections import Connection
 from service.jobs.worker import Worker
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
-from service.operations.provenance import Origin
+from service.operations.sharing.provenance import Origin
 from service.queries.trees import Tree
 from service.schemas.entries import PLAIN
 from service.store.store import Store
@@ -28,6 +28,13 @@ class ImportedTree:
 
     parts: Sequence[catalogue.PartSubmission]
     revision: trees.Revision
+
+
+def with_preview(store: Store, worker: Worker, found: Mapping[str, Any]) -> Mapping[str, Any]:
+    """What was read, with what would be stored of it. Raises InvalidDocument, TooLarge, TimeoutError."""
+    kind = "tree" if "tree" in found else "definition"
+    item = {kind: found[kind], "nodes": store.settings.limits.program_nodes}
+    return {**found, "preview": worker("preview", item).summary}
 
 
 def prepare(store: Store, viewer: Viewer, worker: Worker, tree: Mapping[str, Any]) -> ImportedTree:

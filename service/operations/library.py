@@ -14,16 +14,21 @@ from service.messages.references import parse_reference
 from service.messages.refusals import Refused
 from service.messages.viewer import OPEN, PUBLIC, Viewer
 from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, private_parts, wanted
-from service.operations.provenance import derived_from
+from service.operations.sharing.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
 from service.queries.owners import Kind, ownership
+from service.queries.searching import part_search
+from service.queries.searching.part_search import CatalogueSearch
+from service.queries.searching.words import words_of
 from service.queries.trees import Tree
 from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.sources import read_source
 from substructures.errors import InvalidDocument
 from substructures.interchange.importing import document_of
+
+PAGE = 200  # parts that are searched at a time
 
 Reader = Callable[[Mapping[str, Any]], Mapping[str, Any]]
 
@@ -71,6 +76,21 @@ class StoreLibrary:
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not withdrawn."""
         return [f"{name}@{number}" for name, number in catalogue.all_versions(self._connection, self._viewer)]
+
+    def search(self, query: Mapping[str, Any]) -> Sequence[str]:
+        """References to the latest versions that a search finds, by name."""
+        narrow: dict[str, Any] = {"tags": (query["tag"],)} if "tag" in query else {}
+        if "dof" in query:
+            narrow |= {"dof_min": query["dof"], "dof_max": query["dof"]}
+        if "joints" in query:
+            narrow["joints"] = query["joints"]
+        wanted = CatalogueSearch(words_of(query.get("q", "")), **narrow)
+        found: list[str] = []
+        after = None
+        while page := part_search.page(self._connection, self._viewer, wanted, after, PAGE):
+            found += [f"{version.name}@{version.version}" for version, _ in page]
+            after = page[-1][1]
+        return found
 
     def trees(self) -> Sequence[str]:
         """References ``name@3`` to all revisions of trees."""

@@ -9,9 +9,9 @@ from itertools import product
 import orjson
 
 from service.messages.refusals import unprocessable
-from service.queries.formulas import FormulaRow
+from service.queries.searching.formulas import FormulaRow
 from substructures.expr.program import Output, Program
-from substructures.part.part import INTERNAL, LEADING, Part
+from substructures.part.part import INTERNAL, Part
 from substructures.quantities.quantity import outputs_of
 
 
@@ -71,18 +71,20 @@ def _zeros(part: Part, names: Sequence[str], wanted: Wanted, first: int) -> Prog
     """Formulas that vanish, by the places that they would have."""
     outputs: dict[str, Output] = {}
     for name in names:
-        shape, axes = part.program.outputs[name].shape, [a for a in LEADING.get(name, ()) if part.labels(a)]
+        shape, axes = part.program.outputs[name].shape, [a for a in part.axes_of(name) if part.labels(a)]
         places = [
             _places(part.labels(axis), wanted.coordinate if axis == "coordinate" else wanted.body) for axis in axes
         ]
-        if (wanted.body and not {"joint", "port"} & set(axes)) or (wanted.coordinate and "coordinate" not in axes):
+        if (wanted.body and not {"joint", "mover", "port"} & set(axes)) or (
+            wanted.coordinate and "coordinate" not in axes
+        ):
             continue
         for lead in product(*places):
             rest = shape[len(lead) :]
             if wanted.component is None:
                 outputs[_called(name, lead, first)] = Output(rest, (), ())
             else:
-                single = len(LEADING.get(name, ())) == len(shape)  # elements are stored one by one
+                single = len(part.axes_of(name)) == len(shape)  # elements are stored one by one
                 index = _component(wanted.component, shape if single else rest)
                 outputs[_called(name, index if single else lead + index, first)] = Output((), (), ())
     return Program((), (), outputs).marked(outputs if part.program.not_judged & set(names) else ()) if outputs else None

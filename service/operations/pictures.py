@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import orjson
@@ -13,16 +14,17 @@ import orjson
 from service.jobs.kinds.reported import INSTANCE
 from service.messages.refusals import unprocessable
 from service.operations.evaluations import check_size
-from service.operations.sources import tree_parts
+from service.operations.sharing.sources import tree_parts
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import InvalidArgument
 from substructures.part.part import Part
+from substructures.pictures.scene import scene
 from substructures.pictures.tree import picture
-from substructures.quantities.evaluation import Sources
 from substructures.quantities.measured import si_values
+from substructures.quantities.numbers.evaluation import Sources
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
@@ -32,7 +34,7 @@ _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
 @dataclass(frozen=True, slots=True)
-class Scene:
+class Drawn:
     """What there is to draw."""
 
     spec: TreeSpec
@@ -90,25 +92,57 @@ def _kept(store: Store, digest: str, pose: PoseValues | None) -> str | None:
     return store.caches.pictures.get(digest) if pose is None else None
 
 
-def _draw(store: Store, digest: str, scene: Scene, pose: PoseValues | None) -> str:
-    check_size(Sources(scene.model), ["kinematics"], 1, store.settings.limits)
+def _draw(store: Store, digest: str, drawn: Drawn, pose: PoseValues | None) -> str:
+    check_size(Sources(drawn.model), ["kinematics"], 1, store.settings.limits)
     with np.errstate(all="ignore"):  # defaults of any size may be stored; what is not finite is not drawn
-        svg = picture(scene.spec, scene.parts, scene.model, None if pose is None else list(pose))
+        svg = picture(drawn.spec, drawn.parts, drawn.model, None if pose is None else list(pose))
     if pose is None:
         store.caches.pictures.put(digest, svg)
     return svg
 
 
-def _part_scene(store: Store, version: Version) -> Scene:
+def _part_scene(store: Store, version: Version) -> Drawn:
     with store.database.read() as connection:
         part = store.required_part(connection, version.digest)
     instance = {"name": INSTANCE, "substructure": f"{version.name}@{version.digest}"}
     spec = TreeSpec.read({"name": version.name, "instances": [instance]})
     parts = {INSTANCE: part}
-    return Scene(spec, parts, store.coupled(spec, parts))
+    return Drawn(spec, parts, store.coupled(spec, parts))
 
 
-def _tree_scene(store: Store, tree: Tree) -> Scene:
+def _tree_scene(store: Store, tree: Tree) -> Drawn:
     spec, parts = tree_parts(store, tree)
     with store.database.read() as connection:
-        return Scene(spec, parts, store.model(connection, tree))
+        return Drawn(spec, parts, store.model(connection, tree))
+
+
+def scene_of_part(store: Store, version: Version) -> str:
+    """What there is to draw of a part, as JSON. Raises TooLarge."""
+    return _scene(store, version.digest, lambda: _part_scene(store, version), f"{INSTANCE}.")
+
+
+def scene_of_tree(store: Store, tree: Tree) -> str:
+    """What there is to draw of a revision of a tree, as JSON. Raises TooLarge."""
+    return _scene(store, tree.digest, lambda: _tree_scene(store, tree), "")
+
+
+def _scene(store: Store, digest: str, find: Callable[[], Drawn], prefix: str) -> str:
+    def make() -> str:
+        """Names of a part without the name of the instance that it is drawn as."""
+        drawn = find()
+        check_size(Sources(drawn.model), ["kinematics"], 1, store.settings.limits)
+        with np.errstate(all="ignore"):
+            found = scene(drawn.spec, drawn.parts, drawn.model)
+        if prefix:
+            _renamed(found, prefix)
+        return orjson.dumps(found).decode()
+
+    return store.caches.pictures.once((digest, "scene"), make)
+
+
+def _renamed(found: dict[str, Any], prefix: str) -> None:
+    for kind, key in (("frames", "name"), ("joints", "coordinate"), ("bodies", "name"), ("loads", "name")):
+        for each in found[kind]:
+            each[key] = each[key].removeprefix(prefix)
+    for frame in found["frames"]:
+        frame["instance"] = ""

@@ -14,8 +14,8 @@ from service.jobs.worker import Worker
 from service.messages.refusals import Refused
 from service.messages.viewer import PRIVATE, PUBLIC, Viewer
 from service.operations import catalogue, owners, trees
-from service.operations.provenance import Origin
-from service.operations.sources import pinned_tree, tree_parts
+from service.operations.sharing.provenance import Origin
+from service.operations.sharing.sources import pinned_tree, tree_parts
 from service.queries import content
 from service.queries.owners import private_parts
 from service.queries.trees import Tree
@@ -23,7 +23,7 @@ from service.schemas.entries import PartEntry
 from service.schemas.publishing import PublishRequest
 from service.store.store import Store
 from substructures.documents import read_json, read_model
-from substructures.tree.published import Published, published
+from substructures.tree.publishing.published import Published, published
 
 
 @dataclass(frozen=True, slots=True)

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from service.jobs.worker import Worker
 from service.messages.answers import Answer
-from service.operations.sources import pinned_tree
+from service.operations.sharing.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument

@@ -10,13 +10,13 @@ from service.database.connections import Connection
 from service.messages.paging import is_of, of_no_page, read_token, write_token
 from service.messages.refusals import unprocessable
 from service.messages.viewer import Viewer
-from service.queries import part_search, tree_search
 from service.queries.catalogue import Version
-from service.queries.part_search import CatalogueSearch
-from service.queries.search import RELEVANCE, SORTS, Search, number_of
-from service.queries.tree_search import TreeSearch
+from service.queries.searching import part_search, tree_search
+from service.queries.searching.part_search import CatalogueSearch
+from service.queries.searching.search import RELEVANCE, SORTS, Search, number_of
+from service.queries.searching.tree_search import TreeSearch
+from service.queries.searching.words import corrected
 from service.queries.trees import Tree
-from service.queries.words import corrected
 from substructures.errors import meant
 
 Found = TypeVar("Found", Version, Tree)

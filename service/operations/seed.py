@@ -9,7 +9,7 @@ from time import perf_counter
 from service.messages.viewer import CATALOGUE, SHIPPED
 from service.operations import catalogue as operations
 from service.operations.owners import ship
-from service.operations.provenance import Origin
+from service.operations.sharing.provenance import Origin
 from service.queries.owners import ownership
 from service.schemas.entries import PLAIN
 from service.store.store import Store

@@ -12,6 +12,7 @@ from service.database.connections import Connection
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import NAMED, pinned_spec
+from service.jobs.kinds.shapes import SHARE
 from service.jobs.worker import Worker
 from service.messages.answers import etag
 from service.messages.references import Reference, is_pinned, parse_reference
@@ -125,13 +126,31 @@ def load(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | Non
 
 def unload(store: Store, viewer: Viewer, text: str, name: str, if_match: str | None = None) -> TreeChange:
     """One load of the tree less. Raises Refused 404 or 412."""
+    return _one_less(store, viewer, text, ("load", "loads", name), if_match)
+
+
+def closure(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
+    """One loop more in an existing tree. Raises Refused 404 or 412."""
     base, spec = _existing(store, viewer, text, if_match)
-    loads = spec.get("loads", [])
-    kept = [each for each in loads if each["name"] != name]
-    if len(kept) == len(loads):
-        known = [each["name"] for each in loads]
-        raise not_found(f"the tree '{text}' has no load '{name}'{among(name, known)}", "unknown-load")
-    changed = {key: value for key, value in spec.items() if key != "loads"} | ({"loads": kept} if kept else {})
+    closures = spec.get("closures", [])
+    return TreeChange({**spec, "closures": [*closures, data]}, base, is_pinned(text), f"/closures/{len(closures)}")
+
+
+def opening(store: Store, viewer: Viewer, text: str, name: str, if_match: str | None = None) -> TreeChange:
+    """One closure of the tree less. Raises Refused 404 or 412."""
+    return _one_less(store, viewer, text, ("closure", "closures", name), if_match)
+
+
+def _one_less(store: Store, viewer: Viewer, text: str, which: tuple[str, str, str], if_match: str | None) -> TreeChange:
+    """Without what has the name in a list of the tree."""
+    base, spec = _existing(store, viewer, text, if_match)
+    kind, members, name = which
+    listed = spec.get(members, [])
+    kept = [each for each in listed if each["name"] != name]
+    if len(kept) == len(listed):
+        known = [each["name"] for each in listed]
+        raise not_found(f"the tree '{text}' has no {kind} '{name}'{among(name, known)}", f"unknown-{kind}")
+    changed = {key: value for key, value in spec.items() if key != members} | ({members: kept} if kept else {})
     return TreeChange(changed, base, is_pinned(text), "")
 
 
@@ -189,7 +208,8 @@ def _coupled(
         faults = list(owners.private_parts(connection, whose, item["tree"].get("instances", ()), digests))
     if faults:
         raise InvalidDocument(faults)
-    return TreeContent.of_outcome(worker("assemble", {**item, **store.work_limits, **members}, store.blobs(blobs)))
+    given = {**item, **store.work_limits, **members, SHARE: f"owner {viewer.owner}"}
+    return TreeContent.of_outcome(worker("assemble", given, store.blobs(blobs)))
 
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:

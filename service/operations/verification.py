@@ -18,8 +18,9 @@ from service.database.connections import Connection, Database
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
-from service.queries import catalogue, content, results, trees
-from service.queries.formulas import FormulaRow, read_index
+from service.queries import catalogue, content, trees
+from service.queries.jobs import results
+from service.queries.searching.formulas import FormulaRow, read_index
 from substructures.documents import read_json
 from substructures.errors import SubstructuresError
 

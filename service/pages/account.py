@@ -6,6 +6,7 @@ The cookie lets this server's own pages be read. It changes nothing: whoever act
 from __future__ import annotations
 
 from collections.abc import Callable, Coroutine
+from pathlib import Path
 from typing import Any
 from urllib.parse import parse_qs, urlsplit
 
@@ -23,6 +24,7 @@ from service.pages.layout import HEADERS, document
 from service.store import keys
 
 FORM = "application/x-www-form-urlencoded"
+ICON = Path(__file__).with_name("icon.svg").read_bytes()
 LONGEST = 2000  # characters of an address to return to
 
 Handler = Callable[[Request], Coroutine[Any, Any, Response]]
@@ -50,6 +52,12 @@ class PageRoute(APIRoute):
 
 
 router = APIRouter(include_in_schema=False, route_class=PageRoute)
+
+
+@router.get("/favicon.ico")
+async def icon() -> Response:
+    """The sign in tabs and bookmarks."""
+    return Response(ICON, media_type="image/svg+xml", headers={"Cache-Control": "public, max-age=86400"})
 
 
 @router.get("/account")

@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
-from service.content.cache import Cache
 from service.messages.addresses import tree_path, version_path
 from service.pages import words
-from service.pages.catalogue import links, size
+from service.pages.found import links, size
 from service.pages.html import Content, Html, facts, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.views.resources import part_warnings
 from substructures.documents import read_json
-from substructures.expr.program import Program
 from substructures.loads.kinds import acts_on
 from substructures.part.part import Part
 from substructures.tree.model import Model
@@ -27,9 +25,9 @@ OF_PART = "total: the whole stored program, with what coupling needs."
 OF_TREE = "total: metric, Christoffel symbols and forces together."
 
 
-def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Html, notes: Notes = ((), ())) -> bytes:
-    """The bytes of the page of a version; ``metric``: its formulas (:func:`metric_section`); ``notes``: what is said
-    before and after its sections.
+def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, notes: Notes = ((), ())) -> bytes:
+    """The bytes of the page of a version; ``work``: its first screen
+    (:func:`service.pages.model.place.place`); ``notes``: what is said before and after its sections.
     """
     path, definition = version_path(version), part.definition
     reference = f"{version.name}@{version.version}"
@@ -61,6 +59,7 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Html
         tag("h1", version.title or version.name),
         _withdrawn(version),
         *notes[0],
+        work,
         tag("p", version.description) if version.description else Html(),
         _split(path, reference, about),
         *_sections(
@@ -68,13 +67,12 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, metric: Html
             words.parameters(read_json(version.parameters.encode())),
             words.operations(read_json(version.operations.encode()), OF_PART),
             {**read_json(version.certificate.encode()), "warnings": part_warnings(version)},
-            metric,
         ),
         *notes[1],
     )
 
 
-def tree_page(tree: Tree, model: Model, metric: Html, notes: Notes = ((), ())) -> bytes:
+def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> bytes:
     """The bytes of the page of a revision of a tree; arguments as of :func:`part_page`."""
     path, summary = tree_path(tree), read_json(tree.summary.encode())
     reference = f"{tree.name}@{tree.revision}"
@@ -93,12 +91,14 @@ def tree_page(tree: Tree, model: Model, metric: Html, notes: Notes = ((), ())) -
             ("Digest", tag("code", tree.digest, class_="small")),
             ("As data", link("JSON", path)),
             ("As text", joined(printed, " · ")),
+            ("Motion", link("simulate, and modes", f"/trees/{reference}/motion") if tree.dof else None),
         ]
     )
     return document(
         f"{reference} - substructures",
         tag("h1", f"Tree {tree.name}"),
         *notes[0],
+        work,
         _split(path, reference, about),
         tag("h2", "Instances"),
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
@@ -108,7 +108,6 @@ def tree_page(tree: Tree, model: Model, metric: Html, notes: Notes = ((), ())) -
             words.parameters(summary["parameters"]),
             words.operations(summary["operations"], OF_TREE),
             summary["certificate"],
-            metric,
         ),
         *notes[1],
     )
@@ -155,21 +154,10 @@ def _split(path: str, reference: str, about: Html) -> Html:
     return tag("div", tag("div", picture, tag("p", report), class_="picture"), about, class_="split")
 
 
-def _sections(
-    coordinates: Html, parameters: Html, operations: Html, certificate: Mapping[str, Any], metric: Html
-) -> list[Html]:
+def _sections(coordinates: Html, parameters: Html, operations: Html, certificate: Mapping[str, Any]) -> list[Html]:
     return [
-        *(tag("h2", "Certificate"), words.certificate(certificate)),
+        *(tag("h2", "Certificate", id="certificate"), words.certificate(certificate)),
         *(tag("h2", "Coordinates"), coordinates),
-        *(tag("h2", "Metric"), metric),
-        *(tag("h2", "Parameters"), parameters, words.converted(certificate)),
-        *(tag("h2", "Operations"), operations),
+        tag("details", tag("summary", "Parameters as declared"), parameters, words.converted(certificate)),
+        tag("details", tag("summary", "Operations"), operations),
     ]
-
-
-def metric_section(found: Version | Tree, make: Callable[[], Program], kept: Cache[str]) -> Html:
-    """The formulas of the metric; ``make`` is called where they are not ``kept``, for to print them takes a while."""
-    if not found.dof:
-        return tag("p", "There are no coordinates.", class_="quiet")
-    path = tree_path(found) if isinstance(found, Tree) else f"{version_path(found)}/formulas"
-    return Html(kept.once((found.digest, path), lambda: words.formula(make(), f"{path}/metric?format=text")))

@@ -51,11 +51,12 @@ def tag(name: str, /, *content: Content, **attributes: str | int | None) -> Html
     return Html(start if name in _VOID else f"{start}{html(*content)}</{name}>")
 
 
-def table(columns: Iterable[str], rows: Iterable[Iterable[Content]]) -> Html:
+def table(columns: Iterable[Content], rows: Iterable[Iterable[Content]]) -> Html:
     """A table that scrolls sideways where the screen is narrow."""
-    head = tag("thead", tag("tr", [tag("th", column, scope="col") for column in columns]))
+    named = ((column, html(column)) for column in columns)
+    head = tag("thead", tag("tr", [tag("th", column, scope="col") if text else tag("td") for column, text in named]))
     body = tag("tbody", [tag("tr", [tag("td", cell) for cell in row]) for row in rows])
-    return tag("div", tag("table", head, body), class_="scroll")
+    return tag("div", tag("table", head, body), class_="scroll", tabindex="0", role="group", aria_label="Table")
 
 
 def facts(pairs: Iterable[tuple[str, Content]]) -> Html:

@@ -1,50 +1,90 @@
-"""The pages of the jobs: all of them, and one with its progress, which loads itself again while the job runs."""
+"""The pages of the jobs: all of them, and one with its progress, which follows the job while it runs."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import orjson
 
-from service.operations.jobs import Progress
+from service.operations.jobs.jobs import Progress
 from service.pages.html import Content, Html, facts, html, link, table, tag
-from service.pages.layout import document
-from service.queries.jobs import Job, JobItem
+from service.pages.layout import LIVE, document
+from service.queries.jobs.jobs import Job, JobItem
 from service.views.jobs import job_path, subject
 
 AGAIN = 2  # seconds until a page of what changes is loaded again
+#: where a script says what did not go
+TOLD = tag("p", id="told", role="status", class_="warn")
 STATES = {"failed": "warn", "cancelled": "quiet", "queued": "quiet"}
 
 
-def jobs_page(jobs: Sequence[Job], progress: Sequence[Progress], more: bool) -> bytes:
-    """The bytes of the list, the newest first; ``more``: there are others."""
+def jobs_page(jobs: Sequence[Job], progress: Sequence[Progress], more: bool, query: Mapping[str, str]) -> bytes:
+    """The bytes of the list, the newest first; ``more``: there are others; ``query``: what it is narrowed to."""
     rows = [_row(job, each) for job, each in zip(jobs, progress, strict=True)]
     columns = ("job", "kind", "state", "progress", "items", "created")
     note = tag("p", "There are more: ", tag("code", "GET /v1/jobs"), ".", class_="quiet") if more else Html()
-    listed = table(columns, rows) if rows else tag("p", "None yet.", class_="quiet")
+    none = "None of these." if any(query.values()) else "None yet."
+    listed = table(columns, rows) if rows else tag("p", none, class_="quiet")
     runs = any(not job.is_final for job in jobs)
-    return document("Jobs - substructures", tag("h1", "Jobs"), listed, note, refresh=AGAIN if runs else None)
+    live = tag("div", listed, note, id="live", data_running="yes" if runs else None)
+    content = tag("h1", "Jobs"), _filter(query), TOLD, live
+    return document("Jobs - substructures", *content, script=LIVE, refresh=AGAIN if runs else None)
+
+
+def _filter(query: Mapping[str, str]) -> Html:
+    hints = {"state": "running", "kind": "sweep", "label": "study:night"}
+    fields = [
+        tag("label", f"{name} ", tag("input", name=name, value=query.get(name, ""), placeholder=hint))
+        for name, hint in hints.items()
+    ]
+    return tag("form", *fields, tag("button", "Show", type="submit"), class_="bar")
 
 
 def _row(job: Job, progress: Progress) -> list[Content]:
     return [
         link(tag("code", job.id[:16]), f"/jobs/{job.id}"),
         f"{job.kind}: {job.label}" if job.label else job.kind,
-        _state(job.state),
-        _bar(progress),
+        _state(job),
+        _bar(progress, job),
         _counted(job),
         f"{job.created[:10]} {job.created[11:19]}",
     ]
 
 
-def job_page(job: Job, progress: Progress, bad: Sequence[JobItem], more: bool) -> bytes:
-    """The bytes of the page of one job; ``bad``: items that failed, ``more``: there are others."""
+def job_page(
+    job: Job, progress: Progress, bad: Sequence[JobItem], more: bool, may_change: bool, rows: Html | None = None
+) -> bytes:
+    """The bytes of the page of one job; ``bad``: items that failed, ``more``: there are others; ``may_change``: it can
+    be cancelled, tried again and removed; ``rows``: of a sweep.
+    """
     path = job_path(job.id)
-    about = facts(
+    live = tag(
+        "div",
+        tag("p", _bar(progress, job), data_final="yes" if job.is_final else None),
+        _buttons(job, path) if may_change else None,
+        _about(job, progress, path),
+        *_problems(bad, more, path),
+        id="live",
+        data_events=f"{path}/events",
+    )
+    return document(
+        f"Job {job.id[:16]} - substructures",
+        tag("h1", f"Job {job.kind}"),
+        tag("p", tag("code", job.id)),
+        TOLD,
+        live,
+        *([rows] if rows is not None else []),
+        script=LIVE,
+        refresh=None if job.is_final else AGAIN,
+    )
+
+
+def _about(job: Job, progress: Progress, path: str) -> Html:
+    return facts(
         [
             ("Label", job.label),
             ("Tries again", link(tag("code", job.retry_of[:16]), f"/jobs/{job.retry_of}") if job.retry_of else None),
-            ("State", _state(job.state)),
+            ("State", _state(job)),
             ("Items", _counted(job)),
             ("Rate", f"{progress.rate:.3g} items per second" if progress.rate else None),
             ("Time left", f"about {progress.eta_seconds:,.0f} s" if progress.eta_seconds is not None else None),
@@ -57,15 +97,21 @@ def job_page(job: Job, progress: Progress, bad: Sequence[JobItem], more: bool) -
             ("All files", link("zip", f"{path}/archive")),
         ]
     )
-    return document(
-        f"Job {job.id[:16]} - substructures",
-        tag("h1", f"Job {job.kind}"),
-        tag("p", tag("code", job.id)),
-        _bar(progress),
-        about,
-        *_problems(bad, more, path),
-        refresh=None if job.is_final else AGAIN,
-    )
+
+
+def _buttons(job: Job, path: str) -> Html:
+    """What can be done with it now."""
+
+    def one(text: str, method: str, address: str, to: str) -> Html:
+        """A button."""
+        return tag("button", text, type="button", data_method=method, data_address=address, data_to=to)
+
+    found = [] if job.is_final else [one("Cancel", "POST", f"{path}/cancel", "here")]
+    if job.failed or job.state == "cancelled":
+        found.append(one("Try again what failed", "POST", f"{path}/retry", "job"))
+    if job.is_final:
+        found.append(one("Remove", "DELETE", path, "jobs"))
+    return tag("p", found, class_="bar")
 
 
 def _problems(bad: Sequence[JobItem], more: bool, path: str) -> list[Html]:
@@ -80,13 +126,30 @@ def _detail(item: JobItem) -> str:
     return str(orjson.loads(item.problem or "{}").get("detail", ""))
 
 
-def _state(state: str) -> Html:
-    return tag("span", state, class_=STATES.get(state))
+def _state(job: Job) -> Html:
+    """A job that ended well but for some of its items says so."""
+    if job.state == "succeeded" and job.failed:
+        return tag("span", f"succeeded, {job.failed:,} of {job.total:,} failed", class_="warn")
+    return tag("span", job.state, class_=STATES.get(job.state))
 
 
-def _bar(progress: Progress) -> Html:
+def _bar(progress: Progress, job: Job) -> Html:
+    """Succeeded, failed, and what is left; with the text for those who do not see it."""
     percent = f"{100 * progress.fraction:.0f} %"
-    return tag("progress", percent, value=f"{progress.fraction:.4f}", max="1", aria_label="Progress", title=percent)
+    failed = 100 * job.failed / job.total if job.total else 0.0
+    good = max(0.0, 100 * progress.fraction - failed)
+    told = f"{percent}" + (f", {job.failed:,} of {job.total:,} failed" if job.failed else "")
+    return tag(
+        "svg",
+        tag("title", told),
+        tag("rect", width="100", height="8", class_="left"),
+        tag("rect", width=f"{good:.2f}", height="8", class_="good"),
+        tag("rect", x=f"{good:.2f}", width=f"{failed:.2f}", height="8", class_="bad"),
+        viewBox="0 0 100 8",
+        preserveAspectRatio="none",
+        role="img",
+        class_="share",
+    )
 
 
 def _counted(job: Job) -> Content:

@@ -15,8 +15,14 @@ from service.pages.html import Html, html, joined, link, tag
 from service.queries import renewals
 
 STYLE = Path(__file__).with_name("style.css").read_text(encoding="utf-8")
-#: of the first page: filters cards, and sends a robot file
-SCRIPT = "".join(Path(__file__).with_name(f"{name}.js").read_text(encoding="utf-8") for name in ("filter", "upload"))
+
+
+def _script(*names: str) -> str:
+    return "".join(Path(__file__).with_name(f"{name}.js").read_text(encoding="utf-8") for name in names)
+
+
+#: of pages of jobs: follows what happens, and carries out what buttons say
+LIVE = _script("live")
 
 
 def _source(text: str) -> str:
@@ -29,14 +35,14 @@ POLICY = "; ".join(
         "default-src 'none'",
         "img-src 'self'",
         f"style-src {_source(STYLE)}",
-        f"script-src {_source(SCRIPT)}",
+        f"script-src {_source(LIVE)}",
         "connect-src 'self'",
         "base-uri 'none'",
         "form-action 'self'",
         "frame-ancestors 'none'",
     ]
 )
-PLACES = (("trees", "/trees"), ("jobs", "/jobs"), ("account", "/account"), ("openapi.json", "/openapi.json"))
+PLACES = tuple((name, f"/{name}") for name in ("trees", "jobs", "docs", "account", "openapi.json"))
 HEADERS = {
     "Content-Type": "text/html; charset=utf-8",
     "Content-Security-Policy": POLICY,
@@ -46,12 +52,13 @@ HEADERS = {
 
 
 def document(title: str, *content: Html, script: str = "", refresh: int | None = None) -> bytes:
-    """The bytes of a page, which is loaded again after ``refresh`` seconds."""
+    """The bytes of a page, which is loaded again after ``refresh`` seconds where scripts do not run."""
     head = html(
         tag("meta", charset="utf-8"),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
         tag("meta", name="color-scheme", content="light dark"),
-        None if refresh is None else tag("meta", http_equiv="refresh", content=refresh),
+        None if refresh is None else tag("noscript", tag("meta", http_equiv="refresh", content=refresh)),
+        tag("link", rel="icon", href="/favicon.ico"),
         tag("title", title),
         tag("style", Html(STYLE)),
     )

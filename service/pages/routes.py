@@ -2,41 +2,43 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.jobs.worker import Worker
+from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
-from service.operations import catalogue, differences, jobs, searches, trees
-from service.operations.sources import sources_of
+from service.operations import differences, searches
+from service.operations.jobs import jobs, tables
 from service.pages.account import PageRoute
-from service.pages.catalogue import Shown, page
-from service.pages.details import metric_section, part_page, tree_page
+from service.pages.catalogue import page
+from service.pages.found import Found
+from service.pages.html import Html
 from service.pages.jobs import job_page, jobs_page
 from service.pages.layout import answer
+from service.pages.model.assets import scripted, with_scripts
+from service.pages.sweeps import sweep_section
 from service.pages.trees import trees_page
 from service.pages.versions import (
-    SHOWN,
     difference_page,
-    revisions_section,
-    uses_section,
-    versions_section,
-    withdrawn_section,
 )
-from service.queries import aliases, part_search, uses, versions
-from service.queries import jobs as job_rows
-from service.queries.part_search import CatalogueSearch
-from service.queries.search import RELEVANCE
-from service.queries.tree_search import TreeSearch
-from service.queries.words import words_of
-from substructures.part.outputs import with_own_inertia
+from service.queries.jobs import jobs as job_rows
+from service.queries.searching import part_search
+from service.queries.searching.part_search import CatalogueSearch
+from service.queries.searching.search import RELEVANCE
+from service.queries.searching.tree_search import TreeSearch
+from service.queries.searching.words import words_of
+from service.queries.trees import Tree
+from service.views.jobs import job_path
 
+Filter = Annotated[str, Query(max_length=500)]
 To = Annotated[str, Query(min_length=1, max_length=160)]
 ADVICE = "compare smaller ones"
 CARDS, TREES, JOBS, BAD = 60, 100, 100, 50
+NONE: searches.Page[Tree] = searches.Page([], None)
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
 
@@ -47,40 +49,34 @@ def first_page(
     store: StoreOf,
     viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200)] = "",
+    dof: Annotated[str, Query(pattern="^[0-9]{0,6}$")] = "",
+    joints: Annotated[str, Query(pattern="^[RPrp]*$", max_length=1000)] = "",
+    tag: Annotated[str, Query(max_length=64)] = "",
+    owner: Annotated[str, Query(max_length=64)] = "",
+    sort: Annotated[str, Query(max_length=20)] = "",
     after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
     """The catalogue."""
-    wanted = CatalogueSearch(words_of(q), sort=RELEVANCE)
+    query = {"q": q, "dof": dof, "joints": joints.upper(), "tag": tag, "owner": owner, "sort": sort}
+    number = int(dof) if dof else None
+    both: dict[str, Any] = {"words": words_of(q), "dof_min": number, "dof_max": number, "sort": sort or RELEVANCE}
+    both |= {"joints": joints.upper() or None, "owner": owner or None}
+    wanted = searches.checked(CatalogueSearch(**both, tags=(tag,) if tag else ()))
     with store.database.read() as connection:
-        found = searches.parts(connection, viewer, wanted, CARDS, after)
+        found = searches.parts(connection, viewer, wanted, CARDS, after, facets=True)
         total = part_search.count(connection, viewer)
-        some = searches.trees(connection, viewer, TreeSearch(), TREES, None)
-    shown = Shown(found, q, total, some.items, some.next_token is not None)
-    with_key = viewer != ANYBODY
-    return answer(request, page(shown, _address(request), with_key))
+        # parts alone have tags; of trees there is one page
+        some = (
+            searches.trees(connection, viewer, TreeSearch(**both), TREES, None) if not tag and after is None else NONE
+        )
+    shown = Found(found, total, some.items, some.next_token is not None, {x: y for x, y in query.items() if y})
+    made = page(shown, _address(request), viewer != ANYBODY, viewer.has("write"))
+    return with_scripts(answer(request, scripted(made, "catalogue.js")), compiles=False)
 
 
 def _address(request: Request) -> str:
     """The address that the browser used."""
     return f"{request.url.scheme}://{request.headers['host']}"
-
-
-@router.get("/substructures/{ref}")
-def substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
-    """A part."""
-    with store.database.read() as connection:
-        version = catalogue.find(connection, viewer, ref)
-        names = aliases.aliases_of(connection, (version.name, version.version))[0]
-        part = store.required_part(connection, version.digest)
-        gone = uses.withdrawn_in_part(connection, viewer, version.digest)
-        all_of_it = versions.page_versions(connection, viewer, version.name, None, SHOWN + 1)
-        used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
-    reference = f"{version.name}@{version.version}"
-    notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, reference)]
-    metric = metric_section(
-        version, lambda: with_own_inertia(part, part.program.select(["metric"])), store.caches.sections
-    )
-    return answer(request, part_page(version, names, part, metric, notes))
 
 
 @router.get("/substructures/{ref}/difference")
@@ -125,32 +121,50 @@ def all_trees(
     return answer(request, trees_page(found, q))
 
 
-@router.get("/trees/{ref}")
-def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
-    """A revision of a tree, the latest for a bare name."""
-    with store.database.read() as connection:
-        found = trees.find(connection, viewer, ref)
-        model = store.model(connection, found)
-        gone = trees.withdrawn(connection, viewer, found)
-        all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
-    metric = metric_section(found, lambda: sources_of(store, found, model).formulas("metric"), store.caches.sections)
-    return answer(request, tree_page(found, model, metric, (withdrawn_section(gone), revisions_section(all_of_it))))
-
-
 @router.get("/jobs")
-def all_jobs(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
-    """The latest jobs."""
+def all_jobs(
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    state: Filter = "",
+    kind: Filter = "",
+    label: Filter = "",
+) -> Response:
+    """The latest jobs (of a state, of a kind, with a label)."""
+    query = {"state": state, "kind": kind, "label": label}
+    wanted = {name: text or None for name, text in query.items()}
     with store.database.read() as connection:
-        found = job_rows.page_jobs(connection, viewer, None, None, None, JOBS + 1)
+        found = job_rows.page_jobs(connection, viewer, wanted, None, JOBS + 1)
         progress = [jobs.progress(connection, job) for job in found[:JOBS]]
-    return answer(request, jobs_page(found[:JOBS], progress, len(found) > JOBS))
+    return answer(request, jobs_page(found[:JOBS], progress, len(found) > JOBS, query))
 
 
 @router.get("/jobs/{job}")
-def one_job(job: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
-    """A job with its progress."""
+def one_job(
+    job: str,
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    where: Filter = "",
+    sort: Filter = "",
+    x: Filter = "",
+    y: Filter = "",
+) -> Response:
+    """A job with its progress; of a sweep its table, of which the query says what is shown."""
     with store.database.read() as connection:
         found = jobs.find(connection, viewer, job)
         bad = job_rows.page_items(connection, job, "failed", -1, BAD + 1)
         progress = jobs.progress(connection, found)
-    return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD))
+        whole = tables.table_of(connection, found) if found.kind == tables.KIND and found.done else None
+    query = {"where": where, "sort": sort, "x": x, "y": y}
+    rows = None if whole is None else _rows(whole, job_path(job), query, viewer.has("write"))
+    may_change = viewer.has("jobs") and (viewer.key == found.principal or viewer.may_change(found.owner))
+    return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD, may_change, rows))
+
+
+def _rows(whole: tables.Table, path: str, query: dict[str, str], may_write: bool) -> Html:
+    """The table of a sweep; what is wrong with the query is said in it."""
+    try:
+        return sweep_section(whole, tables.chosen(whole, query["where"], query["sort"], ()), path, query, may_write, "")
+    except Refused as refused:
+        return sweep_section(whole, whole, path, {}, may_write, refused.detail)

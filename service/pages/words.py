@@ -2,19 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from service.pages.html import Content, Html, html, table, tag
-from substructures.errors import TooLarge
-from substructures.export import render
-from substructures.expr.program import KINDS, Program
 
-#: operations of a formula that is shown inside of a page
-SHOWN = 3000
 LONGEST = 40
-_SYMBOL = re.compile(rf"# .* is ({'|'.join(KINDS)}) \[.*\]")
 _KINDS = {"R": ("revolute", "rad"), "P": ("prismatic", "m")}
 _NAMES = {"metric": "metric", "christoffel": "Christoffel symbols", "gravity": "gravity forces"}
 
@@ -126,15 +119,3 @@ def _times(report: Mapping[str, Any]) -> list[str]:
     verbs = {"derive": "derived", "couple": "coupled", "verify": "verified"}
     parts = [f"{verbs.get(name, name)} in {1000 * value:.1f} ms" for name, value in seconds.items()]
     return [f"{', '.join(parts).capitalize()}."] if parts else []
-
-
-def formula(program: Program, address: str) -> Html:
-    """Formulas as text, or where they can be had when they are long."""
-    try:
-        text = render(program, "text", "readable", limit=SHOWN)
-    except TooLarge as error:
-        what = f"Too long for a page: size {error.size:,}; up to {error.limit:,} is shown here. "
-        return tag("p", what, tag("a", "Load it as text", href=address), class_="quiet")
-    # names and units stand in the tables of the page
-    lines = [line for line in text.split("\n")[1:] if not _SYMBOL.fullmatch(line)]
-    return tag("pre", tag("code", "\n".join(lines)), tabindex="0")

@@ -15,7 +15,7 @@ from service.messages.viewer import PUBLIC, Viewer
 from service.queries.common import now
 from service.queries.content import seal_of_part
 from service.queries.owners import reference, seen_by, visible
-from service.queries.terms import Term, exchange, stored_terms, terms_of
+from service.queries.searching.terms import Term, exchange, stored_terms, terms_of
 
 _NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")

@@ -14,8 +14,8 @@ from service.database.packed import unpack
 from service.database.seals import seal
 from service.database.tables import parts, programs, trees
 from service.queries.common import insert_missing, now
-from service.queries.formulas import FormulaRow, packed
-from service.queries.uploads import get_upload
+from service.queries.jobs.uploads import get_upload
+from service.queries.searching.formulas import FormulaRow, packed
 
 #: what follows from the definition of a part and is served; the program is in it by its digest, as are the formulas
 SEALED = (

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from sqlalchemy import Connection, delete, exists, select
 
 from service.database.job_tables import job_events, job_items, job_uploads, jobs, result_files, results
-from service.queries import uploads
-from service.queries.jobs import share_results
+from service.queries.jobs import uploads
+from service.queries.jobs.jobs import share_results
 
 
 def remove_finished(connection: Connection, before: str, most: int) -> int:

@@ -16,9 +16,9 @@ from service.jobs.engines.engine import AttemptReport, Engine, Outcome, Work
 from service.jobs.kinds import failed
 from service.jobs.kinds.mirror import MIRROR_KIND
 from service.messages.refusals import Refused, known_refusal
-from service.operations.mirrors import Mirror, Stopped, Told
+from service.operations.sharing.mirrors import Mirror, Stopped, Told
 from service.queries.attempts import job_of
-from service.queries.jobs import submitters
+from service.queries.jobs.jobs import submitters
 from service.sources import SETTING, source_of
 from service.store.store import Store
 
@@ -100,7 +100,7 @@ class WithMirrors:
 
 
 def _mirrored(store: Store, work: Work, told: Told) -> dict[str, Any]:
-    """The summary of a mirror. Raises as :meth:`service.operations.mirrors.Mirror.run`."""
+    """The summary of a mirror. Raises as :meth:`service.operations.sharing.mirrors.Mirror.run`."""
     address = work.item["source"]
     source = source_of(address, store.settings.mirror_sources)
     if source is None:

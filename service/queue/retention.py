@@ -6,8 +6,8 @@ from datetime import timedelta
 from threading import Event
 
 from service.queries.common import now
+from service.queries.jobs.uploads import remove_unused
 from service.queries.removal import remove_finished
-from service.queries.uploads import remove_unused
 from service.store.store import Store
 
 CHUNKS = 10  # uploads that are removed together

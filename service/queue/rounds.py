@@ -14,10 +14,10 @@ from typing import Any
 from service.database.connections import Connection
 from service.jobs.engines.engine import Outcome
 from service.messages.refusals import Refused, StaleError, problem
-from service.operations import job_results
-from service.queries import job_events, jobs, queue
+from service.operations.jobs import job_results
 from service.queries.attempts import Attempt, Changes, Lost
 from service.queries.common import is_outage
+from service.queries.jobs import job_events, jobs, queue
 from substructures.documents import write_json
 
 #: attempts whose worker died; and all attempts, since an item may also bring down whoever watches over the workers:

@@ -20,10 +20,11 @@ from datetime import timedelta
 from time import monotonic
 
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Outcome, Work
+from service.jobs.kinds.shapes import SHARE
 from service.messages.refusals import Refused, problem
-from service.queries import jobs, queue
 from service.queries.attempts import Attempt
 from service.queries.common import is_conflict, is_outage
+from service.queries.jobs import jobs, queue
 from service.queue.backlog import GATHER, Backlog
 from service.queue.mirroring import WithMirrors
 from service.queue.retention import sweep
@@ -207,7 +208,8 @@ class Supervisor:
         try:
             blobs = {digest: self._store.blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
-            engine.start(Work(attempt.id, attempt.kind, read_json(attempt.item.encode()), blobs, budget))
+            item = read_json(attempt.item.encode()) | {SHARE: f"job {attempt.job}"}
+            engine.start(Work(attempt.id, attempt.kind, item, blobs, budget))
         except Refused as error:
             self._end(attempt, Outcome(problem=problem(error)))
         except Exception:

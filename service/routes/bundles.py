@@ -16,8 +16,8 @@ from service.messages.addresses import version_path
 from service.messages.answers import Answer, etag, json_answer
 from service.messages.references import is_pinned
 from service.messages.refusals import Refused
-from service.operations import bundles
-from service.operations.bundles import Imported
+from service.operations.sharing import bundles
+from service.operations.sharing.bundles import Imported
 from service.routes.bodies import binary
 from service.schemas.bundles import BundleView
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility

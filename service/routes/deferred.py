@@ -11,8 +11,8 @@ from service.database.connections import Connection
 from service.http.acting import Act, Commit
 from service.messages.answers import Answer, json_answer
 from service.messages.viewer import Viewer
-from service.operations import jobs
-from service.queries.jobs import Job
+from service.operations.jobs import jobs
+from service.queries.jobs.jobs import Job
 from service.schemas.jobs import JobView
 from service.store.store import Store
 from service.views.jobs import job_path, job_view, skipped_view

@@ -7,7 +7,7 @@ from typing import Annotated, Any
 from fastapi import Depends, Query
 from pydantic import StringConstraints
 
-from service.queries.search import SORTS
+from service.queries.searching.search import SORTS
 from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME
 

@@ -19,7 +19,7 @@ from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
 from service.models import printing
 from service.operations import catalogue, models
-from service.queries import formulas as index
+from service.queries.searching import formulas as index
 from service.routes.bodies import printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex

@@ -49,6 +49,7 @@ def read_file(
     cut: Annotated[
         str, Query(max_length=20_000, description="links, separated by commas: each begins a part of its own")
     ] = "",
+    preview: Annotated[bool, Query(description="derive it, too, and draw it: nothing is stored")] = False,
     stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
 ) -> Response:
     """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
@@ -59,10 +60,15 @@ def read_file(
     links = tuple(text.strip() for text in cut.split(",") if text.strip())
     wanted = Wanted(Options(parameters, fixed, base), kind, name, file, license, links)
     if not stored:
-        return act.compute(lambda: json_answer(imports.answer_of(read(act.worker, body, wanted))))
+        return act.compute(lambda: json_answer(imports.answer_of(_read(store, act, body, wanted, preview))))
     act.require("write")
     found = act.first(lambda: read(act.worker, body, wanted))
     return _tree(store, act, found) if "tree" in found else _part(store, act, found)
+
+
+def _read(store: StoreOf, act: ActOf, body: bytes, wanted: Wanted, preview: bool) -> Mapping[str, Any]:
+    found = read(act.worker, body, wanted)
+    return imports.with_preview(store, act.worker, found) if preview else found
 
 
 def _part(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:

@@ -21,14 +21,15 @@ from service.models.exporting import ExportRequest
 from service.models.formulas import QUANTITIES, check_options
 from service.models.formulas.entry import Options
 from service.models.grouping import check_group
-from service.operations import analyses, at_hand, trees, uploads
+from service.operations import analyses, at_hand, trees
 from service.operations.exchange import TreeEvaluation, choose_media_type, read_requests
-from service.operations.sources import engine_of, part_programs, sources_of
+from service.operations.jobs import uploads
+from service.operations.sharing.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
 from service.routes.bodies import binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
-from service.routes.exports import ADVICE, EXPORTED, ExportOf, export_job
 from service.routes.options import OptionsOf
+from service.routes.programs.exports import ADVICE, EXPORTED, ExportOf, export_job
 from service.routes.style import StyleOf
 from service.schemas.numbers import EvaluationResult
 from service.store.store import Store

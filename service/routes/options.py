@@ -19,6 +19,7 @@ def _query(name: str) -> Any:
 async def options_of(
     inputs: Annotated[Texts, _query("inputs")] = None,
     zero: Annotated[Texts, _query("zero")] = None,
+    degree: Annotated[Texts, _query("degree")] = None,
     cyclic: Annotated[Texts, _query("cyclic")] = None,
     outputs: Annotated[Texts, _query("outputs")] = None,
     parameters: Annotated[Texts, _query("parameters")] = None,
@@ -31,9 +32,9 @@ async def options_of(
 ) -> Options:
     """The options of a request; those that are not given are left out."""
     given = {
-        "inputs": inputs, "zero": zero, "cyclic": cyclic, "outputs": outputs, "parameters": parameters,
-        "quantities": quantities, "controls": controls, "running": running, "terminal": terminal, "drives": drives,
-        "joints": joints,
+        "inputs": inputs, "zero": zero, "degree": degree, "cyclic": cyclic, "outputs": outputs,
+        "parameters": parameters, "quantities": quantities, "controls": controls, "running": running,
+        "terminal": terminal, "drives": drives, "joints": joints,
     }  # fmt: skip
     return {name: tuple(_split(texts)) for name, texts in given.items() if texts}
 

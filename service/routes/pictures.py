@@ -1,4 +1,4 @@
-"""``/v1/substructures/{ref}/picture`` and ``/v1/trees/{ref}/picture``: what it looks like, as SVG."""
+"""``.../picture`` and ``.../scene`` of parts and trees: as SVG, and as data of what there is to draw."""
 
 from __future__ import annotations
 
@@ -9,9 +9,10 @@ from fastapi import APIRouter, Query, Request, Response
 
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
-from service.messages.answers import Answer, etag
+from service.messages.answers import JSON, Answer, etag
 from service.messages.references import is_pinned
 from service.operations import catalogue, pictures, trees
+from service.schemas.scenes import SceneView
 
 MEDIA_TYPE = "image/svg+xml"
 #: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own
@@ -31,7 +32,7 @@ router = APIRouter(prefix="/v1", tags=["pictures"], dependencies=[needs("read")]
 
 @router.get("/substructures/{ref}/picture", response_class=Response, responses=DRAWN)
 def substructure_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
-    """A part alone, in the pose given or in one that shows its joints."""
+    """A part alone, in the pose given or at home."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
     pose = pictures.read_pose(q, version.joints)
@@ -41,12 +42,35 @@ def substructure_picture(ref: str, request: Request, store: StoreOf, viewer: Vie
 
 @router.get("/trees/{ref}/picture", response_class=Response, responses=DRAWN)
 def tree_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
-    """A tree, in the pose given or in one that shows its joints."""
+    """A tree, in the pose given or at home."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
     pose = pictures.read_pose(q, pictures.joints_of(tree))
     pinned = is_pinned(ref) and tree.is_public
     return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
+
+
+@router.get("/substructures/{ref}/scene", response_model=SceneView)
+def substructure_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+    """What there is to draw of a part alone: frames, joints, bodies with their inertia, loads, poses."""
+    with store.database.read() as connection:
+        version = catalogue.find(connection, viewer, ref)
+    pinned = is_pinned(ref) and version.is_public
+    return _scene(request, version.digest, pinned, lambda: pictures.scene_of_part(store, version))
+
+
+@router.get("/trees/{ref}/scene", response_model=SceneView)
+def tree_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+    """What there is to draw of a tree: frames, joints, bodies with their inertia, loads, closures, poses."""
+    with store.database.read() as connection:
+        tree = trees.find(connection, viewer, ref)
+    pinned = is_pinned(ref) and tree.is_public
+    return _scene(request, tree.digest, pinned, lambda: pictures.scene_of_tree(store, tree))
+
+
+def _scene(request: Request, digest: str, pinned: bool, draw: Callable[[], str]) -> Response:
+    headers = {"Content-Type": JSON}
+    return conditional(request, etag(digest, "scene"), pinned, lambda: Answer(200, draw().encode(), headers))
 
 
 def _answer(

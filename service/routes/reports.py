@@ -15,7 +15,7 @@ from service.messages.answers import etag
 from service.messages.negotiation import choose_format
 from service.messages.references import is_pinned
 from service.operations import catalogue, reports, trees
-from service.operations.sources import part_programs
+from service.operations.sharing.sources import part_programs
 from service.routes.bodies import reference
 from service.schemas.reports import ReportView
 

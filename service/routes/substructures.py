@@ -21,9 +21,9 @@ from service.messages.viewer import Viewer
 from service.operations import catalogue, searches
 from service.queries import aliases, content, uses
 from service.queries.catalogue import Version
-from service.queries.part_search import CatalogueSearch
+from service.queries.searching.part_search import CatalogueSearch
+from service.queries.searching.words import words_of
 from service.queries.uses import Withdrawn
-from service.queries.words import words_of
 from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf, PortName

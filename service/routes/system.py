@@ -9,7 +9,7 @@ from service.http.responses import response_of
 from service.messages.answers import Answer, json_answer
 from service.messages.refusals import Refused
 from service.metrics import CONTENT_TYPE
-from service.queries.jobs import counts
+from service.queries.jobs.jobs import counts
 from service.schemas.resources import Health, LimitsView
 from service.views.resources import dump
 from substructures.documents import MAX_DEPTH, MAX_DIGITS

@@ -16,9 +16,9 @@ from service.messages.answers import Answer, json_answer
 from service.messages.paging import limited
 from service.messages.refusals import unprocessable
 from service.operations import searches, trees
-from service.operations.job_results import BASE_REVISION, IS_EXACT
-from service.queries.tree_search import TreeSearch
-from service.queries.words import words_of
+from service.operations.jobs.job_results import BASE_REVISION, IS_EXACT
+from service.queries.searching.tree_search import TreeSearch
+from service.queries.searching.words import words_of
 from service.routes.bodies import body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf
@@ -170,3 +170,30 @@ def add_load(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfM
 def remove_load(ref: str, load: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove a load of the tree: a new revision."""
     return changed(act, lambda: trees.unload(store, act.viewer, ref, load, if_match))
+
+
+@router.post(
+    "/{ref}/closures",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("Closure"),
+    responses=made(TreeView),
+)
+@timed("derive")
+def add_closure(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
+    """Close one more loop of the tree: a new revision."""
+    return changed(act, lambda: trees.closure(store, act.viewer, ref, body, if_match))
+
+
+@router.delete(
+    "/{ref}/closures/{closure}",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    responses=made(TreeView),
+)
+@timed("derive")
+def remove_closure(ref: str, closure: str, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
+    """Cut a loop of the tree open: a new revision."""
+    return changed(act, lambda: trees.opening(store, act.viewer, ref, closure, if_match))

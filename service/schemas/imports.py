@@ -28,7 +28,7 @@ class CheckView(Shape):
 
 
 class BindingView(Shape):
-    """A bound coordinate, which is free here: coordinate = multiplier * of + offset."""
+    """A binding that is no relation of a part: both are free here, coordinate = multiplier * of + offset."""
 
     coordinate: str
     of: str
@@ -46,6 +46,16 @@ class StoredView(Shape):
     href: str
 
 
+class PreviewView(Shape):
+    """What would be stored."""
+
+    picture: str = Field(description="SVG, at home")
+    dof: int
+    joints: str
+    mass: float | None = Field(description="kg, at the default values of parameters")
+    warnings: list[dict[str, Any]]
+
+
 class ImportView(Shape):
     """A robot file, read: a definition, or a tree where the file has loops or is cut."""
 
@@ -59,4 +69,5 @@ class ImportView(Shape):
     )
     bindings: list[BindingView]
     gravity: list[float] | None = Field(None, description="m/s^2; of the file, for the tree: a part has none")
+    preview: PreviewView | None = None
     stored: StoredView | None = None

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Any, Literal
+import re
+from typing import Annotated, Any, Literal, Self
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, RootModel, StrictBool, WithJsonSchema, model_validator
 
 from service.schemas.job_guide import CHOICES, EXAMPLES, KINDS
-from service.schemas.shapes import Links, Shape, Time
+from service.schemas.shapes import Links, Shape, Time, refused
 from substructures.documents.fields import Words
+from substructures.sweeps.document import SweepDocument
 
-JobKind = Literal[
+LONGEST_LABEL = 200
+ItemsKind = Literal[
     "assemble",
     "evaluate",
     "export",
@@ -23,34 +26,72 @@ JobKind = Literal[
     "analyse",
     "mirror",
 ]
+JobKind = Literal[ItemsKind, "sweep"]
 JobState = Literal["queued", "running", "cancelling", "succeeded", "failed", "cancelled"]
 ItemDocument = dict[str, Any]
+#: which is read by its kind, so that a bad one may be left out
+OneItem = Annotated[Any, WithJsonSchema({"type": "object", "additionalProperties": True})]
 ChoiceValues = Annotated[list[Any], Field(min_length=1)]
 ItemState = Literal["queued", "running", "succeeded", "failed", "cancelled"]
 
 
-class JobRequest(Shape):
-    """What is to be computed: a list of items, or a template with lists of choices."""
+class Submitted(Shape):
+    """What every submission says of the job as a whole."""
+
+    shared: StrictBool = Field(False, description="whether every API key may see the job, not only those of its owner")
+    label: Words = Field("", max_length=LONGEST_LABEL, description="what it is for, in words")
+    labels: dict[str, str] = Field(
+        default_factory=dict, description="words by name, which stand in the label, `study:night`"
+    )
+
+    @model_validator(mode="after")
+    def _are_words(self) -> Self:
+        if not all(re.fullmatch(r"\S+", f"{name}{word}") for name, word in self.labels.items()):
+            raise refused("bad-label", 'an object of words by name is needed, {"study": "night"}', "/labels")
+        if len(self.whole_label) > LONGEST_LABEL:
+            raise refused("bad-label", f"all labels together have at most {LONGEST_LABEL} characters", "/labels")
+        return self
+
+    @property
+    def whole_label(self) -> str:
+        """The label with the labels by name behind it."""
+        return " ".join(filter(None, [self.label, *(f"{name}:{word}" for name, word in self.labels.items())]))
+
+
+class SubmittedItems(Submitted):
+    """A list of items, or a template with lists of choices."""
 
     model_config = ConfigDict(
-        extra="forbid",
-        json_schema_extra={
-            "oneOf": [{"required": ["items"]}, {"required": ["template", "choices"]}],
-            "examples": list(EXAMPLES),
-        },
+        json_schema_extra={"oneOf": [{"required": ["items"]}, {"required": ["template", "choices"]}]}
     )
 
-    kind: JobKind = Field(description=KINDS)
-    items: list[ItemDocument] = Field(default_factory=list, min_length=1, description="what an item is: see `kind`")
-    template: ItemDocument = Field(
-        default_factory=dict, description="an item that is copied for every combination of choices"
-    )
-    choices: dict[str, ChoiceValues] = Field(default_factory=dict, min_length=1, description=CHOICES)
-    shared: bool = Field(False, description="whether every API key may see the job, not only those of its owner")
-    label: Words = Field("", max_length=200, description="what it is for, in words")
+    kind: ItemsKind = Field(description=KINDS)
+    items: list[OneItem] | None = Field(None, min_length=1, description="what an item is: see `kind`")
+    template: ItemDocument | None = Field(None, description="an item that is copied for every combination of choices")
+    choices: dict[str, ChoiceValues] | None = Field(None, min_length=1, description=CHOICES)
     on_invalid: Literal["refuse", "skip"] = Field(
         "refuse", description="one bad item: refuse all, or leave it out and tell of it in `skipped` of the answer"
     )
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if (self.items is None) == (self.template is None):
+            raise refused("one-source", "give either 'items', or a 'template' with 'choices'", "/items")
+        if (self.template is None) != (self.choices is None):
+            raise refused("no-choices", "a 'template' has 'choices', an object of lists of choices", "/choices")
+        return self
+
+
+class SubmittedSweep(Submitted, SweepDocument):
+    """A tree with choices of parts and samples of parameters, and the columns of a table of all combinations."""
+
+    kind: Literal["sweep"]
+
+
+class JobRequest(RootModel[Annotated[SubmittedItems | SubmittedSweep, Field(discriminator="kind")]]):
+    """What is to be computed: items, or a sweep."""
+
+    model_config = ConfigDict(json_schema_extra={"examples": list(EXAMPLES)})
 
 
 class SkippedFault(Shape):
@@ -75,7 +116,9 @@ class CancelRequest(Shape):
 class RetryRequest(Shape):
     """What is tried again of a job."""
 
-    label: Words | None = Field(None, max_length=200, description="of the new job (default: that of the old one)")
+    label: Words | None = Field(
+        None, max_length=LONGEST_LABEL, description="of the new job (default: that of the old one)"
+    )
 
 
 class JobProgress(Shape):

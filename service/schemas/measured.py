@@ -129,6 +129,12 @@ def quantity_of(schema: Mapping[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": ["value", "unit"], "additionalProperties": False}
 
 
+def _varied_units(model: Model) -> dict[str, str]:
+    """Of parameters, coordinates and velocities."""
+    states = model.state_units
+    return {**model.units, **states["q"], **{f"{name}'": unit for name, unit in states["qd"].items()}}
+
+
 def _in_order(units: Mapping[str, str]) -> Place:
     """By the kind of a coordinate's joint, for all coordinates."""
     return lambda model, _, __: {name: units[kind] for name, kind in zip(model.coordinates, model.joints, strict=True)}
@@ -178,7 +184,7 @@ def _quasi_velocities(model: Model, read_before: Plain, _: Any) -> PlaceUnits:
     return {name: expression_unit(model, text) for name, text in given.items()} if given else {**rates, **named}
 
 
-SECONDS, METRES = Measured("s"), Measured("m")
+SECONDS, METRES, RADIANS_PER_SECOND = Measured("s"), Measured("m"), Measured("rad/s")
 COORDINATES = Measured(place=lambda model, _, __: model.state_units["q"])
 VELOCITIES = Measured(place=lambda model, _, __: model.state_units["qd"])
 ACCELERATIONS = Measured(place=lambda model, _, __: model.state_units["qdd"])
@@ -192,6 +198,7 @@ INPUT_SIGNALS = Measured(place=lambda model, _, given: _signals(model.units, giv
 COORDINATE_SIGNALS = Measured(place=lambda model, _, given: _signals(model.state_units["q"], given))
 EXPRESSION = Measured(place=lambda _, __, ___: "")
 EXPRESSIONS = Measured(place=lambda _, __, given: dict.fromkeys(given if isinstance(given, Mapping) else (), ""))
+OF_VARIED = Measured(place=lambda model, before, _: _varied_units(model).get(str(before.get("vary")), ""))
 OF_PARAMETER = Measured(place=lambda model, before, _: model.units.get(str(before.get("parameter")), ""))
 OF_QUANTITY = Measured(place=lambda model, before, _: expression_unit(model, before.get("quantity", "")))
 QUASI_VELOCITIES = Measured(place=_quasi_velocities)

@@ -16,15 +16,15 @@ from service.schemas.shapes import Digest, Shape, Warned
 from substructures.documents import message_of, pointer_step, require_object
 from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.quantities import derivative_directions
-from substructures.quantities.evaluation import read_quantities
 from substructures.quantities.measured import si_values
-from substructures.quantities.states import argument_units
+from substructures.quantities.numbers.evaluation import read_quantities
+from substructures.quantities.numbers.states import argument_units
 from substructures.tree.model import Model
 
 Column = float | list[float]
 
 
-#: numbers that the science looks at, with its units: see :func:`substructures.quantities.states.argument_units`
+#: numbers that the science looks at, with its units: see :func:`substructures.quantities.numbers.states.argument_units`
 ValueColumns = Annotated[dict[str, Column], SkipValidation, WithUnits()]
 StateColumns = Annotated[list[float] | list[list[float]] | dict[str, Column] | None, SkipValidation, WithUnits()]
 _NEEDED = {
@@ -110,7 +110,7 @@ class EvaluationRequest(Shape):
         return EvaluationRequest.read(si_values(self.given(), argument_units(model), ""))
 
     def arguments(self) -> dict[str, Any]:
-        """Arguments of :func:`substructures.quantities.evaluation.evaluate` by name."""
+        """Arguments of :func:`substructures.quantities.numbers.evaluation.evaluate` by name."""
         along = self.along
         return {
             "quantities": self.quantities,

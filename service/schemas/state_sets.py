@@ -8,17 +8,11 @@ from typing import Annotated, Any
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
-from pydantic_core import PydanticCustomError
 
-from service.schemas.shapes import Shape
+from service.schemas.shapes import Shape, refused
 
 MAX_AXIS = 10_000
 MAX_COUNT, MAX_SEED = 2**53, 2**64 - 1
-
-
-def _refused(code: str, message: str) -> PydanticCustomError:
-    """The fault ``code`` in place of one of pydantic's."""
-    return PydanticCustomError(code, "{message}", {"message": message})
 
 
 def _finite(given: Any) -> float:
@@ -27,7 +21,7 @@ def _finite(given: Any) -> float:
     except (TypeError, ValueError, OverflowError):
         value = math.nan
     if not math.isfinite(value):
-        raise _refused("number-expected", "a number is needed")
+        raise refused("number-expected", "a number is needed")
     return value
 
 
@@ -35,7 +29,7 @@ def _count(limit: int) -> BeforeValidator:
     def check(given: Any) -> Any:
         """The number, if it is within the limit."""
         if isinstance(given, bool) or not isinstance(given, int) or not 0 < given <= limit:
-            raise _refused("count", f"a whole number from 1 to {limit:,} is needed")
+            raise refused("count", f"a whole number from 1 to {limit:,} is needed")
         return given
 
     return BeforeValidator(check)
@@ -43,31 +37,31 @@ def _count(limit: int) -> BeforeValidator:
 
 def _seed(given: Any) -> Any:
     if isinstance(given, bool) or not isinstance(given, int) or not 0 <= given <= MAX_SEED:
-        raise _refused("seed", "a seed is a whole number from 0 to 2^64 - 1")
+        raise refused("seed", "a seed is a whole number from 0 to 2^64 - 1")
     return given
 
 
 def _listed(given: Any) -> Any:
     if not 0 < len(given) <= MAX_AXIS:
-        raise _refused("axis", f"an axis has 1 to {MAX_AXIS:,} values")
+        raise refused("axis", f"an axis has 1 to {MAX_AXIS:,} values")
     return given
 
 
 def _pair(given: Any) -> Any:
     if not isinstance(given, list) or len(given) != 2:
-        raise _refused("range", "a range has two numbers")
+        raise refused("range", "a range has two numbers")
     return given
 
 
 def _ordered(given: tuple[float, float]) -> tuple[float, float]:
     if given[0] > given[1]:
-        raise _refused("range", f"{given[0]:g} is above {given[1]:g}")
+        raise refused("range", f"{given[0]:g} is above {given[1]:g}")
     return given
 
 
 def _object(given: Any) -> Any:
     if not isinstance(given, Mapping):
-        raise _refused("object-expected", "an object of ranges by name is needed")
+        raise refused("object-expected", "an object of ranges by name is needed")
     return given
 
 
@@ -90,7 +84,7 @@ class AxisSpan(Shape):
     @classmethod
     def _has_all(cls, given: Any) -> Any:
         if given.keys() != {"from", "to", "count"}:
-            raise _refused("axis", "an axis has 'from', 'to' and 'count'")
+            raise refused("axis", "an axis has 'from', 'to' and 'count'")
         return given
 
 
@@ -131,5 +125,5 @@ class Sample(Shape):
     @classmethod
     def _has_no_more(cls, given: Any) -> Any:
         if not given.keys() <= {"count", "seed", "ranges"}:
-            raise _refused("sample", "a sample has 'count', 'seed' and 'ranges'")
+            raise refused("sample", "a sample has 'count', 'seed' and 'ranges'")
         return given

@@ -18,7 +18,6 @@ TREES = 1000  # with what judges their values
 PICTURES = 16 * 2**20  # characters
 BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
 PRINTED = 32 * 2**20  # bytes of formulas as they were sent
-SECTIONS = 8 * 2**20  # characters of formulas on pages
 
 
 @dataclass(frozen=True)
@@ -26,7 +25,7 @@ class Caches:
     """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
     model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
     digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
-    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, ``sections`` of pages with formulas by digest.
+    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers compute with.
     """
 
     parts: Cache[Part]
@@ -39,7 +38,6 @@ class Caches:
     pictures: Cache[str]
     blobs: Cache[bytes]
     printed: Cache[Answer]
-    sections: Cache[str]
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
@@ -55,5 +53,4 @@ class Caches:
             pictures=Cache(PICTURES, len),
             blobs=Cache(BLOBS, len),
             printed=Cache(PRINTED, lambda answer: len(answer.body)),
-            sections=Cache(SECTIONS, len),
         )

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from service.database.connections import Database
 from service.messages.refusals import Refused
-from service.queries.job_events import latest
+from service.queries.jobs.job_events import latest
 
 POLL = 0.25  # seconds
 _log = logging.getLogger(__name__)

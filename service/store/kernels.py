@@ -39,8 +39,8 @@ from substructures.errors import MissingValue
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
 from substructures.part.part import Part
-from substructures.quantities.evaluation import Evaluator, interpreted
 from substructures.quantities.from_parts import NumericTree, Scalars, gives, kernel_entries
+from substructures.quantities.numbers.evaluation import Evaluator, interpreted
 from substructures.tree.coupling import asked
 
 #: from this many states on compiling first is quicker
@@ -72,7 +72,7 @@ def quickest(states: int, coupled: bool, warm: bool) -> Way:
 
 
 class Kernels:
-    """An engine for :mod:`substructures.quantities.evaluation`; kernels are kept in memory and in a folder if given."""
+    """An engine for :mod:`substructures.quantities.numbers.evaluation`; kernels are kept in memory, and in a folder."""
 
     def __init__(self, folder: Path | None, most: int = 2**32) -> None:
         """``most``: bytes that the folder may take."""

@@ -9,10 +9,10 @@ from typing import Any
 import orjson
 
 from service.messages.addresses import BASE
-from service.operations.jobs import Progress, Skipped
-from service.queries.job_events import JobEvent
-from service.queries.jobs import Job, JobItem
-from service.queries.results import File
+from service.operations.jobs.jobs import Progress, Skipped
+from service.queries.jobs.job_events import JobEvent
+from service.queries.jobs.jobs import Job, JobItem
+from service.queries.jobs.results import File
 from substructures.export.render import LANGUAGES
 
 BINARY = "application/octet-stream"

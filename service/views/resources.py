@@ -12,12 +12,12 @@ from service.operations.searches import Page
 from service.queries.aliases import Alias, AliasHistoryEntry
 from service.queries.audit import AuditEntry
 from service.queries.catalogue import Version
-from service.queries.formulas import FormulaRow
+from service.queries.searching.formulas import FormulaRow
 from service.queries.trees import Tree
 from service.queries.uses import Withdrawn
 from substructures.expr.units.unit_check import Notice
 from substructures.part.parameters import uncounted
-from substructures.quantities.warnings import no_coordinates
+from substructures.quantities.numbers.warnings import no_coordinates
 
 _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
 
@@ -67,6 +67,7 @@ def version_view(
             "definition": f"{path}/definition",
             "formulas": f"{path}/formulas",
             "picture": f"{path}/picture",
+            "scene": f"{path}/scene",
             "report": f"{path}/report",
             "latest": f"{BASE}/substructures/{version.name}",
             "aliases": f"{BASE}/substructures/{version.name}/aliases",
@@ -170,7 +171,7 @@ def tree_view(tree: Tree, withdrawn: Sequence[Withdrawn] = ()) -> bytes:
         "withdrawn": withdrawn_view(withdrawn),
         "links": {"self": path, "latest": f"{BASE}/trees/{tree.name}", "evaluations": f"{path}/evaluations"}
         | {"kernels": f"{path}/kernels"}
-        | {name: f"{path}/{name}" for name in (*quantities, "picture", "report")},
+        | {name: f"{path}/{name}" for name in (*quantities, "picture", "scene", "report")},
     }
     return dump(names)[:-1] + b"," + tree.summary.encode()[1:]
 

@@ -28,6 +28,7 @@ from substructures.certificate.linear import (
     zeros,
 )
 from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.relations import Related, mover, slope_of
 
 GROUND = -1
 #: (prismatic, axis of the frame before it) of every one degree of freedom joint in a joint type
@@ -98,6 +99,7 @@ class Joint:
 
     ``parent``: the joint that carries it. ``A``, ``O``: joint frame k and its origin O_k; ``tau``: shift of the body
     frame along the axis. ``w``, ``v``: angular velocity, and velocity of what is at the world's origin, for q' = 1.
+    ``mover``: the coordinate that moves it, its own or that of a relation, and ``slope`` dq / d mover.
     """
 
     coordinate: str
@@ -109,6 +111,8 @@ class Joint:
     w: Matrix
     v: Matrix
     armature: Ball
+    mover: str
+    slope: Ball
 
     @property
     def body(self) -> Matrix:
@@ -144,21 +148,24 @@ class Bodies:
     def add(self, definition: Plain, numbers: Numbers, seat: Frame, prefix: str = "") -> None:
         """The bodies and ports of a definition whose interface frame is ``seat``."""
         self.frames[f"{prefix}base"] = seat
+        numbers = Numbers(Related(definition, numbers.names))
         for body in in_order(definition):
-            self._body(body, numbers, prefix)
+            movers = [(mover(definition, q), slope_of(definition, q, numbers)) for q in coordinates_of(body)]
+            self._body(body, numbers, prefix, movers)
         for port in definition.get("ports", ()):
             angles = numbers.vector(port.get("rotation", {}).get("rpy", NONE))
             place = roll_pitch_yaw(angles), numbers.vector(port.get("position", NONE))
             self.frames[f"{prefix}{port['name']}"] = self.frames[f"{prefix}{port['body']}"].placed(*place)
 
-    def _body(self, body: Plain, numbers: Numbers, prefix: str) -> None:
+    def _body(self, body: Plain, numbers: Numbers, prefix: str, movers: list[tuple[str, Ball]]) -> None:
         joint = body["joint"]
         frame = _before_joint(self.frames[f"{prefix}{body['parent']}"], joint, numbers)
         phi, tau = numbers.read(joint.get("phi", 0)), numbers.read(joint.get("tau", 0))
         if joint["type"] == "fixed":
             frame = frame.placed(turn(2, phi), vector(arb(0), arb(0), tau))
         for step, (coordinate, (prismatic, axis)) in enumerate(_steps(body)):
-            frame = self._moved(frame, joint, step, f"{prefix}{coordinate}", prismatic, axis, (phi, tau), numbers)
+            names = f"{prefix}{coordinate}", f"{prefix}{movers[step][0]}", movers[step][1]
+            frame = self._moved(frame, joint, step, names, prismatic, axis, (phi, tau), numbers)
         self.frames[f"{prefix}{body['name']}"] = frame
         self.named.setdefault(frame.carrier, f"{prefix}{body['name']}")
         mass = mass_of(body, numbers).outwards(frame.A, frame.p)
@@ -169,13 +176,17 @@ class Bodies:
         frame: Frame,
         joint: Plain,
         step: int,
-        coordinate: str,
+        names: tuple[str, str, Ball],
         prismatic: bool,
         axis: int,
         offsets: tuple[Ball, Ball],
         numbers: Numbers,
     ) -> Frame:
-        """Over a joint of one degree of freedom: the frame in which the axis of the next one is given."""
+        """Over a joint of one degree of freedom: the frame in which the axis of the next one is given.
+
+        ``names``: of its coordinate and of the one that moves it, with its slope.
+        """
+        coordinate, by, rate = names
         turned = onto_third_axis(axis)
         if "axis" in joint:
             turned = with_third_axis(numbers.vector(joint["axis"])) * turned
@@ -187,7 +198,7 @@ class Bodies:
         # of a turn about the axis z through O: w = z, and O x z at the world's origin
         w, v = (zeros(3, 1), z) if prismatic else (z, cross(frame.p, z))
         armature = numbers.read(of_step(joint.get("armature", 0), step))
-        self.joints.append(Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, armature))
+        self.joints.append(Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, armature, by, rate))
         k = len(self.joints) - 1
         self.own[k] = massless()
         return Frame(k, A * turned.transpose(), self.joints[k].body)

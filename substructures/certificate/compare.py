@@ -38,11 +38,13 @@ Elements = dict[str, set[Index]]
 class Compared(NamedTuple):
     """``errors``: of every output the largest relative difference that enclosures leave open; None where an element has
     no finite value at any state. ``left_out``: coordinates on which forces act that have a potential, of which the
-    stored one is without.
+    stored one is without. ``at_defaults``: whether random values of all parameters did not suffice, and states with
+    their defaults were looked at.
     """
 
     errors: dict[str, float | None]
     left_out: list[str]
+    at_defaults: bool
 
     @property
     def not_judged(self) -> list[str]:
@@ -63,11 +65,13 @@ def compare(
         if kinds.get(symbol.name) != symbol.kind:
             raise VerificationFailed(f"the symbol '{symbol.name[:80]}' ({symbol.kind}) is none of the documents")
     comparison = _Comparison(program, expected, defaults)
+    tried = 0
     for some in draws(kinds, defaults, states):
         comparison.at(some)
+        tried += 1
         if not comparison.open:
             break
-    return Compared(comparison.result(), sorted(comparison.left_out))
+    return Compared(comparison.result(), sorted(comparison.left_out), tried > 1)
 
 
 @dataclass

@@ -29,9 +29,11 @@ from substructures.certificate.bodies import (
     limits_of,
     of_step,
 )
+from substructures.certificate.by_coordinate import gathered
 from substructures.certificate.linear import Ball, Matrix, cross, dot, zeros
 from substructures.certificate.linear import vector as triple
 from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.relations import mover, multiplier_text, position_text
 from substructures.certificate.texts import Steps, difference, names_of, negative, product, slope
 from substructures.expr.direct import steps_of
 from substructures.expr.syntax import measured
@@ -75,7 +77,8 @@ class Forces:
         self.steady: list[dict[int, Ball]] = []
         self.places: list[tuple[Matrix, Matrix]] = []
         self.index = {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
-        self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in joints}
+        left = [a for a in joints if bodies.joints[a].coordinate == bodies.joints[a].mover]
+        self.coordinates = {bodies.joints[a].coordinate.rpartition(".")[2]: a for a in left}
 
     def depends(self, *given: Any) -> bool:
         """Whether numbers depend on a coordinate or a velocity of the definition."""
@@ -137,8 +140,8 @@ class _OwnFrames(Between):
         if _measures(load.get("stiffness", 0), load.get("length", 0)):
             return
         if found.depends(load.get("stiffness", 0), load.get("length", 0)):
-            if _is_gradient(found, load, (k, length - l0), reach):
-                found.bent.append(pulls)
+            if _is_gradient(found, load, (k, length - l0), gathered(self.bodies, reach)):
+                found.bent.append(gathered(self.bodies, pulls))
         else:
             found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
             _add(found.slopes, pulls)
@@ -173,10 +176,15 @@ def joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
     given = [of_step(joint.get(x, 0), step) for x in ("stiffness", "rest", "damping")]
     k, rest, c = map(numbers.read, given)
     stretch = numbers.names[name] - rest
-    _add(found.applied, {a: numbers.names[f"tau.{name}"] - k * stretch - c * found.rate(a)})
+    effort = numbers.names[f"tau.{name}"] if name in found.coordinates else arb(0)
+    _add(found.applied, {a: effort - k * stretch - c * found.rate(a)})
     if found.depends(*given[:2]):
-        law = product(steps_of(given[0]), difference(steps_of(name), steps_of(given[1])))
-        found.given.setdefault(a, []).append(negative(law))
+        place = steps_of(position_text(found.definition, name))
+        law = product(steps_of(given[0]), difference(place, steps_of(given[1])))
+        if name not in found.coordinates:
+            law = product(steps_of(multiplier_text(found.definition, name)), law)
+        moved_by = found.coordinates[mover(found.definition, name)]
+        found.given.setdefault(moved_by, []).append(negative(law))
     else:
         found.potential += k * stretch * stretch * arb(fmpq(1, 2))
         _add(found.slopes, {a: -k * stretch})
@@ -317,9 +325,22 @@ def _changes(found: Forces, load: Plain, frame: Frame, vector: Matrix) -> dict[i
 def _steady(found: Forces, load: Plain, Q: Mapping[int, Ball], rates: Mapping[tuple[int, int], Ball]) -> None:
     """Notes a load of coordinates and parameters alone whose curl d_b Q_a - d_a Q_b is zero; ``rates``: d_b Q_a."""
     known = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
+    rates = _gathered_twice(found, rates)
     curl = (rate - rates.get((b, a), arb(0)) for (a, b), rate in rates.items())
     if all(names_of(steps_of(x)) <= known for x in load["vector"]) and all(x.contains(0) for x in curl):
-        found.steady.append(dict(Q))
+        found.steady.append(gathered(found.bodies, Q))
+
+
+def _gathered_twice(found: Forces, rates: Mapping[tuple[int, int], Ball]) -> dict[tuple[int, int], Ball]:
+    """N_ai N_bj d_b Q_a."""
+    rows: dict[int, dict[int, Ball]] = {}
+    for (a, b), x in rates.items():
+        rows.setdefault(a, {})[b] = x
+    columns: dict[int, dict[int, Ball]] = {}
+    for a, row in rows.items():
+        for b, x in gathered(found.bodies, row).items():
+            columns.setdefault(b, {})[a] = x
+    return {(a, b): x for b, column in columns.items() for a, x in gathered(found.bodies, column).items()}
 
 
 def _keep(found: Forces, frame: Frame, x: Matrix | None, load: Plain, given: Matrix) -> None:
@@ -349,7 +370,7 @@ def _is_gradient(found: Forces, load: Plain, law: tuple[Ball, Ball], reach: Mapp
 
     if not all(by(f"{name}'").contains(0) for name in found.coordinates):
         return False
-    pairs = [(by(name), reach[a]) for name, a in found.coordinates.items()]
+    pairs = [(by(name), reach.get(a, arb(0))) for name, a in found.coordinates.items()]
     return all((f * v - g * w).contains(0) for f, w in pairs for g, v in pairs)
 
 

@@ -73,3 +73,18 @@ class Outputs(dict[str, Values]):
     def scalar(self, name: str, value: Ball) -> None:
         """An array without axes."""
         self.array(name, ())[()] = value
+
+
+def images_of(index: tuple[int, ...], symmetry: str) -> list[tuple[tuple[int, ...], int]]:
+    """The elements that one determines, with their signs: g_ab = g_ba; Gamma_abc = Gamma_acb, and for b <= a, c, where
+    u_a and u_c move with what joint b turns, Gamma_abc = -Gamma_cba.
+    """
+    if symmetry == "symmetric":
+        return [(index, 1), (index[::-1], 1)]
+    if symmetry not in ("christoffel", "connection"):
+        return [(index, 1)]
+    a, b, c = index
+    if symmetry == "connection":
+        return [(index, 1), ((a, c, b), 1)]
+    turned = [((c, b, a), -1), ((c, a, b), -1)] if b <= a and b <= c else []
+    return [(index, 1), ((a, c, b), 1), *turned]

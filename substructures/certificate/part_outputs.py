@@ -17,12 +17,14 @@ from substructures.certificate.bodies import (
     inertia_of_symbols,
     massless,
 )
+from substructures.certificate.by_coordinate import along, of_coordinates
 from substructures.certificate.dynamics import Carried, carried_by_joints, kappa
 from substructures.certificate.linear import Ball, Matrix, identity, side_by_side, skew, zeros
 from substructures.certificate.loads import forces
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.potentials import gradient_instead, is_found
+from substructures.certificate.relations import Related, mover, written
 from substructures.certificate.slopes import at_start
 from substructures.expr.operations import Output
 
@@ -37,7 +39,7 @@ def part_symbols(definition: Plain) -> dict[str, str]:
     kinds = dict.fromkeys(definition.get("parameters", ()), "parameter")
     kinds |= dict.fromkeys(definition.get("inputs", ()), "input") | {"t": "time"}
     for body in definition.get("bodies", ()):
-        for q in coordinates_of(body):
+        for q in (q for q in coordinates_of(body) if mover(definition, q) == q):
             kinds |= {q: "coordinate", f"{q}'": "velocity", f"tau.{q}": "input"}
         kinds |= dict.fromkeys(inertia_names(body["name"]), "inertia")
     return kinds
@@ -49,7 +51,8 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     ``stored``: which of the factors of a rotation E are stored is the derivation's choice, what they have to be is not;
     and whether it has the Christoffel symbols of a part that is large today, and was not when it was stored.
     """
-    numbers, bodies = Numbers(values), Bodies()
+    definition = written(definition)
+    numbers, bodies = Numbers(Related(definition, values)), Bodies()
     bodies.add(definition, numbers, Frame(GROUND, identity(), zeros(3, 1)))
     masses = {GROUND: bodies.own[GROUND]}
     for k in range(len(bodies.joints)):
@@ -61,14 +64,26 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     _interface(result, carried, is_large(bodies, stored))
     equations(result, bodies, carried, stored)
     _frames(result, bodies, definition)
+    _loads(result, bodies, definition, values)
     lengths = [x for frame in bodies.frames.values() for x in frame.p.entries()]
     extent = sum((abs(x) for joint in bodies.joints for x in joint.O.entries()), sum(map(abs, lengths), arb(0)))
+    for name in ("frame.position", "load.at"):
+        result[name].scale = extent.abs_lower()
+    if definition.get("relations"):
+        _relations(result, bodies, definition, numbers)
+    return of_coordinates(result, bodies)
+
+
+def _loads(result: Outputs, bodies: Bodies, definition: Plain, values: Mapping[str, Ball]) -> None:
+    """Forces, potential and wrenches; ``values``: of all symbols."""
+    numbers = Numbers(Related(definition, values))
     load = forces(bodies, definition, numbers, range(len(bodies.joints)))
     n, wrenches = len(bodies.joints), len(load.places)
     result.array("applied", (n,)).update({(a,): Q for a, Q in load.applied.items()})
     if is_found([load]):
         # V of the others where all coordinates are zero
-        start, numbers = Bodies(), Numbers(at_start(values, part_symbols(definition)))
+        start, rest = Bodies(), at_start(values, part_symbols(definition))
+        numbers = Numbers(Related(definition, rest))
         start.add(definition, numbers, Frame(GROUND, identity(), zeros(3, 1)))
         known = forces(start, definition, numbers, load.joints, like=load).potential
         gradient_instead(result, "potential", [load], load.slopes, known)
@@ -79,17 +94,26 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     for i, (at, vector) in enumerate(load.places):
         result.matrix("load.at", (wrenches, 3), (i,), at)
         result.matrix("load.vector", (wrenches, 3), (i,), vector)
-    for name in ("frame.position", "load.at"):
-        result[name].scale = extent.abs_lower()
-    return result
+
+
+def _relations(result: Outputs, bodies: Bodies, definition: Plain, numbers: Numbers) -> None:
+    """dq / d mover of all joints, and where they are while the coordinates are zero."""
+    shape = (len(bodies.joints),)
+    still = {q: arb(0) for joint in bodies.joints for q in (joint.coordinate,) if q == joint.mover}
+    rest = Related(definition, {**dict(numbers.names), **still})
+    result.array("multiplier", shape).update({(a,): joint.slope for a, joint in enumerate(bodies.joints)})
+    result.array("offset", shape).update({(a,): rest[joint.coordinate] for a, joint in enumerate(bodies.joints)})
 
 
 def metric_alone(definition: Plain, values: Mapping[str, Ball]) -> list[list[Ball]]:
     """The metric of the part with nothing mounted on it; ``values``: of parameters and coordinates."""
     bodies = Bodies()
     bodies.add(definition, Numbers(values), Frame(GROUND, identity(), zeros(3, 1)))
-    g = _metric(bodies, carried_by_joints(bodies, bodies.own))
+    found = Outputs()
     n = len(bodies.joints)
+    found.array("metric", (n, n), "symmetric").update(_metric(bodies, carried_by_joints(bodies, bodies.own)))
+    found = of_coordinates(found, bodies)
+    g, n = found["metric"].entries, len(along(bodies))
     return [[g.get((min(a, b), max(a, b)), 0) for b in range(n)] for a in range(n)]
 
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
+from substructures.certificate.by_coordinate import along, gathered
 from substructures.certificate.expanded import MOST, Expanded, NoExpansionError, expanded
 from substructures.certificate.linear import Ball
 from substructures.certificate.loads import Forces
@@ -76,18 +77,19 @@ def gradient_instead(result: Outputs, name: str, some: Sequence[Forces], Q: Mapp
     ``start``: the known potentials where all coordinates are zero (and velocities, inputs and the time are halved);
     behind the gradient.
     """
-    joints = some[0].bodies.joints
-    values = Values((), along=tuple(joint.coordinate for joint in joints))
-    for a in range(len(joints)):
-        values.entries[a,] = -Q.get(a, arb(0))
+    bodies = some[0].bodies
+    left, Q = along(bodies), gathered(bodies, Q)
+    values = Values((), along=tuple(bodies.joints[a].coordinate for a in left))
+    for i, a in enumerate(left):
+        values.entries[i,] = -Q.get(a, arb(0))
     for forces in some:
-        for a, choices in alternatives(forces).items():
+        for a, choices in ((left.index(k), found) for k, found in alternatives(forces).items()):
             known = values.entries[a,]
             values.entries[a,] = known - choices[0][0]
             values.others[a,] = [(known - choice, leaves_out) for choice, leaves_out in choices[1:]]
-    values.entries[len(joints),] = start
+    values.entries[len(left),] = start
     # what was found may have no value there
-    values.others[len(joints),] = []
+    values.others[len(left),] = []
     result[name] = values
 
 

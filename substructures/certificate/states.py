@@ -31,6 +31,8 @@ _BRANCHING = ("sqrt", *(f"{name}(" for name in (*BALL_FUNCTIONS, *MEASURES) if n
 _ROW = ("type", "coordinate", "psi", "theta", "d", "sigma", "phi", "tau", "placement", "axis")
 _JOINT = {*_ROW, "stiffness", "rest", "damping", "armature", "limits"}
 _LOADS = {"force", "torque", "joint", "potential", "bushing"}
+#: what is in no formula: words, and defaults, which are numbers
+_ASIDE = {"name", "title", "description", "tags", "license", "source", "poses", "left_out", "parameters", "inputs"}
 
 
 def states_needed(operations: Sequence[Operation], documents: Iterable[Plain]) -> int:
@@ -51,8 +53,17 @@ def _has_branches(document: Plain) -> bool:
     return (
         any(not body["joint"].keys() <= _JOINT for body in document.get("bodies", ()))
         or any(load["type"] not in _LOADS for load in document.get("loads", ()))
-        or any(name in text for text in _texts(document) for name in _BRANCHING)
+        or any(name in text for text in _texts(_in_formulas(document)) for name in _BRANCHING)
     )
+
+
+def _in_formulas(document: Plain) -> Plain:
+    """What formulas may depend on; definitions that instances bring along are documents of their own."""
+    found = {name: x for name, x in document.items() if name not in _ASIDE}
+    if "instances" in document:
+        rows = [{name: x for name, x in each.items() if name != "definition"} for each in document["instances"]]
+        found["instances"] = rows
+    return found
 
 
 def _texts(document: Plain) -> Iterator[str]:

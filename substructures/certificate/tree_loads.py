@@ -58,8 +58,9 @@ class TreeForces(Between):
 
     def rate(self, changes: Slopes) -> Ball:
         """What changes so changes in time."""
-        rates = self.parameters.names
-        return sum((x * rates[f"{self.bodies.joints[a].coordinate}'"] for a, x in changes.items()), arb(0))
+        names = self.parameters.names
+        joints = ((self.bodies.joints[a], x) for a, x in changes.items())
+        return sum((x * joint.slope * names[f"{joint.mover}'"] for joint, x in joints), arb(0))
 
     def add(self, law: Ball, changes: Slopes) -> None:
         """Q_a of a force on what changes."""

@@ -16,19 +16,20 @@ from substructures.certificate.bodies import (
     Frame,
     coordinates_of,
     in_order,
-    laws_of,
     limits_of,
     massless,
-    of_step,
 )
+from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.closures import ROWS, closure_outputs
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
+from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
 from substructures.certificate.potentials import gradient_instead, is_found
+from substructures.certificate.relations import Related, moved, mover, written
 from substructures.certificate.slopes import at_start
 from substructures.certificate.tree_loads import TreeForces
 from substructures.expr.operations import Output
@@ -44,7 +45,7 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
         kinds |= {f"{name}.{p}": "parameter" for p in definition.get("parameters", ()) if p not in bound}
         kinds |= {f"{name}.{i}": "input" for i in definition.get("inputs", ())}
         for body in definition.get("bodies", ()):
-            for c in coordinates_of(body):
+            for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
                 q = f"{name}.{c}"
                 kinds |= {q: "coordinate", f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
     return kinds
@@ -57,12 +58,12 @@ def tree_outputs(
     :func:`substructures.certificate.part_outputs.part_outputs`."""
     result = Outputs()
     numbers, bodies, loads, acting = built(tree, definitions, values)
-    rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    moving, second = (rates(bodies, values, mark) for mark in ("'", "''"))
     gravity, others = numbers.vector(tree.get("gravity", NONE)), beside(tree, definitions, bodies, numbers)
     carried = carried_by_joints(bodies, bodies.own)
     equations(result, bodies, carried, stored)
     forces_of = [*(x for f in acting for x in (f.applied, f.wrenches)), others.applied]
-    _forces(result, bodies, carried, gravity, _sums(forces_of), rates, second)
+    _forces(result, bodies, carried, gravity, _sums(forces_of), moving, second)
     for each in acting:
         each.bent += each.steady
     if is_found(acting):
@@ -73,13 +74,13 @@ def tree_outputs(
         gradient_instead(result, "potential_energy", acting, known, begin)
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
-    _limits(result, bodies, definitions, loads)
-    _friction(result, bodies, tree, numbers, definitions, loads)
-    _friction_load(result, bodies, definitions, loads)
+    limits(result, bodies, definitions, loads)
+    friction(result, bodies, tree, numbers, definitions, loads)
+    friction_load(result, bodies, definitions, loads)
     _kinematics(result, bodies)
     if tree.get("closures"):
-        closure_outputs(result, bodies, tree["closures"], numbers, rates)
-    return result
+        closure_outputs(result, bodies, tree["closures"], numbers, moving)
+    return of_coordinates(result, bodies)
 
 
 def built(
@@ -91,12 +92,12 @@ def built(
     loads = []
     for instance in hosts_first(tree):
         name, first = instance["name"], len(bodies.joints)
-        inside = Numbers(_names(name, definitions[name], numbers.names, values))
+        inside = Numbers(Related(definitions[name], _names(name, definitions[name], numbers.names, values)))
         bodies.add(definitions[name], inside, _seat(bodies, instance, numbers), f"{name}.")
         loads.append((name, inside, range(first, len(bodies.joints))))
     before = {forces.prefix: forces for forces in like}
     acting = [
-        forces(bodies, definitions[name], inside, joints, f"{name}.", before.get(f"{name}."))
+        forces(bodies, written(definitions[name]), inside, joints, f"{name}.", before.get(f"{name}."))
         for name, inside, joints in loads
     ]
     return numbers, bodies, loads, acting
@@ -110,15 +111,25 @@ def beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, number
 
 def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits."""
-    coordinates, kinds, frames, limited = [], "", [], []
+    coordinates: list[str] = []
+    frames: list[str] = []
+    limited: list[str] = []
+    kinds = ""
     for instance in hosts_first(tree):
-        name, definition = instance["name"], definitions[instance["name"]]
+        name, definition, first = instance["name"], definitions[instance["name"]], len(coordinates)
         bodies = in_order(definition)
         for body in bodies:
-            names = [f"{name}.{c}" for c in coordinates_of(body)]
-            coordinates += names
-            limited += [q for step, q in enumerate(names) if limits_of(body["joint"], step)]
-            kinds += "".join("P" if prismatic else "R" for prismatic, _ in CHAINS[body["joint"]["type"]])
+            own = coordinates_of(body)
+            left = [(step, c) for step, c in enumerate(own) if mover(definition, c) == c]
+            coordinates += [f"{name}.{c}" for _, c in left]
+            chain = CHAINS[body["joint"]["type"]]
+            kinds += "".join("P" if chain[step][0] else "R" for step, _ in left)
+        # of joints that move with a coordinate without moving it, none
+        bound = [
+            q for joint, step, q in _joints_of(definition) if limits_of(joint, step) and not _is_still(definition, q)
+        ]
+        known = {mover(definition, q) for q in bound}
+        limited += [q for q in coordinates[first:] if q.rpartition(".")[2] in known]
         ports = definition.get("ports", ())
         frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
     closures = [
@@ -132,6 +143,23 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         for c in tree.get("closures", ())
     ]
     return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
+
+
+def _joints_of(definition: Plain) -> Iterable[tuple[Plain, int, str]]:
+    """The joint of every coordinate, its place in the joint, its name."""
+    for body in in_order(definition):
+        for step, name in enumerate(coordinates_of(body)):
+            yield body["joint"], step, name
+
+
+def _is_still(definition: Plain, name: str) -> bool:
+    """Whether a relation holds a joint at rest: its multiplier is the number 0."""
+    relations = moved(definition)
+    while name in relations:
+        if relations[name].get("multiplier", 1) == 0:
+            return True
+        name = relations[name]["of"]
+    return False
 
 
 def hosts_first(tree: Plain) -> list[Plain]:
@@ -154,7 +182,7 @@ def _names(instance: str, definition: Plain, names: Mapping[str, Ball], values: 
     known |= {p: names[f"{instance}.{p}"] for p in definition.get("parameters", ())}
     known |= {i: values[f"{instance}.{i}"] for i in definition.get("inputs", ())}
     for body in definition.get("bodies", ()):
-        for c in coordinates_of(body):
+        for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
             q = f"{instance}.{c}"
             known |= {c: values[q], f"{c}'": values[f"{q}'"], f"tau.{c}": values[f"tau.{q}"]}
     return known
@@ -211,67 +239,6 @@ def _potential_energy(bodies: Bodies, gravity: Matrix, acting: list[Forces]) -> 
     """V = -gamma . s of the whole, -F . x of dead forces, springs, stops, potentials: all but what is found."""
     whole = sum(bodies.own.values(), massless())
     return sum((f.potential + f.dead for f in acting), -dot(gravity, whole.s))
-
-
-def _limits(
-    result: Outputs,
-    bodies: Bodies,
-    definitions: Mapping[str, Plain],
-    loads: list[tuple[str, Numbers, range]],
-) -> None:
-    """Lowest and highest value of coordinates that have limits; of trees in which one has some."""
-    n = len(bodies.joints)
-    for name, inside, joints in loads:
-        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
-            for i, limit in enumerate(limits_of(joint, step) or ()):
-                result.array("limits", (n, 2))[a, i] = inside.read(limit)
-
-
-def _friction(
-    result: Outputs,
-    bodies: Bodies,
-    tree: Plain,
-    numbers: Numbers,
-    definitions: Mapping[str, Plain],
-    loads: list[tuple[str, Numbers, range]],
-) -> None:
-    """F_c, F_s, v_s (0: none) and v_0 of coordinates that have friction, of trees in which one has some."""
-    n, index = len(bodies.joints), {joint.coordinate: a for a, joint in enumerate(bodies.joints)}
-    laws = [(index[x["coordinate"]], x, numbers) for x in _frictions(tree)]
-    for name, inside, joints in loads:
-        laws += [(index[f"{name}.{x['coordinate']}"], x, inside) for x in _frictions(definitions[name])]
-        given = zip(joints, laws_of(definitions[name]), strict=True)
-        of_joints = [(a, of_step(joint.get("friction"), step), inside) for a, (joint, step) in given]
-        laws += [each for each in of_joints if each[1] is not None]
-    for a, law, inside in laws:
-        row = {"stribeck": 0, **{field: x for field, x in law.items() if x is not None}}
-        for i, field in enumerate(("coulomb", "static", "stribeck", "velocity")):
-            result.array("friction", (n, 4))[a, i] = inside.read(row.get(field, row["coulomb"]))
-
-
-def _frictions(document: Plain) -> Iterable[Plain]:
-    """The loads of a definition or tree that are friction."""
-    return (load for load in document.get("loads", ()) if load["type"] == "friction")
-
-
-def _friction_load(
-    result: Outputs,
-    bodies: Bodies,
-    definitions: Mapping[str, Plain],
-    loads: list[tuple[str, Numbers, range]],
-) -> None:
-    """mu r and mu r_a, of prismatic joints mu and 0, of trees in which a friction has a load."""
-    n = len(bodies.joints)
-    for name, inside, joints in loads:
-        for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
-            law = (of_step(joint.get("friction"), step) or {}).get("load")
-            if law is None:
-                continue
-            mu = inside.read(law["coefficient"])
-            arm = arb(1) if bodies.joints[a].prismatic else inside.read(law["radius"])
-            result.array("friction_load", (n, 2))[a, 0] = mu * arm
-            along = law.get("axial_radius")
-            result.array("friction_load", (n, 2))[a, 1] = arb(0) if along is None else mu * inside.read(along)
 
 
 def _kinematics(result: Outputs, bodies: Bodies) -> None:

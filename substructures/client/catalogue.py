@@ -145,7 +145,7 @@ class CatalogueCaller(PictureCaller):
         return self.request("GET", f"/v1/substructures/{step(ref)}/report", params={"format": format}).text
 
     def part_picture(self, ref: str | Referable, q: Sequence[float] | None = None) -> Picture:
-        """SVG of a part, in the pose ``q`` or in one that shows its joints."""
+        """SVG of a part, in the pose ``q`` or at home."""
         return self._picture(f"/v1/substructures/{step(ref)}", q)
 
 

@@ -26,7 +26,7 @@ class PictureCaller(JobCaller):
         def text(format: str) -> str:  # noqa: A002 -- the name in the contract
             """The answer in a format."""
             answer = self.request(method, path + query({"format": format, **options}), body)
-            return self._content(answer).decode()
+            return self.content_of(answer).decode()
 
         return shown(text(format), format, lambda: text("latex"))
 

@@ -33,6 +33,7 @@ class ExchangeCaller(JobCaller):
         fmi: str = "3.0",
         precision: str = "double",
         stages: bool = False,
+        standard: str = "c99",
     ) -> httpx2.Response:
         """The answer with the files of a target: of ``kind`` trees or substructures."""
         wanted = {
@@ -45,16 +46,35 @@ class ExchangeCaller(JobCaller):
             "fmi": fmi,
             "precision": precision,
             "stages": stages,
+            "standard": standard,
         }
         return self.request("GET", f"/v1/{step(kind)}/{step(ref)}/export" + query(wanted))
 
     def export_files(self, kind: str, ref: str | Referable, target: str, **options: Any) -> bytes:
         """The file of a target, or a zip of several, as :meth:`export`; waits where it becomes a job."""
-        return self._content(self.export(kind, ref, target, **options))
+        return self.content_of(self.export(kind, ref, target, **options))
+
+    def module(self, kind: str, ref: str | Referable, quantities: Sequence[str] = ()) -> bytes:
+        """Quantities of one of ``trees`` or ``substructures`` as a module of WebAssembly."""
+        names = query({"quantities": ",".join(quantities) or None})
+        return self.request("GET", f"/v1/{kind}/{step(ref)}/program.wasm{names}").content
+
+    def module_layout(self, kind: str, ref: str | Referable, quantities: Sequence[str] = ()) -> Answer:
+        """What stands where in the memory of a module, and how its functions are called."""
+        names = query({"quantities": ",".join(quantities) or None})
+        return self.told("GET", f"/v1/{kind}/{step(ref)}/program.json{names}")
+
+    def origins(self, kind: str, ref: str | Referable) -> Answer:
+        """The bodies and symbols that every entry of metric, Christoffel symbols and forces comes from."""
+        return self.told("GET", f"/v1/{kind}/{step(ref)}/origins")
+
+    def scene(self, kind: str, ref: str | Referable) -> Answer:
+        """What there is to draw: ``frames, joints, bodies, loads, closures, gravity, sphere, poses``."""
+        return self.told("GET", f"/v1/{kind}/{step(ref)}/scene")
 
     def import_file(self, content: bytes | Path, **options: Any) -> Answer:
         """A robot file as a definition, or as a tree, with a report; ``options``: ``kind, name, file, license,
-        parameters, fixed, base, cut, store``.
+        parameters, fixed, base, cut, preview, store``.
         """
         if isinstance(content, Path):
             options, content = {"file": content.name, **options}, content.read_bytes()

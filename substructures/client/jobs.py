@@ -133,7 +133,7 @@ class JobCaller(Caller):
         return self._job(self.told("GET", f"/v1/jobs/{step(job)}"))
 
     def jobs(self, **filters: str) -> Iterator[Job]:
-        """All jobs (of a ``state``, of a ``kind``), the newest first."""
+        """All jobs (of a ``state``, of a ``kind``, with a ``label``), the newest first."""
         return self._pages("/v1/jobs", filters, self._job)
 
     def job_items(self, job: str | Referable, **filters: str) -> Iterator[Answer]:
@@ -266,7 +266,7 @@ class JobCaller(Caller):
         require_result(item)
         return item
 
-    def _content(self, answer: httpx2.Response) -> bytes:
+    def content_of(self, answer: httpx2.Response) -> bytes:
         """What was answered, also where it took so long that it became a job of one item with a file."""
         if answer.status_code != 202:
             return answer.content

@@ -85,6 +85,14 @@ class TreeCaller(CatalogueCaller):
         """Let a load act no more; the new revision."""
         return self.tree_of(self._made("DELETE", f"/v1/trees/{step(tree)}/loads/{step(load)}"))
 
+    def close_loop(self, tree: str | Referable, closure: Any) -> Tree:
+        """Close one more loop of a tree; the new revision."""
+        return self.tree_of(self._made("POST", f"/v1/trees/{step(tree)}/closures", closure))
+
+    def open_loop(self, tree: str | Referable, closure: str) -> Tree:
+        """Cut a loop of a tree open; the new revision."""
+        return self.tree_of(self._made("DELETE", f"/v1/trees/{step(tree)}/closures/{step(closure)}"))
+
     def tree_difference(self, a: str | Referable, b: str | Referable) -> Answer:
         """What changed from one revision to another, also of two trees; ``words`` say it."""
         to = b if isinstance(b, str) else b.ref
@@ -107,7 +115,7 @@ class TreeCaller(CatalogueCaller):
         return self.request("GET", f"/v1/trees/{step(tree)}/report", params={"format": format}).text
 
     def tree_picture(self, tree: str | Referable, q: Sequence[float] | None = None) -> Picture:
-        """SVG of a tree, in the pose ``q`` or in one that shows its joints."""
+        """SVG of a tree, in the pose ``q`` or at home."""
         return self._picture(f"/v1/trees/{step(tree)}", q)
 
     def formula(

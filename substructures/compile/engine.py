@@ -126,11 +126,15 @@ _runtimes: dict[int, VectorRuntime] = {}
 def shared_runtime(width: int, folder: Path | None = None) -> VectorRuntime:
     """Compiled, or taken from the folder, once in a process."""
     if width not in _runtimes:
-        text = runtime(width)
-        wanted = cache.key(text, (), target.host().identity) if folder is not None else ""
-        found = cache.read(folder, wanted) if folder is not None else None
-        code = found[1] if found is not None else target.assemble(text)
-        if folder is not None and found is None:
-            cache.write(folder, wanted, None, code)
-        _runtimes[width] = VectorRuntime.of(code, width)
+        _runtimes[width] = VectorRuntime.of(assembled(runtime(width), folder), width)
     return _runtimes[width]
+
+
+def assembled(text: str, folder: Path | None = None) -> bytes:
+    """Object code of a module, which is kept in the folder. Raises RuntimeError."""
+    wanted = cache.key(text, (), target.host().identity) if folder is not None else ""
+    found = cache.read(folder, wanted) if folder is not None else None
+    code = found[1] if found is not None else target.assemble(text)
+    if folder is not None and found is None:
+        cache.write(folder, wanted, None, code)
+    return code

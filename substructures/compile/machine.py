@@ -123,7 +123,7 @@ class MachineKernel(Kernel):
 
     def _bound(self, request: KernelCall) -> Callable[[], None]:
         job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
-        return _Bound((self, job, request), self.runtime.call, self._prepared(job), job.counter)
+        return BoundCall((self, job, request), self.runtime.call, self._prepared(job), job.counter)
 
     def _job(
         self,
@@ -218,8 +218,8 @@ class MachineKernel(Kernel):
         return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group, n_results))
 
 
-class _Bound:
-    """A prepared call."""
+class BoundCall:
+    """A prepared call; ``context``: what the driver is called with."""
 
     def __init__(
         self, alive: Any, call: Callable[[Any], None], prepared: _Prepared, counter: ctypes.Array[ctypes.c_int64]
@@ -228,5 +228,6 @@ class _Bound:
         self.context = WORDS(*prepared.words)
 
     def __call__(self) -> None:
+        """Once more."""
         self.counter[0] = 0
         self.call(self.context)

@@ -41,7 +41,10 @@ class Document(DocumentPart):
 
     @cached_property
     def _canonical(self) -> bytes:
-        return write_json(self.model_dump(exclude_defaults=True, by_alias=True))
+        return write_json(self._given())
+
+    def _given(self) -> dict[str, Any]:
+        return self.model_dump(exclude_defaults=True, by_alias=True)
 
     def canonical(self) -> bytes:
         """Canonical bytes of what was given: RFC 8785, numbers as their decimal text, defaults left out."""

@@ -35,7 +35,7 @@ _SI: dict[str, tuple[int, int, int, int]] = {
     "Nm": (2, 1, -2, 0), "J": (2, 1, -2, 0), "W": (2, 1, -3, 0), "Pa": (-1, 1, -2, 0), "N/m": (0, 1, -2, 0),
     "N/m^2": (-1, 1, -2, 0), "N s/m": (0, 1, -1, 0), "kg/s": (0, 1, -1, 0), "N m/rad": (2, 1, -2, -1),
     "Nm/rad": (2, 1, -2, -1), "N m s/rad": (2, 1, -1, -1), "Nms/rad": (2, 1, -1, -1), "N/rad": (1, 1, -2, -1),
-    "N m s/rad^2": (2, 1, -1, -2), "N s/m^2": (-1, 1, -1, 0),
+    "N m s/rad^2": (2, 1, -1, -2), "N s/m^2": (-1, 1, -1, 0), "m/rad": (1, 0, 0, -1), "rad/m": (-1, 0, 0, 1),
 }  # fmt: skip
 #: other units that may have been meant by one that is not known
 _USUAL = ("mm", "cm", "km", "inch", "g", "t", "ms", "min", "deg", "deg/s", "rpm", "kN", "N mm", "bar", "N/mm")

@@ -10,15 +10,16 @@ from substructures.export.render import definitions
 from substructures.export.software import SOFTWARE
 
 
-def c_core(exported: Exported, limit: int) -> dict[str, bytes]:
-    """``NAME.h`` and ``NAME.c``. Raises TooLarge for more than ``limit`` nodes."""
-    guard, about = f"{exported.name.upper()}_H", c.head_of(exported, SOFTWARE)
+def c_core(exported: Exported, limit: int, stem: str = "") -> dict[str, bytes]:
+    """``NAME.h`` and ``NAME.c``, or files of another stem. Raises TooLarge for more than ``limit`` nodes."""
+    stem = stem or exported.name
+    guard, about = f"{stem.upper()}_H", c.head_of(exported, SOFTWARE)
+    functions = definitions(exported, C, limit)
     header = [*about, f"#ifndef {guard}", f"#define {guard}", "#ifdef __cplusplus", 'extern "C" {', "#endif", ""]
-    header += [*c.declarations(exported), "", "#ifdef __cplusplus", "}", "#endif", "#endif", ""]
-    lines = c.source(exported, definitions(exported, C, limit))
-    text = [about[0], "", f'#include "{exported.name}.h"', "", *lines, ""]
-    found = {f"{exported.name}.h": "\n".join(header), f"{exported.name}.c": "\n".join(text)}
-    return {name: each.encode() for name, each in found.items()}
+    header += [*c.declarations(exported, functions), "", "#ifdef __cplusplus", "}", "#endif", "#endif", ""]
+    text = [about[0], "", f'#include "{stem}.h"', "", *c.source(exported, functions), ""]
+    found = {f"{stem}.h": header, f"{stem}.c": text}
+    return {name: c.as_standard(exported, lines).encode() for name, lines in found.items()}
 
 
 def c_files(exported: Exported, limit: int) -> dict[str, bytes]:

@@ -53,13 +53,35 @@ def casadi(exported: Exported, limit: int) -> str:
     name = f"{exported.name}_core"
     for function in exported.functions:
         values, jacobians = _programs(function)
-        changed.append(Changed(function.quantity, values, function.interface, function, packed=function.packed))
+        changed.append(
+            Changed(
+                function.quantity,
+                values,
+                function.interface,
+                function,
+                packed=function.packed,
+                glossary=function.glossary,
+            )
+        )
         changed.append(Changed(f"jac_{function.quantity}", jacobians, function.interface, function))
         core = Exported(name, exported.interface, tuple(changed), exported.form)
         of, slope = (core.called(each) for each in changed[-2:])
         lines += _externals(function, exported, of, slope)
     core = Exported(name, exported.interface, tuple(changed), exported.form)
-    return "\n".join([text_of(core, C, limit), *_OPENING, *lines])
+    return "\n".join([*_use(exported), text_of(core, C, limit), *_OPENING, *lines])
+
+
+def _use(exported: Exported) -> list[str]:
+    """How the file is used: a command that compiles it, and Python."""
+    name, function = exported.name, exported.functions[0]
+    called, given = exported.called(function), ", ".join(function.arguments)
+    return [
+        "// External functions for CasADi, with their Jacobians. Compile, then load each by its name:",
+        f"//   cc -O2 -shared -fPIC -o {name}_casadi.so {name}_casadi.c -lm",
+        f'//   {called} = casadi.external("{called}", "./{name}_casadi.so")',
+        f"//   {called}({given}) takes numbers or symbols; casadi.jacobian of it has its own formulas.",
+        "//",
+    ]
 
 
 def _externals(function: Function, exported: Exported, of: str, slope: str) -> list[str]:

@@ -17,13 +17,17 @@ from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
+from substructures.printers.meanings import LETTERS, Label, meanings
+from substructures.printers.meanings import OUTPUTS as LETTERS_OF_OUTPUTS
 from substructures.printers.symmetry import symmetry_rule
+from substructures.quantities.numbers.warnings import not_judged_warnings
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
-from substructures.quantities.warnings import not_judged_warnings
 from substructures.tree.model import require_stored
 
 ALL = "all"
+#: operations of a program that names are looked for in
+MOST_NAMED = 20_000
 #: puts numbers into a program
 Bind = Callable[[Program], Program]
 _NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]{0,31}", re.ASCII)
@@ -43,7 +47,8 @@ _WORDS = (
     "typename uint union unless unsafe unsigned until use using value vector virtual void volatile when where",
     "while with within write xor yield numpy np sympy std core e i t q qd qdd u p x w",
 )
-_KEYWORDS = frozenset(word for line in _WORDS for word in line.split())
+#: names that functions cannot have
+KEYWORDS = frozenset(word for line in _WORDS for word in line.split())
 
 
 def check_name(name: str) -> str:
@@ -51,7 +56,7 @@ def check_name(name: str) -> str:
     if not _NAME.fullmatch(name):
         message = f"{name[:40]!r} is no identifier: a letter, then at most 31 letters, digits and _"
         raise InvalidArgument.at("/name", "bad-name", message)
-    if name.lower() in _KEYWORDS:
+    if name.lower() in KEYWORDS:
         message = f"'{name}' is a word of one of the target languages; take another, such as 'my_{name}'"
         raise InvalidArgument.at("/name", "reserved-name", message)
     return name
@@ -65,12 +70,22 @@ def identifier_of(text: str) -> str:
 
 @dataclass(frozen=True)
 class Function:
-    """A quantity as a function: its outputs are those of the program; ``packed``: what stands where in packed ones."""
+    """A quantity as a function: its outputs are those of the program; ``packed``: what stands where in packed ones;
+    ``glossary``: what intermediate values are called (:mod:`substructures.tree.glossary`)."""
 
     quantity: str
     program: Program
     interface: Interface
     packed: Indices = field(default_factory=dict, kw_only=True)
+    glossary: Program | None = field(default=None, kw_only=True, repr=False)
+
+    @cached_property
+    def steps(self) -> Mapping[int, Label]:
+        """Operations that are quantities of mechanics, but for the elements of its own outputs."""
+        if self.glossary is None or len(self.program.operations) > MOST_NAMED:
+            return {}
+        found, outputs = meanings(self.program, self.glossary).items(), self.program.outputs
+        return {i: x for i, x in found if not x.is_negative and LETTERS_OF_OUTPUTS.get(x.key) not in outputs}
 
     @cached_property
     def further(self) -> Vector:
@@ -120,8 +135,8 @@ class Function:
 
 @dataclass(frozen=True)
 class Exported:
-    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``warnings``
-    (pointer, code, message): what those who use them must know.
+    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``standard``: of
+    C, c99 or c89; ``warnings`` (pointer, code, message): what those who use them must know.
     """
 
     name: str
@@ -129,6 +144,7 @@ class Exported:
     functions: tuple[Function, ...]
     form: str = "compact"
     precision: str = "double"
+    standard: str = "c99"
     warnings: tuple[Mapping[str, str], ...] = ()
 
     @property
@@ -140,6 +156,13 @@ class Exported:
         """The name of a function: the prefix, then its quantity."""
         suffix = identifier_of(function.quantity) or f"f{self.functions.index(function)}"
         return f"{self.name}_{suffix}"
+
+    @property
+    def legend(self) -> list[str]:
+        """What the letters of intermediate values mean."""
+        used = {label.key for each in self.functions for label in each.steps.values()}
+        said = [f"{key.partition('.')[0]}: {text}" for key, text in LETTERS.items() if key in used]
+        return ["Values within, of joints numbered from 1 in the order of the coordinates:", *said] if said else []
 
     @cached_property
     def symbols(self) -> tuple[str, ...]:
@@ -174,16 +197,21 @@ def exported_model(
     bind: Any = None,
     together: bool = False,
     packed: bool = False,
+    glossary: Program | None = None,
+    others: Mapping[str, Callable[[], Program]] | None = None,
 ) -> Exported:
     """Quantities of a model as functions ``name_quantity``; ``bind``: what puts numbers into a program;
     ``together``: also ``name_all``, in which they share their subexpressions; ``packed``: of the metric and of the
-    Christoffel symbols the independent elements alone (:mod:`substructures.formats.packing`).
+    Christoffel symbols the independent elements alone (:mod:`substructures.formats.packing`); ``glossary``: what
+    intermediate values are called (:mod:`substructures.tree.glossary`); ``others``: what makes the formulas of
+    quantities that follow from the model by an analysis.
 
     Raises InvalidArgument for unknown quantities and bad names, TooLarge, InvalidDocument for what is not stored.
     """
     check_name(name)
-    programs = {q: quantity_program(sources, q) for q in dict.fromkeys(quantities)}
-    return _exported(programs, interface, name, bind, together, packed)
+    made = others or {}
+    programs = {q: made[q]() if q in made else quantity_program(sources, q) for q in dict.fromkeys(quantities)}
+    return _exported(programs, interface, name, bind, together, packed, glossary)
 
 
 def exported_part(
@@ -194,6 +222,7 @@ def exported_part(
     bind: Bind | None = None,
     together: bool = False,
     packed: bool = False,
+    glossary: Program | None = None,
 ) -> Exported:
     """Quantities of a part as it stands alone, nothing mounted on it. Arguments and errors as of exported_model."""
     check_name(name)
@@ -203,18 +232,28 @@ def exported_part(
             message = f"there is no quantity '{quantity[:80]}'{among(quantity, known)}"
             raise InvalidArgument.at("/quantities", "unknown-quantity", message)
     programs = {q: with_own_inertia(part, part.program.select([q])) for q in dict.fromkeys(quantities)}
-    return _exported(programs, interface, name, bind, together, packed)
+    return _exported(programs, interface, name, bind, together, packed, glossary)
 
 
 def _exported(
-    programs: Mapping[str, Program], interface: Interface, name: str, bind: Bind | None, together: bool, pack: bool
+    programs: Mapping[str, Program],
+    interface: Interface,
+    name: str,
+    bind: Bind | None,
+    together: bool,
+    pack: bool,
+    glossary: Program | None,
 ) -> Exported:
+    if glossary is not None and bind is not None:
+        glossary = bind(glossary)
     bound = {q: each if bind is None else bind(each) for q, each in programs.items()}
     made = {q: hoisted(each) for q, each in bound.items()}
     if together:
         made[ALL] = hoisted(joined(list(bound.values())))
     outputs = {q: packed(each) if pack else (each, {}) for q, each in made.items()}
-    functions = tuple(Function(q, each, interface, packed=table) for q, (each, table) in outputs.items())
+    functions = tuple(
+        Function(q, each, interface, packed=table, glossary=glossary) for q, (each, table) in outputs.items()
+    )
     for each in functions:
         each.require_signature()
     warnings = not_judged_warnings(q for q, each in bound.items() if each.not_judged)
@@ -236,10 +275,16 @@ def quantity_program(sources: Sources, quantity: str) -> Program:
 
 
 def joined(programs: Sequence[Program]) -> Program:
-    """One program with the outputs of all, which share what they have in common."""
+    """One program with the outputs of all, which share what they have in common. Raises InvalidArgument where two have
+    an output of one name that is not the same."""
     graph = Graph()
     symbols = {s.name: s for each in programs for s in each.symbols}
     outputs: Mapping[str, Any] = {}
     for each in programs:
-        outputs = {**outputs, **replay(each, graph, {})}
+        found = replay(each, graph, {})
+        for name in outputs.keys() & found.keys():
+            if outputs[name].entries != found[name].entries:
+                message = f"'{name[:80]}' is another array in each of two quantities: ask for these one by one"
+                raise InvalidArgument.at("/together", "two-outputs", message)
+        outputs = {**outputs, **found}
     return program(graph, outputs, symbols)

@@ -21,7 +21,7 @@ def packed(given: Program) -> tuple[Program, Indices]:
     where in these."""
     graph = Graph()
     tables = {
-        name: packed_indices(name, array.shape[0])
+        name: packed_indices(name, array.shape[0], array.symmetry)
         for name, array in given.outputs.items()
         if name in RANKS and len(array.shape) == RANKS[name]
     }

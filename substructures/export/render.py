@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from math import prod
 
 from substructures.display import shown
@@ -111,6 +112,8 @@ def render(
 
 def text_of(exported: Exported, language: type[Code], limit: int) -> str:
     """All functions in one file. Raises TooLarge, ZeroDivisionError when there is no expanded form."""
+    if not language.has_steps:
+        exported = replace(exported, functions=tuple(replace(each, glossary=None) for each in exported.functions))
     return language.file(exported, definitions(exported, language, limit), SOFTWARE)
 
 
@@ -124,5 +127,5 @@ def definitions(exported: Exported, language: type[Code], limit: int) -> list[li
             if prod(output.shape) > MAX_ELEMENTS:
                 raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
         code = language(function, exported)
-        found.append(code.define(listing(function.program, code, limit)))
+        found.append(code.with_steps(code.define(listing(function.program, code, limit))))
     return found

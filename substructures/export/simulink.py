@@ -2,7 +2,8 @@
 
 Continuous states are the coordinates and velocities; the input port takes the inputs of the tree, output ports give the
 state, then every other quantity with its elements in MATLAB's order, so that ``reshape(y, size)`` is the array. Two
-parameters of the block: those of the mechanism and the initial state, each ``[]`` for its defaults. (MathWorks,
+parameters of the block: those of the mechanism, ``NAME_parameters(s)`` of a structure, and the initial state, each
+``[]`` for its defaults. (MathWorks,
 Developing S-Functions: ``simstruc.h``.)
 """
 
@@ -16,6 +17,7 @@ from substructures.errors import InvalidArgument
 from substructures.export.c_files import c_core
 from substructures.export.exported import Exported, Function
 from substructures.export.languages.c import head_of
+from substructures.export.languages.matlab import structures
 from substructures.export.software import SOFTWARE
 from substructures.expr.operations import flat
 
@@ -27,8 +29,13 @@ def simulink(exported: Exported, limit: int) -> dict[str, bytes]:
     """The files. Raises InvalidArgument without the accelerations of a tree, TooLarge."""
     name = exported.name
     text = "\n".join([*head_of(exported, SOFTWARE), _STAND_IN, "", *_source(exported), ""])
-    build = f"% builds the S-function {name}_sfun\nmex {name}_sfun.c {name}.c\n"
-    return c_core(exported, limit) | {f"{name}_sfun.c": text.encode(), f"{name}_build.m": build.encode()}
+    named = {file: text.encode() for file, text in structures(exported).items() if file.endswith("_parameters.m")}
+    build = f"% builds the S-function {name}_sfun\nmex {name}_sfun.c {name}_simulink.c\n"
+    return c_core(exported, limit, f"{name}_simulink") | {
+        f"{name}_sfun.c": text.encode(),
+        f"{name}_build.m": build.encode(),
+        **named,
+    }
 
 
 def _source(exported: Exported) -> list[str]:
@@ -45,7 +52,7 @@ def _source(exported: Exported) -> list[str]:
     widths = [prod(o.shape) for each in others for o in each.program.outputs.values()]
     n, inputs, p = (len(exported.interface.vectors[symbol]) for symbol in ("q", "u", "p"))
     lines = [f"#define S_FUNCTION_NAME {name}_sfun", "#define S_FUNCTION_LEVEL 2", ""]
-    lines += ['#include "simstruc.h"', f'#include "{name}.h"', "", "#include <string.h>", ""]
+    lines += ['#include "simstruc.h"', f'#include "{name}_simulink.h"', "", "#include <string.h>", ""]
     lines += [f"enum {{ NQ = {n}, NU = {inputs}, NP = {p}, PORTS = {1 + len(widths)} }};", ""]
     lines += [line.replace("DEFAULTS", f"{name}_defaults") for line in _SIZES]
     for k, width in enumerate([2 * n, *widths]):

@@ -12,7 +12,7 @@ from typing import Any
 from substructures.export.interface import TIME, Interface, Vector
 from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
-from substructures.quantities.states import default_number, input_defaults
+from substructures.quantities.numbers.states import default_number, input_defaults
 from substructures.tree.model import EFFORTS, Model
 
 _RATES = {"q": ("", "rad", "m"), "qd": ("'", "rad/s", "m/s"), "qdd": ("''", "rad/s^2", "m/s^2")}

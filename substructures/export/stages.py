@@ -32,7 +32,7 @@ def staged(exported: Exported) -> Exported:
     prepared = program(graph, {"w": Formulas((len(place),), {(k,): x for x, k in place.items()})}, symbols)
     work = Vector(WORK, tuple(map(_name, range(len(place)))), ("",) * len(place))
     interface = replace(exported.interface, vectors={**exported.interface.vectors, WORK: work})
-    functions = [Function(PREPARE, prepared, interface)]
+    functions = [Function(PREPARE, prepared, interface, glossary=exported.functions[0].glossary)]
     for function, known in zip(exported.functions, names, strict=True):
         functions.append(replace(function, program=_without(function.program, known), interface=interface))
     return replace(exported, interface=interface, functions=tuple(functions))

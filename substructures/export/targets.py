@@ -13,9 +13,11 @@ from substructures.export.c_files import c_files
 from substructures.export.casadi import casadi
 from substructures.export.exported import Exported
 from substructures.export.fmu import fmu
+from substructures.export.kits import KITS, kit
 from substructures.export.languages.c import C
 from substructures.export.languages.code import Code
 from substructures.export.languages.cuda import Cuda
+from substructures.export.languages.matlab import structures
 from substructures.export.reference import reference
 from substructures.export.render import LANGUAGES, definitions, text_of
 from substructures.export.simulink import simulink
@@ -42,7 +44,8 @@ def files(exported: Exported, target: str, limit: int) -> Files:
     if target not in TARGETS:
         message = f"{target[:40]!r} is not one of {', '.join(TARGETS)}{meant(target, TARGETS)}"
         raise InvalidArgument.at("/target", "unknown-target", message)
-    return TARGETS[target].make(exported, limit)
+    made = TARGETS[target].make(exported, limit)
+    return made | kit(exported, target, next(iter(made))) if target in KITS else made
 
 
 def _interface(exported: Exported, _: int) -> Files:
@@ -53,7 +56,7 @@ def _interface(exported: Exported, _: int) -> Files:
 def _one_file(language: type[Code]) -> Target:
     def make(exported: Exported, limit: int) -> Files:
         """All functions in one file, and the self-test."""
-        made = {f"{exported.name}{language.suffix}": text_of(exported, language, limit)}
+        made = {f"{exported.name}{language.stem}{language.suffix}": text_of(exported, language, limit)}
         made |= language.selftest(exported, reference(exported))
         return {name: text.encode() for name, text in made.items()}
 
@@ -67,7 +70,7 @@ def _function_files(exported: Exported, limit: int) -> Files:
     for function, lines in zip(exported.functions, definitions(exported, matlab, limit), strict=True):
         alone = Exported(exported.name, exported.interface, (function,), exported.form)
         found[f"{exported.called(function)}.m"] = matlab.file(alone, [lines], SOFTWARE)
-    found |= matlab.selftest(exported, reference(exported))
+    found |= matlab.selftest(exported, reference(exported)) | structures(exported)
     return {name: text.encode() for name, text in found.items()}
 
 
@@ -84,7 +87,7 @@ def _javascript(exported: Exported, _: int) -> Files:
 
 
 def _casadi(exported: Exported, limit: int) -> Files:
-    return {f"{exported.name}.c": casadi(exported, limit).encode()}
+    return {f"{exported.name}_casadi.c": casadi(exported, limit).encode()}
 
 
 def _fmu(version: str) -> Callable[[Exported, int], Files]:

@@ -23,7 +23,7 @@ def written(format_: str, suffix: str, exported: Exported, limit: int, commented
     found = {}
     for function in exported.functions:
         called = exported.called(function)
-        alone = replace(exported, functions=(function,))
+        alone = replace(exported, functions=(replace(function, glossary=None),))
         about = "\n".join(map(commented, head(alone, 1, SOFTWARE)))
         first, line, rest = write(function.program, format_, FORMS[0], called, limit).partition("\n")
         declared = first + line if first.startswith("<?xml") else ""

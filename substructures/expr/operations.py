@@ -23,7 +23,7 @@ ARITHMETIC = ("add", "sub", "mul", "div", "powi")
 #: kinds of symbols that are the same in all states
 CONSTANT = ("parameter", "inertia")
 KINDS = ("coordinate", "velocity", "acceleration", "parameter", "inertia", "input", "time")
-SYMMETRIES = ("none", "symmetric", "christoffel")
+SYMMETRIES = ("none", "symmetric", "christoffel", "connection")
 #: elements that one output may have
 MAX_ELEMENTS = 10_000_000
 
@@ -46,6 +46,8 @@ class Output:
     All other elements follow from the symmetry or are zero:
     ``symmetric``: x[a, b] = x[b, a];
     ``christoffel``: entries have a < c, b <= c on a path; x[a, b, c] = x[a, c, b]; x[c, b, a] = -x[a, b, c] for b <= a.
+    ``connection``: Christoffel symbols where coordinates depend on each other; entries have b <= c; x[a, b, c] =
+    x[a, c, b].
     """
 
     shape: tuple[int, ...]
@@ -65,9 +67,11 @@ def images(index: tuple[int, ...], symmetry: str) -> Sequence[tuple[tuple[int, .
     if symmetry == "symmetric":
         a, b = index
         return ((index, 1), ((b, a), 1)) if a != b else ((index, 1),)
-    if symmetry != "christoffel":
+    if symmetry not in ("christoffel", "connection"):
         return ((index, 1),)
     a, b, c = index
+    if symmetry == "connection":
+        return ((index, 1), ((a, c, b), 1)) if b != c else ((index, 1),)
     found = [(index, 1)]
     if b != c:
         found.append(((a, c, b), 1))
@@ -145,7 +149,7 @@ def _read_output(name: str, document: Any, size: int) -> Output:
 
 
 def _fits(symmetry: str, shape: tuple[int, ...]) -> bool:
-    rank = {"symmetric": 2, "christoffel": 3}.get(symmetry)
+    rank = {"symmetric": 2, "christoffel": 3, "connection": 3}.get(symmetry)
     return rank is None or (len(shape) == rank and len(set(shape)) == 1)
 
 

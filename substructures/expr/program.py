@@ -179,6 +179,10 @@ class Program:
 
     def totals(self) -> dict[str, int]:
         """``count([name])["total"]`` of every output, in one pass."""
+        return dict(self._totals)
+
+    @cached_property
+    def _totals(self) -> dict[str, int]:
         return dict(zip(self.outputs, self.totals_of([o.entries for o in self.outputs.values()]), strict=True))
 
     def totals_of(self, groups: Sequence[Sequence[int]]) -> list[int]:

@@ -13,6 +13,7 @@ as_part, names      a robot as the definition of a substructure; names of files 
 report              remarks with their lines; what is lost is kept in definitions as ``left_out``
 cut                 a robot that is cut at named links as several definitions and a tree
 equivalence         whether two models are the same; ``culprits``: which body and parameter is not
+symbolic            SymPy in and out: expressions, equations, systems of bodies and joints
 xml, numbers        elements with their lines and exact numbers; ``rotations`` and inertias as doubles
 ==================  ================================================================================================
 """

@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
+from substructures.interchange.bindings import relations_of
 from substructures.interchange.merge import Seat, minus, plus, together
 from substructures.interchange.names import Names, library_name, title_of
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
@@ -53,6 +54,7 @@ class PartOfFile:
     bindings: list[dict[str, Any]]
     coordinates: dict[str, str]  #: of every motion
     loop_ports: list[tuple[str, str | None]]  #: of every loop the ports of its ends, None: the world
+    unbound: tuple[Mimic, ...] = ()  #: bindings that are no relations
 
 
 def as_part(robot: Robot, options: Options = Options(), name: str | None = None) -> PartOfFile:
@@ -98,6 +100,7 @@ class _Builder:
             first = list(self.bodies.values())[MAX_BODIES]
             message = f"{len(self.bodies)} bodies; a part has at most {MAX_BODIES}: cut it into several (cut=LINK)"
             raise refuse(first.place, "too-many-bodies", message)
+        relations, left = relations_of(self.robot.mimics, self.joints.given, self.robot.report)
         self.symbols = Names(self.joints.given.values())
         self.symbols_taken()
         document: dict[str, Any] = {
@@ -107,14 +110,16 @@ class _Builder:
             "ports": self.ports[:MAX_PORTS],
             "loads": self.loads,
             "parameters": self.parameters,
-            "left_out": [mimic.left_out(self.joints.given) for mimic in self.robot.mimics],
+            "relations": relations,
+            "left_out": [mimic.left_out(self.joints.given) for mimic in left],
         }
         return PartOfFile(
             {key: x for key, x in document.items() if x},
             {**self.links.given, **self._joint_names()},
-            [self._binding(m) for m in self.robot.mimics if {m.joint, m.of} <= self.joints.given.keys()],
+            [self._binding(m) for m in left if {m.joint, m.of} <= self.joints.given.keys()],
             self.joints.given,
             loop_ports,
+            tuple(left),
         )
 
     def _joint_names(self) -> dict[str, str]:

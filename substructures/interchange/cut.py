@@ -149,8 +149,9 @@ def _names(instances: Mapping[str, str], parts: Mapping[str, PartOfFile]) -> dic
 
 
 def _bindings(robot: Robot, instances: Mapping[str, str], parts: Mapping[str, PartOfFile]) -> list[dict[str, Any]]:
-    """Mimic joints, also between parts."""
+    """Mimic joints between parts, and others that are no relations."""
     names: dict[str, str] = {}
     for piece, part in parts.items():
         names |= {motion: f"{instances[piece]}.{name}" for motion, name in part.coordinates.items()}
-    return [m.plain(names[m.joint], names[m.of]) for m in robot.mimics]
+    left = [mimic for part in parts.values() for mimic in part.unbound]
+    return [m.plain(names[m.joint], names[m.of]) for m in robot.mimics if m in left]

@@ -28,7 +28,7 @@ class Imported:
     it was cut, a part for every link that was named, mounted on the others.
 
     ``report``: remarks with place and level; ``checks``: of form, topology and physics, whether there are warnings;
-    ``names``: what was called otherwise in the file; ``bindings``: of coordinates, by mimic joints; ``gravity``: of the
+    ``names``: what was called otherwise in the file; ``bindings``: those that are no relations; ``gravity``: of the
     file, which trees have, and parts have not.
     """
 

@@ -13,9 +13,9 @@ from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.part.definition import Definition
 from substructures.part.part import Part
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.regressor import RegressorModel, regressor
-from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, couple
 

@@ -59,6 +59,8 @@ class Names(ABC):
     """The names of expressions, the frames and the coordinates (``coordinates``: index by name)."""
 
     coordinates: Mapping[str, int]
+    #: of joints that move with another one: the coordinate that moves them, and their index
+    moved: Mapping[str, tuple[str, int]] = {}
 
     def __init__(self, scope: Scope) -> None:
         self.scope = scope
@@ -148,7 +150,7 @@ class Names(ABC):
 
     def coordinate(self, name: str, pointer: str) -> int | None:
         """The index of a coordinate; a fault, and None, where there is none."""
-        a = self.coordinates.get(name)
+        a = self.moved[name][1] if name in self.moved else self.coordinates.get(name)
         if a is None:
             like = meant(name, self.coordinates) if len(self.scope.faults) < SOUGHT else ""
             message = f"unknown coordinate '{name}'; there are {listed(self.coordinates) or 'none'}{like}"
@@ -157,7 +159,8 @@ class Names(ABC):
 
     def moves(self, name: str) -> bool:
         """Whether it is a coordinate, a velocity or a measure."""
-        return name.removesuffix("'") in self.coordinates or measured(name) is not None
+        coordinate = name.removesuffix("'")
+        return coordinate in self.coordinates or coordinate in self.moved or measured(name) is not None
 
     def is_steady(self, *values: Any) -> bool:
         """Whether numbers or expressions name parameters, inputs and the time alone, nothing that moves."""

@@ -42,7 +42,9 @@ class PotentialLoad(Load):
                 names.scope.fault(place, "velocity-in-potential", message)
         found = {name: names.measure(name, place) for name in used if measured(name) is not None}
         measures = {name: each for name, each in found.items() if each is not None}
-        return None if len(names.scope.faults) > before else PotentialLaw(place, energy, used, measures)
+        # d/dq of a joint that moves with another one is that by the other's coordinate
+        movers = sorted({names.moved[name][0] if name in names.moved else name for name in used})
+        return None if len(names.scope.faults) > before else PotentialLaw(place, energy, movers, measures)
 
 
 class TreePotential(OfTree, PotentialLoad):

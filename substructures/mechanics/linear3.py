@@ -14,10 +14,10 @@ class Scalar(Protocol):
     """What the mechanics computes with: anything that can be added, subtracted, multiplied and negated.
 
     An :class:`~substructures.expr.graph.Expr`, a float, a numpy array (all states at once), the array scalars of
-    :mod:`substructures.quantities.array_scalars`. Each kind takes the integers of the formulas (0, 1, 2) on either side
-    and, as the result of a product, the integer 0 may stand for it: zeros and ones need no kind of their own, and 0
-    and 1 of a frame or an axis fold away. Two kinds other than integers need not go together (a formula takes no
-    float), which is why operands are not checked here: a run is over one kind.
+    :mod:`substructures.quantities.numbers.array_scalars`. Each kind takes the integers of the formulas (0, 1, 2) on
+    either side and, as the result of a product, the integer 0 may stand for it: zeros and ones need no kind of their
+    own, and 0 and 1 of a frame or an axis fold away. Two kinds other than integers need not go together (a formula
+    takes no float), which is why operands are not checked here: a run is over one kind.
     """
 
     def __add__(self, other: Any, /) -> Scalar:

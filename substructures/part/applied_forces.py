@@ -50,9 +50,10 @@ def read_loads(m: Mechanism) -> Loads:
 
 
 def velocity(m: Mechanism, a: int) -> Expr:
-    """The symbol of q'^a."""
-    joint = m.topology.joints[a]
-    return m.scope.declare(f"{joint.coordinate}'", "velocity", "m/s" if joint.s else "rad/s")
+    """q'^a of joint a: the symbol of the coordinate that moves it, times its multiplier."""
+    joint = m.topology.joints[m.topology.movers[m.ratios.of[a]]]
+    rate = m.scope.declare(f"{joint.coordinate}'", "velocity", "m/s" if joint.s else "rad/s")
+    return rate * m.multipliers[a]
 
 
 def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr], Expr]:
@@ -69,16 +70,20 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
     for load in loads.joints:
         forces[load.a] = forces[load.a] + load.force
         given[load.a] += load.terms
+    movers = set(m.topology.movers)
     for a, entry in enumerate(m.topology.joints):
-        stretch = m.graph.symbol(entry.coordinate) - m.laws[a].rest
-        tau = m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
-        forces[a] = forces[a] + tau
+        stretch = m.positions[a] - m.laws[a].rest
+        if a in movers:
+            forces[a] = forces[a] + m.scope.declare(f"tau.{entry.coordinate}", "input", "N" if entry.s else "N m")
         potential = potential + _joint_law(m, a, stretch, forces, given)
     found = LoadFormulas(Reach(dict(enumerate(forces))), potential)
     for law in loads.laws:
         law.acts(names, found)
     m.scope.finish()
-    return list(found.forces.values()), found.potential + found_potential(m.scope, m.topology.coordinates, given)
+    whole: list[list[Expr]] = [[] for _ in m.topology.coordinates]
+    for i, mu, terms in zip(m.ratios.of, m.multipliers, given, strict=True):
+        whole[i] += [term * mu for term in terms]
+    return list(found.forces.values()), found.potential + found_potential(m.scope, m.topology.coordinates, whole)
 
 
 def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: list[list[Expr]]) -> Expr:
@@ -94,7 +99,7 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
     energy = m.graph.zero
     if depends_on_state(m.topology.coordinates, law.stiffness, law.rest):
         k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
-        terms = m.scope.terms(f"-({k})*({m.topology.coordinates[a]} - ({rest}))", "", m.names)
+        terms = m.scope.terms(f"-({k})*({m.topology.joints[a].coordinate} - ({rest}))", "", m.names)
         given[a] += terms or [-(law.stiffness * stretch)]
     else:
         energy = law.stiffness * Fraction(1, 2) * (stretch * stretch)
@@ -107,7 +112,7 @@ def _stop_force(m: Mechanism, a: int, stops: Stops, forces: list[Expr]) -> Expr:
     With p = max(0, x) = (x + |x|)/2 and |x| = sqrt(x^2) the force is continuous where it begins, and no formula has to
     ask on which side it is (K. H. Hunt and F. R. E. Crossley, J. Applied Mechanics 42, 1975).
     """
-    q, potential = m.graph.symbol(m.topology.coordinates[a]), m.graph.zero
+    q, potential = m.positions[a], m.graph.zero
     for sign, beyond in ((1, q - stops.high), (-1, stops.low - q)):
         p = (beyond + m.graph.sqrt(beyond * beyond)) * Fraction(1, 2)
         # N = (k + c p') p pushes back

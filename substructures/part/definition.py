@@ -172,6 +172,13 @@ class Port(DocumentPart):
     body: Name
     position: NumberVector = Field((0, 0, 0), description="m")
     rotation: PortRotation = PortRotation()
+    interface: Words = Field("", max_length=200, description="what fits on it, as `ISO 9409-1-50-4-M6`")
+
+
+class Mount(DocumentPart):
+    """The base of a substructure, as a host sees it."""
+
+    interface: Words = Field("", max_length=200, description="what it fits on, as `ISO 9409-1-50-4-M6`")
 
 
 class Input(Measured):
@@ -189,11 +196,11 @@ class Input(Measured):
 
 
 class Relation(DocumentPart):
-    """q = multiplier * (q of the coordinate ``of``) + offset."""
+    """q = multiplier * (q of the coordinate ``of``) + offset: of a mimic joint, a gear, a rack or a screw."""
 
     coordinate: Name
     of: Name
-    multiplier: Number = Field(1, description="constant")
+    multiplier: Number = Field(1, description="constant; of a screw m/rad, of a pinion on a rack rad/m")
     offset: Number = Field(0, description="constant; rad or m")
 
 
@@ -237,7 +244,14 @@ class Definition(WithTables):
     inputs: dict[Name, Input] = Field({}, max_length=500)
     bodies: tuple[Body, ...] = Field((), max_length=MAX_BODIES)
     ports: tuple[Port, ...] = Field((), max_length=500)
+    mount: Mount | None = Field(None, description="of its base")
+    relations: tuple[Relation, ...] = Field((), max_length=1000, description="joints that move with another one")
     loads: tuple[LoadOfPart, ...] = Field((), max_length=1000)
+    poses: dict[Name, dict[Name, Number]] = Field(
+        {},
+        max_length=50,
+        description="coordinates by name of the pose (constant; rad or m; 0 where left out); pictures show `home`",
+    )
     left_out: tuple[LeftOut, ...] = Field((), max_length=1000, description="what the source says beside the equations")
 
     def __repr__(self) -> str:

@@ -28,6 +28,9 @@ port.R .r .U .Omega ports ...  ports with respect to I; own base functions in po
 load.at, .vector   loads 3     point (carrier's body frame) and vector of forces and torques
 =================  ==========  ===========================================================================
 
+Where relations move joints, axes a, b and those of f, n, K, kappa, F, N, applied are by coordinate, all other axes n by
+joint, and there are by joint c: multiplier mu and offset delta (n) of q^c = mu y + delta.
+
 A part with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols is stored without
 christoffel, kappa, F and N.
 """
@@ -74,6 +77,7 @@ from substructures.part.frames import joined_turns
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.kinematics import Kinematics, frame_link, kinematics
 from substructures.part.mechanism import Mechanism
+from substructures.part.relations import MULTIPLIER, OFFSET, of_coordinates
 from substructures.part.wrenches import wrench_point
 
 
@@ -123,7 +127,12 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     places = [wrench_point(k, wrench) for wrench in loads.wrenches]
     outputs["load.at"] = array((len(places), 3), lambda i, x: places[i][x])
     outputs["load.vector"] = array((len(places), 3), lambda i, x: loads.wrenches[i].vector[x])
-    return outputs
+    if m.ratios.is_identity:
+        return outputs
+    n = len(m.joints)
+    outputs[MULTIPLIER] = array((n,), lambda a: m.ratios.multipliers[a])
+    outputs[OFFSET] = array((n,), lambda a: m.offsets[a])
+    return of_coordinates(outputs, m.ratios)
 
 
 def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:

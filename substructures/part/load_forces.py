@@ -34,7 +34,7 @@ def load_forces(definition: Definition) -> Program:
     still = tuple(JointLaw(zero, zero, zero, law.armature, (0, 0)) for law in m.laws)
     # friction that is a load is in the laws of the joints
     rubbed = {load.coordinate for load in definition.loads if isinstance(load, FrictionLoad)}
-    names = m.topology.coordinates
+    names = [joint.coordinate for joint in m.topology.joints]
     own = [replace(law, friction=None) if name in rubbed else law for name, law in zip(names, m.laws, strict=True)]
     joints = _forces(replace(_with_loads(m, ()), laws=tuple(own)), k)
 

@@ -10,14 +10,20 @@ from substructures.expr.operations import Symbol
 from substructures.loads.scope import Lookup, Scope
 
 
-def load_names(scope: Scope, inputs: Mapping[str, str], coordinates: Mapping[str, int]) -> Lookup:
+def load_names(
+    scope: Scope,
+    inputs: Mapping[str, str],
+    coordinates: Mapping[str, int],
+    moved: Mapping[str, tuple[Expr, Expr, str]],
+) -> Lookup:
     """The lookup of names in loads; a symbol is described in the scope when it is first used.
 
-    ``inputs``: their SI units by name; ``coordinates``: 1 of prismatic and 0 of revolute ones.
+    ``inputs``: their SI units by name; ``coordinates``: 1 of prismatic and 0 of revolute ones; ``moved``: of joints
+    that move with another one, position, multiplier and the coordinate that moves them.
 
     It becomes no name of the scope, so that what has to be constant cannot name it.
     """
-    scope.more = (*coordinates, *(f"{name}'" for name in coordinates), *inputs)
+    scope.more = (*coordinates, *moved, *(f"{name}'" for name in (*coordinates, *moved)), *inputs)
 
     def described(name: str, kind: str, unit: str) -> Expr:
         """The symbol of a name, with its description."""
@@ -36,6 +42,11 @@ def load_names(scope: Scope, inputs: Mapping[str, str], coordinates: Mapping[str
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:
             return described(name, "velocity", "m/s" if coordinates[name[:-1]] else "rad/s")
+        if name in moved:
+            return moved[name][0]
+        if name.endswith("'") and name[:-1] in moved:
+            _, multiplier, of = moved[name[:-1]]
+            return multiplier * described(f"{of}'", "velocity", "m/s" if coordinates[of] else "rad/s")
         return None
 
     return lookup

@@ -26,10 +26,12 @@ from substructures.mechanics.linear3 import (
     scale,
     transpose,
 )
+from substructures.mechanics.ratios import Ratios
 from substructures.part.definition import BearingFriction, Body, Definition, JointFriction
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
 from substructures.part.parameters import si_unit
+from substructures.part.relations import read_relations
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
@@ -75,6 +77,10 @@ class Mechanism:
     ports: dict[str, Frame]
     central: dict[int, tuple[Expr, Symmetric]]  #: mass and Binet tensor about the mass centre, by body index
     names: Lookup  #: of loads and joint laws, without measures
+    ratios: Ratios
+    multipliers: tuple[Expr, ...]  #: mu of all joints, 1 of those that no relation moves
+    offsets: tuple[Expr, ...]  #: delta of all joints
+    positions: tuple[Expr, ...]  #: q^a of all joints
 
     @property
     def graph(self) -> Graph:
@@ -95,10 +101,9 @@ def mechanism(definition: Definition) -> Mechanism:
         E = scope.rpy(port.rotation.rpy, f"{pointer}/rotation/rpy").matrix()
         ports[port.name] = builder.bodies[port.body].placed(E, scope.vector(port.position, f"{pointer}/position"))
     for i, load in enumerate(definition.loads):
-        if isinstance(load, FrictionLoad) and load.coordinate not in layout.coordinates:
-            message = (
-                f"unknown coordinate '{load.coordinate}'{among(load.coordinate, layout.coordinates, len(scope.faults))}"
-            )
+        known = [joint.coordinate for joint in layout.joints]
+        if isinstance(load, FrictionLoad) and load.coordinate not in known:
+            message = f"unknown coordinate '{load.coordinate}'{among(load.coordinate, known, len(scope.faults))}"
             scope.fault(f"/loads/{i}/coordinate", "unknown-coordinate", message)
     scope.finish()
     return Mechanism(
@@ -113,6 +118,10 @@ def mechanism(definition: Definition) -> Mechanism:
         ports,
         builder.central,
         builder.names,
+        Ratios(layout.moved_by, tuple(mu for _, mu, _ in builder.relations), layout.movers),
+        tuple(mu for _, mu, _ in builder.relations),
+        tuple(delta for _, _, delta in builder.relations),
+        tuple(builder.positions),
     )
 
 
@@ -125,8 +134,8 @@ def _scope(definition: Definition, layout: Topology) -> Scope:
     for name, given in sorted(definition.inputs.items()):
         if given.default is not None:
             scope.read(given.default, f"/inputs/{name}/default", no_names)
-    for joint in layout.joints:
-        scope.symbols[joint.coordinate] = _coordinate(joint)
+    for a in layout.movers:
+        scope.symbols[layout.joints[a].coordinate] = _coordinate(layout.joints[a])
     return scope
 
 
@@ -157,7 +166,16 @@ class _Builder:
         self.central: dict[int, tuple[Expr, Symmetric]] = {}
         self.bodies = {BASE: Frame(INTERFACE, IDENTITY, ZERO)}
         inputs = {name: si_unit(each.unit) for name, each in definition.inputs.items()}
-        self.names = load_names(scope, inputs, {entry.coordinate: entry.s for entry in layout.joints})
+        names = [entry.coordinate for entry in layout.joints]
+        self.relations = read_relations(definition.relations, layout.before, names, scope)
+        kinds = {names[a]: layout.joints[a].s for a in layout.movers}
+        moved = {
+            names[a]: (mu * scope.graph.symbol(names[of]) + delta, mu, names[of])
+            for a, (of, mu, delta) in enumerate(self.relations)
+            if of != a
+        }
+        self.positions: list[Expr] = []
+        self.names = load_names(scope, inputs, kinds, moved)
 
     def add(self, i: int, body: Body) -> None:
         """Place the joint(s) of a body, then give its inertia to the carrier."""
@@ -212,7 +230,8 @@ class _Builder:
     def _joint(self, frame: Frame, entry: JointEntry, body: Body, axis: Matrix, pointer: str) -> Frame:
         """One degree of freedom; returns the frame that moves with it, turned back from the joint axis."""
         turned = multiply(AXES[entry.axis], axis) if body.joint.axis is not None else AXES[entry.axis]
-        q = self.scope.graph.symbol(entry.coordinate)
+        q = self.names(entry.coordinate) or self.scope.graph.zero
+        self.positions.append(q)
         phi, tau = self._offsets(entry, body, pointer)
         constant = multiply(turned, frame.E)
         # revolute: phi = q + phi0, tau constant;   prismatic: tau = q + tau0, phi constant
@@ -293,6 +312,9 @@ class _Builder:
 
     def _bearing(self, entry: JointEntry, given: BearingFriction, place: str) -> None:
         """Check what reactions add to friction: simulations take it, formulas do without."""
+        if entry.coordinate in (each.coordinate for each in self.definition.relations):
+            message = f"'{entry.coordinate}' moves with another joint: friction by its load is not known here"
+            self.scope.fault(place, "bad-friction", message)
         needed = ("radius",) if not entry.s else ()
         for name in ("coefficient", "radius", "axial_radius"):
             value = getattr(given, name)

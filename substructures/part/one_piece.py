@@ -12,6 +12,7 @@ from substructures.mechanics.parallel_axes import absolute
 from substructures.part.definition import Definition
 from substructures.part.formulas import own_dynamics, parallel_axes
 from substructures.part.mechanism import Mechanism, mechanism
+from substructures.part.relations import of_coordinates
 
 
 def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = (0, 0, 0)) -> Program:
@@ -38,4 +39,4 @@ def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     for c, link in enumerate(chain):
         gamma[c] = link.rotation.forward(gamma[link.parent])
     Q = by_angles.gravity([gamma[c] for c in range(len(chain))], momenta)
-    return outputs | {"gravity": array((len(chain),), lambda c: Q[c])}
+    return of_coordinates(outputs | {"gravity": array((len(chain),), lambda c: Q[c])}, m.ratios)

@@ -24,7 +24,12 @@ class OwnNames(Names):
 
     def __init__(self, m: Mechanism, k: Kinematics | None = None) -> None:
         self.m, self._k = m, k
-        self.coordinates = {name: a for a, name in enumerate(m.topology.coordinates)}
+        self.coordinates = {m.topology.joints[a].coordinate: a for a in m.topology.movers}
+        self.joints = {joint.coordinate: a for a, joint in enumerate(m.topology.joints)}
+        of = m.topology.moved_by
+        self.moved = {
+            name: (m.topology.coordinates[of[a]], a) for name, a in self.joints.items() if name not in self.coordinates
+        }
         super().__init__(m.scope)
 
     @cached_property
@@ -37,8 +42,8 @@ class OwnNames(Names):
 
     @cached_property
     def rates(self) -> Sequence[Expr]:
-        """q'^a."""
-        return [rate for name in self.coordinates if (rate := self.m.names(f"{name}'")) is not None]
+        """q'^a of all joints."""
+        return [rate for name in self.joints if (rate := self.m.names(f"{name}'")) is not None]
 
     def plain(self, name: str) -> Expr | None:
         """Parameters, the time, inputs, coordinates and velocities."""
@@ -84,7 +89,9 @@ class OwnNames(Names):
         if not depends_on_state(self.m.topology.coordinates, spring.stiffness, spring.length):
             return energy
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
-        return 2 * spring_potential(self.scope, self.m.topology.coordinates, pulls(), spring.pointer)
+        forces = self.m.ratios.reduced({(a,): Q for a, Q in pulls().items()}, (0,))
+        on = {i: self.graph.lift(Q) for (i,), Q in forces.items()}
+        return 2 * spring_potential(self.scope, self.m.topology.coordinates, on, spring.pointer)
 
     def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:
         """What measures frames is a force without potential."""

@@ -94,6 +94,7 @@ def names_in_limits(definition: Definition) -> set[str]:
     """The parameters that limits and friction of joints depend on."""
     given: list[Any] = [(body.joint.limits, body.joint.friction) for body in definition.bodies]
     given.append(tuple(load for load in definition.loads if isinstance(load, FrictionLoad)))
+    given += [(each.multiplier, each.offset) for each in definition.relations]
     return {str(step.value) for x in _flat(given) if isinstance(x, str) for step in steps_of(x) if step.op == "name"}
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Mapping
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
@@ -9,6 +10,7 @@ from time import perf_counter
 from typing import Any
 
 from substructures.catalogue import load, names
+from substructures.documents import write_json
 from substructures.errors import InvalidArgument, InvalidDocument, TooLarge, among, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.operations import Output
@@ -19,9 +21,18 @@ from substructures.part.certificate import certify_part, not_judged, require_no_
 from substructures.part.definition import Definition
 from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
-from substructures.part.left_out import left_out_warnings, require_relations, weightless_warnings
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
+from substructures.part.poses import require_poses
+from substructures.part.relations import (
+    MULTIPLIER,
+    OF_COORDINATES,
+    OFFSET,
+    left_out_warnings,
+    require_relations,
+    weightless_warnings,
+)
+from substructures.part.shape import shape_of
 from substructures.part.topology import BASE, Entries, Topology, entries_of, expected_operations, topology
 from substructures.part.units import check_units
 from substructures.part.wrenches import dead_loads, steady_loads, wrench_places
@@ -73,6 +84,14 @@ class Part:
         """Names and topology."""
         return topology(self.definition)
 
+    @cached_property
+    def shape(self) -> str:
+        """The digest of all that formulas of trees take of it: its shape (:mod:`substructures.part.shape`), its program
+        and which of its outputs could not be judged.
+        """
+        given = [shape_of(self.definition), self.program.digest, sorted(self.program.not_judged)]
+        return hashlib.sha256(write_json(given)).hexdigest()
+
     @property
     def name(self) -> str:
         """Name in the library."""
@@ -81,6 +100,11 @@ class Part:
     @property
     def dof(self) -> int:
         """Number of coordinates."""
+        return len(self.topology.movers)
+
+    @property
+    def joint_count(self) -> int:
+        """Number of joints of one degree of freedom, those among them that relations move."""
         return len(self.topology.joints)
 
     @property
@@ -127,7 +151,7 @@ class Part:
     @cached_property
     def steady_loads(self) -> tuple[bool, ...]:
         """Of every force and torque, whether it may have a potential that is to be found."""
-        return steady_loads(self.definition, self.coordinates)
+        return steady_loads(self.definition, [joint.coordinate for joint in self.topology.joints])
 
     @cached_property
     def dead_loads(self) -> tuple[bool, ...]:
@@ -157,28 +181,30 @@ class Part:
             (name, lead): entries
             for name, output in self.program.outputs.items()
             if name not in INTERNAL
-            for lead, entries in _grouped(output, len(LEADING.get(name, ()))).items()
+            for lead, entries in _grouped(output, len(self.axes_of(name))).items()
         }
         counts = self.program.totals_of(list(groups.values()))
         return [self._formula(*place, count) for place, count in zip(groups, counts, strict=True)]
 
     def labels(self, axis: str) -> tuple[str, ...]:
-        """What the indices along an axis of :data:`LEADING` mean: bodies that joints carry, ports, coordinates."""
-        known = {"joint": self._joint_bodies, "port": self.ports, "coordinate": self.coordinates}
+        """What the indices along an axis of :meth:`axes_of` mean: bodies that joints carry, ports, coordinates."""
+        movers = tuple(self._joint_bodies[a] for a in self.topology.movers)
+        known = {"joint": self._joint_bodies, "mover": movers, "port": self.ports, "coordinate": self.coordinates}
         return known.get(axis, ())
+
+    def axes_of(self, name: str) -> tuple[str, ...]:
+        """What the leading axes of an output are; ``mover``: joints that have a coordinate, where others move along."""
+        axes, of = LEADING.get(name, ()), OF_COORDINATES.get(name, ()) if self.topology.is_related else ()
+        return tuple("mover" if axis == "joint" and i in of else axis for i, axis in enumerate(axes))
 
     def _formula(self, name: str, lead: tuple[int, ...], count: int) -> Formula:
         """Leading axes are joints, coordinates or ports; a formula is what remains for one such index."""
-        output, axes = self.program.outputs[name], LEADING.get(name, ())
-        labels = dict(zip(axes, lead, strict=True))
-        body = self._label(labels, "joint", self._joint_bodies) or self._label(labels, "port", self.ports)
-        coordinate = self._label(labels, "coordinate", self.coordinates)
+        output, axes = self.program.outputs[name], self.axes_of(name)
+        found = {axis: self.labels(axis)[k] for axis, k in zip(axes, lead, strict=True) if self.labels(axis)}
+        body = next((found[axis] for axis in ("joint", "mover", "port") if axis in found), None)
+        coordinate = found.get("coordinate")
         shape = output.shape[len(axes) :]
         return Formula(name.split(".")[0], name, body, coordinate, lead, shape, output.symmetry, count)
-
-    @staticmethod
-    def _label(labels: Mapping[str, int], axis: str, names: tuple[str, ...]) -> str | None:
-        return names[labels[axis]] if axis in labels else None
 
     @cached_property
     def _joint_bodies(self) -> tuple[str, ...]:
@@ -189,6 +215,7 @@ class Part:
 #: what the leading axes of an output mean; the remaining axes are components (or coordinate indices) of one formula
 LEADING: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("E", "Z", "tau", "R", "r", "f", "n", "K", "applied", "armature"), ("joint",)),
+    **dict.fromkeys((MULTIPLIER, OFFSET), ("joint",)),
     **dict.fromkeys(("subtree.m", "subtree.s", "subtree.J", "inertia.m", "inertia.s", "inertia.J"), ("joint",)),
     **dict.fromkeys(("U", "Omega"), ("joint", "coordinate")),
     **dict.fromkeys(("kappa", "F", "N"), ("coordinate", "joint")),
@@ -277,6 +304,7 @@ def _derived(
 def _opened(definition: Definition, is_stored: bool) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
     require_relations(definition, m.topology.coordinates)
+    require_poses(definition, m.topology.coordinates)
     units = check_units(definition, m.topology)
     if not is_stored:
         units.require()

@@ -9,7 +9,7 @@ from typing import NamedTuple
 from substructures.errors import Fault, InvalidDocument, TooLarge, among
 from substructures.expr.syntax import RESERVED
 from substructures.mechanics.kinematics import INTERFACE
-from substructures.part.definition import Body, Definition
+from substructures.part.definition import Body, Definition, Relation
 
 BASE = "base"
 
@@ -52,11 +52,33 @@ class Topology:
     joints: tuple[JointEntry, ...]
     carrier: dict[str, int]
     order: tuple[int, ...]  #: indices of the bodies in the definition, parents first
+    before: tuple[int, ...]  #: by joint the one with which a relation moves it, or itself
+
+    @property
+    def movers(self) -> tuple[int, ...]:
+        """The joints whose coordinates are those of the part: all that no relation moves."""
+        return tuple(a for a, other in enumerate(self.before) if a == other)
+
+    @property
+    def moving(self) -> tuple[JointEntry, ...]:
+        """The joints that have a coordinate."""
+        return tuple(self.joints[a] for a in self.movers)
+
+    @property
+    def moved_by(self) -> tuple[int, ...]:
+        """By joint, the number of the coordinate that moves it."""
+        number = {a: i for i, a in enumerate(self.movers)}
+        return tuple(number[_root(self.before, a) or 0] for a in range(len(self.joints)))
+
+    @property
+    def is_related(self) -> bool:
+        """Whether there are joints that move with another one."""
+        return len(self.movers) < len(self.joints)
 
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Coordinate names in order."""
-        return tuple(j.coordinate for j in self.joints)
+        return tuple(joint.coordinate for joint in self.moving)
 
     @property
     def body_of(self) -> dict[int, str]:
@@ -65,8 +87,8 @@ class Topology:
 
     @property
     def kinds(self) -> str:
-        """'R' or 'P' for every joint."""
-        return "".join("P" if j.s else "R" for j in self.joints)
+        """'R' or 'P' for every coordinate."""
+        return "".join("P" if joint.s else "R" for joint in self.moving)
 
 
 class Entries(NamedTuple):
@@ -125,9 +147,11 @@ def topology(definition: Definition) -> Topology:
             k = len(joints) - 1
         carrier[body.name] = k
     faults += _coordinate_faults(definition, joints)
+    before, more = _related(definition.relations, [joint.coordinate for joint in joints])
+    faults += more
     if faults:
         raise InvalidDocument(faults)
-    return Topology(tuple(joints), carrier, tuple(order))
+    return Topology(tuple(joints), carrier, tuple(order), before)
 
 
 def _name_faults(definition: Definition) -> list[Fault]:
@@ -224,3 +248,37 @@ def _coordinate_faults(definition: Definition, joints: list[JointEntry]) -> list
             faults.append(Fault(pointer, "reserved-name", f"'{name}' has a fixed meaning in expressions"))
         seen.add(name)
     return faults
+
+
+def _related(relations: Sequence[Relation], names: Sequence[str]) -> tuple[tuple[int, ...], list[Fault]]:
+    """By joint the one that it depends on, itself where it depends on none; ``names``: of their coordinates."""
+    index, before, faults = {name: a for a, name in enumerate(names)}, list(range(len(names))), list[Fault]()
+    for i, each in enumerate(relations):
+        unknown = [
+            (field, name) for field, name in (("coordinate", each.coordinate), ("of", each.of)) if name not in index
+        ]
+        for field, name in unknown:
+            message = f"there is no coordinate '{name}'{among(name, names)}"
+            faults.append(Fault(f"/relations/{i}/{field}", "unknown-coordinate", message))
+        if unknown:
+            continue
+        a = index[each.coordinate]
+        if any(other.coordinate == each.coordinate for other in relations[:i]):
+            message = f"'{each.coordinate}' depends on another coordinate already: a joint has one relation"
+            faults.append(Fault(f"/relations/{i}/coordinate", "several-relations", message))
+            continue
+        before[a] = index[each.of]
+        if _root(before, a) is None or each.of == each.coordinate:
+            before[a] = a
+            message = f"'{each.coordinate}' depends on itself: of a circle of relations one has to be left out"
+            faults.append(Fault(f"/relations/{i}/of", "cycle", message))
+    return tuple(before), faults
+
+
+def _root(before: Sequence[int], a: int) -> int | None:
+    """The joint whose coordinate moves joint a; None on a circle."""
+    for _ in before:
+        if before[a] == a:
+            return a
+        a = before[a]
+    return a if before[a] == a else None

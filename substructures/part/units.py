@@ -52,6 +52,8 @@ STOP: dict[str, tuple[Dimension, Dimension]] = {
     "stiffness": JOINT["stiffness"],
     "damping": (dimension("N m s/rad^2"), dimension("N s/m^2")),
 }
+#: of relations, by how many metres for radians the multiplier has
+MULTIPLIER = {0: NUMBER, 1: dimension("m/rad"), -1: dimension("rad/m")}
 ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH, "tau": LENGTH}
 
 
@@ -67,6 +69,7 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     check.check(parameter_places(definition.parameters), True)
     check.check(input_places(definition.inputs), True)
     check.check(places.bodies(), True)
+    check.check(places.poses(), True)
     check.warnings += angle_warnings(places.bodies(), definition.parameters)
     check.names = lambda name: names[name] if name in names else moving.get(name) or dimension_of_measure(name)
     check.check(places.loads(), False)
@@ -108,9 +111,21 @@ class _Places:
             for name in InertiaTensor.model_fields:
                 if name != "about":
                     yield f"{pointer}/inertia/{name}", getattr(body.inertia, name), INERTIA
+        s_of = {entry.coordinate: entry.s for entry in self.topology.joints}
+        for i, each in enumerate(self.definition.relations):
+            s, mover = s_of[each.coordinate], s_of[each.of]
+            yield f"/relations/{i}/multiplier", each.multiplier, MULTIPLIER[s - mover]
+            yield f"/relations/{i}/offset", each.offset, COORDINATE[s]
         for i, port in enumerate(self.definition.ports):
             yield from vector(f"/ports/{i}/position", port.position, LENGTH)
             yield from vector(f"/ports/{i}/rotation/rpy", port.rotation.rpy, ANGLE)
+
+    def poses(self) -> Iterator[Place]:
+        """Values of coordinates."""
+        kinds = {entry.coordinate: entry.s for entry in self.topology.joints}
+        for pose, given in self.definition.poses.items():
+            for name, value in given.items():
+                yield f"/poses/{pose}/{name}", value, COORDINATE[kinds[name]]
 
     def loads(self) -> Iterator[Place]:
         """Forces, torques, springs, bushings, joint loads, friction and potentials."""

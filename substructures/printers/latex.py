@@ -18,6 +18,7 @@ _ROOT = CLOSING + "^{1/2}"
 _RULES = {
     "symmetric": "{ab} &= {ba}",
     "christoffel": r"{abc} &= {acb}, \quad {cba} = -{abc} \quad (b \le a)",
+    "connection": "{abc} &= {acb}",
 }
 
 

@@ -58,6 +58,7 @@ _RULES = {
         f"{{abc}}{_EQUAL}{{acb}}{operator(',')}",
         f"{{cba}}{_EQUAL}{MINUS}{{abc}}{_FOR}<mi>b</mi>{operator('&#x2264;')}<mi>a</mi>",
     ),
+    "connection": (f"{{abc}}{_EQUAL}{{acb}}",),
 }
 #: between factors: a thin space
 TIMES = '<mo lspace="0" rspace="0.17em">&#x2062;</mo>'

@@ -9,6 +9,7 @@ from substructures.expr.program import Output
 _RULES = {
     "symmetric": "{x}[a, b] = {x}[b, a]",
     "christoffel": "{x}[a, b, c] = {x}[a, c, b], and {x}[c, b, a] = -{x}[a, b, c] for b <= a",
+    "connection": "{x}[a, b, c] = {x}[a, c, b]",
 }
 
 

@@ -17,7 +17,7 @@ from substructures.errors import TooLarge
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol
 from substructures.quantities.derivatives import factors_of
-from substructures.quantities.workspace import Workspace, vector
+from substructures.quantities.numbers.workspace import Workspace, vector
 from substructures.tree.model import Model, require_stored
 
 MOMENTA = ("hamiltonian", "canonical_equations")

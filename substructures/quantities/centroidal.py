@@ -49,16 +49,17 @@ def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     if exactly(m, 0):
         raise InvalidArgument.at("/quantities", "no-mass", "nothing that moves has mass: there is no mass centre")
     lift = assembly.scope.graph.lift
-    p = [_row(momenta["linear_momentum"], a) for a in range(len(rates))]
-    total: list[Scalar] = [sum(p_a[i] * rate for p_a, rate in zip(p, rates, strict=True)) for i in range(3)]
+    n, own = coupled.ratios.count, [rates[a] for a in coupled.ratios.movers]
+    p = [_row(momenta["linear_momentum"], a) for a in range(n)]
+    total: list[Scalar] = [sum(p_a[i] * rate for p_a, rate in zip(p, own, strict=True)) for i in range(3)]
     x, y, z = (lift(s) / lift(m) for s in moment)
     r = x, y, z
     columns = dict[tuple[int, ...], Scalar]()
-    for a in range(len(rates)):
+    for a in range(n):
         p_a, L_a = (_row(momenta[name], a) for name in MOMENTUM)
         columns |= {(i, a): x for i, x in enumerate((*p_a, *sub(L_a, cross(r, p_a))))}
     outputs = {
-        "centroidal_momentum_matrix": Formulas((6, len(rates)), columns),
+        "centroidal_momentum_matrix": Formulas((6, n), columns),
         "mass_centre_position": array((3,), lambda i: r[i]),
         "mass_centre_velocity": array((3,), lambda i: lift(total[i]) / lift(m)),
     }
@@ -75,7 +76,7 @@ def _masses(assembly: Assembly, coupled: Coupled) -> Iterator[tuple[Scalar, Vect
     run = over_formulas(assembly.scope.graph)
     for m, here in zip(assembly.mounted, coupled.placed, strict=True):
         own = run(m.part, m.bindings, OWN)
-        for carrier in (*range(m.part.dof), *([INTERFACE] if here.columns[INTERFACE] else [])):
+        for carrier in (*range(m.part.joint_count), *([INTERFACE] if here.columns[INTERFACE] else [])):
             # about the origin of the joint frame, z = tau e3, and out of its axes
             tau = 0 if carrier == INTERFACE else here.outputs.scalar("tau", carrier)
             mass, pose = own.own_inertia(carrier).shifted((0, 0, tau)), here.pose(carrier)

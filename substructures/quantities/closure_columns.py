@@ -19,7 +19,7 @@ import numpy as np
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Output, Program
 from substructures.mechanics.closure_rows import RowBounds
-from substructures.quantities.memo import Known, known_model
+from substructures.quantities.numbers.memo import Known, known_model
 from substructures.tree.closures import TURNS
 from substructures.tree.model import Model
 

@@ -10,7 +10,7 @@ import numpy as np
 from substructures.errors import InvalidArgument, InvalidInput
 from substructures.quantities.derivatives import direction
 from substructures.quantities.measured import si_values
-from substructures.quantities.states import StateInput, States, ValueInput, given_values, read_states
+from substructures.quantities.numbers.states import StateInput, States, ValueInput, given_values, read_states
 from substructures.tree.model import Model
 
 #: what follows the name of a coordinate in that of its position, velocity and acceleration

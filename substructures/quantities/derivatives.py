@@ -23,7 +23,7 @@ from substructures.expr.program import Formulas, Program, array
 from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
 from substructures.part.part import MAX_NODES
-from substructures.quantities.workspace import ID, Workspace, vector
+from substructures.quantities.numbers.workspace import ID, Workspace, vector
 from substructures.tree.model import Model, require_open
 
 FD = "forward_dynamics"

@@ -10,9 +10,9 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
 from substructures.quantities.canonical import momentum
 from substructures.quantities.certificate import certified
-from substructures.quantities.memo import ProgramCache
+from substructures.quantities.numbers.memo import ProgramCache
+from substructures.quantities.numbers.workspace import ID, Workspace, vector
 from substructures.quantities.quantity import DERIVED, PROGRAMS
-from substructures.quantities.workspace import ID, Workspace, vector
 from substructures.tree.model import Model, require_stored
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'

@@ -24,8 +24,8 @@ from substructures.expr.program import Formulas, Output, Program, array, program
 from substructures.mechanics.linear3 import Scalar
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
-from substructures.quantities.array_scalars import Lanes, Supports, is_array, lanes, plain
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.array_scalars import Lanes, Supports, is_array, lanes, plain
+from substructures.quantities.numbers.states import default_number
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import asked, couple_parts
 from substructures.tree.document import TreeSpec
@@ -143,7 +143,7 @@ class NumericTree:
         outputs = {FOUND: array((), lambda: found)}
         if loads:
             acting = load_formulas(self.assembly, placed, rate_symbols(self.assembly)[0])
-            n, zero = len(self.coordinates), graph.zero
+            n, zero = sum(m.part.joint_count for m in self.assembly.mounted), graph.zero
             outputs[LOADS] = array((n,), lambda a: acting.forces.get(a, zero))
             outputs[LOAD_POTENTIAL] = array((), lambda: acting.potential)
         return outputs
@@ -203,7 +203,8 @@ class NumericTree:
         potential = numbers.get(FOUND, [0])[0] + numbers.get(LOAD_POTENTIAL, [0])[0]
         coupled = coupled.with_loads(dict(enumerate(numbers.get(LOADS, ()))), potential)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
-        outputs = model_outputs(assembly, coupled, qd, qdd, frozenset(quantities))
+        rates, second = map(coupled.ratios.rates, (qd, qdd))
+        outputs = model_outputs(assembly, coupled, rates, second, frozenset(quantities))
         for name in quantities:
             if name not in result:
                 result[name] = np.zeros((*batch, *outputs[name].shape))

@@ -61,10 +61,11 @@ def _rows(assembly: Assembly, rates: Sequence[Expr]) -> Iterator[Row]:
         for instance, here in zip(assembly.instances, coupled.placed, strict=True)
     ]
     for name, here, own in of_parts:
-        for c, coordinate in enumerate(here.part.coordinates):
-            yield f"joint {name}.{coordinate}", {here.first + c: own["joint"].get((c,), 0)}
-    for name, here, _ in of_parts:
         for c, joint in enumerate(here.part.topology.joints):
+            yield f"joint {name}.{joint.coordinate}", {here.first + c: own["joint"].get((c,), 0)}
+    for name, here, _ in of_parts:
+        for c in here.part.topology.movers:
+            joint = here.part.topology.joints[c]
             effort = f"tau.{name}.{joint.coordinate}"
             yield effort, {here.first + c: assembly.scope.declare(effort, "input", "N" if joint.s else "N m")}
     for name, here, own in of_parts:

@@ -139,6 +139,6 @@ def _needed(
     result: list[WrenchesByCarrier] = []
     for m, motions in zip(assembly.mounted, body_motions(placed, rates, accelerations), strict=True):
         own = run(m.part, m.bindings, OWN)
-        carriers = (*range(m.part.dof), INTERFACE)
+        carriers = (*range(m.part.joint_count), INTERFACE)
         result.append({c: inertial_load(motions[c], own.own_inertia(c)) for c in carriers})
     return result

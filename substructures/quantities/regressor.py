@@ -32,10 +32,11 @@ from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.part.relations import of_coordinates
+from substructures.quantities.numbers.result import Evaluation, ParameterColumns, failures_of
+from substructures.quantities.numbers.states import StateInput, ValueInput, read_states, symbol_values
 from substructures.quantities.of_parts import formed
 from substructures.quantities.regrouping import named_frames, relations
-from substructures.quantities.result import Evaluation, ParameterColumns, failures_of
-from substructures.quantities.states import StateInput, ValueInput, read_states, symbol_values
 from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
@@ -43,7 +44,7 @@ from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.inverse_dynamics import body_motions
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import rate_symbols
-from substructures.tree.mounted_part import MountedPart, PlacedPart
+from substructures.tree.mounted_part import MountedPart, PlacedPart, ratios_of
 
 OUTPUTS = ("regressor", "inertial_parameters")
 
@@ -98,7 +99,7 @@ class RegressorModel:
     ) -> Evaluation:
         """Numbers: ``regressor`` (N, n, 10 links) and ``inertial_parameters`` (N, 10 links).
 
-        Arguments as for :func:`substructures.quantities.evaluation.evaluate`; the axis N is dropped for one state with
+        Arguments as for :func:`substructures.quantities.numbers.evaluation.evaluate`; N is dropped for one state with
         ``q`` (n,). Raises InvalidArgument (``qdd`` is needed) and MissingValue.
         """
         model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {})
@@ -152,7 +153,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
 
 def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], list[str]]:
     links = _links(over_formulas(assembly.scope.graph), assembly)
-    n = sum(m.part.dof for m in assembly.mounted)
+    n = sum(m.part.joint_count for m in assembly.mounted)
     Y: dict[tuple[int, ...], Scalar] = {
         (a, 10 * k + i): y for k, link in enumerate(links) for i, column in _columns(link) for a, y in column
     }
@@ -165,7 +166,8 @@ def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], list[str]]:
         "inertial_parameters": array((len(pi),), lambda i: pi[i]),
         "moments_of_inertia": array((len(links), 3, 3), lambda k, i, j: theta[k][SYMMETRIC_INDEX[i][j]]),
     }
-    return outputs, [name for link in links for name, _ in inertia_names(link.name)]
+    ratios = ratios_of(over_formulas(assembly.scope.graph), assembly.mounted)
+    return of_coordinates(outputs, ratios), [name for link in links for name, _ in inertia_names(link.name)]
 
 
 def _regrouping(assembly: Assembly) -> Program:

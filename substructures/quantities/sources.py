@@ -16,6 +16,7 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.derivatives import SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
+from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
@@ -30,7 +31,6 @@ from substructures.quantities.quantity import (
     made_of,
     outputs_of,
 )
-from substructures.quantities.states import default_numbers
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model, require_stored
 from substructures.tree.plausibility import Plausibility
@@ -71,6 +71,15 @@ class Sources:
     def judge(self) -> Plausibility | None:
         """What says whether values are plausible; None of a model out of a store without its parts."""
         return self.model.plausibility if self.plausibility is None else self.plausibility()
+
+    @cached_property
+    def christoffel_rule(self) -> str:
+        """The symmetry of the Christoffel symbols of the model, stored or not."""
+        stored = self.model.program.outputs.get("christoffel")
+        if stored is not None:
+            return stored.symmetry
+        definitions = () if self.judge is None else self.judge.definitions.values()
+        return "connection" if any(each.relations for each in definitions) else "christoffel"
 
     @cached_property
     def defaults(self) -> Mapping[str, float]:

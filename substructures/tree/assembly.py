@@ -21,7 +21,7 @@ from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
-from substructures.tree.mounted_part import WORLD, MountedPart
+from substructures.tree.mounted_part import WORLD, MountedPart, friction_of_movers, limits_of_movers
 
 
 @dataclass(frozen=True)
@@ -35,9 +35,9 @@ class Assembly:
     parameters: dict[str, dict[str, object]]
     cuts: tuple[Cut, ...]
     inputs: dict[str, dict[str, object]]
-    limits: dict[int, tuple[Expr, Expr]]  #: of coordinates by index, of those that have limits
-    friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 by coordinate
-    friction_load: dict[int, tuple[Expr, Expr]]  #: by coordinate: of the force beside the axis, and along it
+    limits: dict[int, tuple[Expr, Expr]]  #: of the coordinates that have limits, by joint
+    friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 of coordinates, by joint
+    friction_load: dict[int, tuple[Expr, Expr]]  #: by joint: of the force beside the axis, and along it
     reading: Reading  #: for what is read when the parts have their places
 
 
@@ -76,11 +76,11 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     first = 0
     for i in order:
         mounted.append(reading.mounted(i, first))
-        first += mounted[-1].part.dof
+        first += mounted[-1].part.joint_count
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
     cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
-    limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i).items()}
-    friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i).items()}
+    limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i, m).items()}
+    friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i, m).items()}
     loaded = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction_load(i).items()}
     friction |= reading.friction_loads(mounted, [spec.instances[i].name for i in order], friction)
     inputs = _inputs(spec, parts, scope)
@@ -274,8 +274,8 @@ class Reading:
             result[symbol.name] = value
         return result
 
-    def limits(self, i: int) -> dict[int, tuple[Expr, Expr]]:
-        """The limits of the coordinates of an instance that have some, by coordinate of the part."""
+    def limits(self, i: int, m: MountedPart) -> dict[int, tuple[Expr, Expr]]:
+        """The limits of the coordinates of an instance that have some, by joint of the part."""
         instance, found = self.spec.instances[i], {}
         for c, entry in enumerate(self.parts[instance.name].topology.joints):
             given = self.parts[instance.name].definition.bodies[entry.body].joint.limits
@@ -286,9 +286,9 @@ class Reading:
                     for x in (low, high)
                 ]
                 found[c] = read[0], read[1]
-        return found
+        return limits_of_movers(over_formulas(self.scope.graph), m, found)
 
-    def friction(self, i: int) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
+    def friction(self, i: int, m: MountedPart) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
         """F_c, F_s, v_s (0 where there is none) and v_0 of the coordinates of an instance that have dry friction."""
         instance, found = self.spec.instances[i], {}
         for c, entry in enumerate(self.parts[instance.name].topology.joints):
@@ -300,7 +300,11 @@ class Reading:
                     for x in (law.coulomb, static, law.stribeck or 0, law.velocity)
                 )
                 found[c] = F, S, v, w
-        return found
+        moved, is_one = friction_of_movers(over_formulas(self.scope.graph), m, found)
+        if not is_one:
+            message = f"frictions of joints of '{instance.name}' that move together are no law of one velocity"
+            self.scope.fault(f"/instances/{i}", "several-frictions", f"{message}: give one of them all of it")
+        return moved
 
     def friction_load(self, i: int) -> dict[int, tuple[Expr, Expr]]:
         """mu r and mu r_a, of prismatic joints mu and 0, of the coordinates of an instance with such friction."""
@@ -321,7 +325,7 @@ class Reading:
     ) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
         """The same of the loads of the tree; ``known``: coordinates whose joints have friction."""
         pairs = zip(instances, mounted, strict=True)
-        names = [f"{instance}.{coordinate}" for instance, m in pairs for coordinate in m.part.coordinates]
+        names = [f"{instance}.{joint.coordinate}" for instance, m in pairs for joint in m.part.topology.joints]
         found: dict[int, tuple[Expr, Expr, Expr, Expr]] = {}
         for i, load in enumerate(self.spec.loads):
             if not isinstance(load, TreeFriction) or load.coordinate not in names:

@@ -34,6 +34,21 @@ def certify_tree(
     Raises VerificationFailed for a wrong formula, also where a part's stored program was wrong.
     """
     start = perf_counter()
+    certificate, _ = certified(spec, definitions, summary, result)
+    return certificate | {"seconds": seconds_of(seconds, perf_counter() - start)}
+
+
+def seconds_of(couple: float, verify: float) -> dict[str, float]:
+    """What a certificate says of the time that coupling and comparing took."""
+    return {"couple": round(couple, 6), "verify": round(verify, 6)}
+
+
+def certified(
+    spec: TreeSpec, definitions: Mapping[str, Definition], summary: Mapping[str, Any], result: Program
+) -> tuple[dict[str, Any], bool]:
+    """What the certificate says of the formulas, and whether that holds for all values of the parameters' defaults:
+    they were not needed. Raises as :func:`certify_tree`.
+    """
     tree, parts = plain(spec), {name: plain(definition) for name, definition in definitions.items()}
     # models of older versions know nothing of limits
     older = "limited" not in summary
@@ -49,9 +64,7 @@ def certify_tree(
         return Outputs({name: x for name, x in outputs.items() if name != "limits" or not older})
 
     states, compared = _compared(tree, parts, result, expected)
-    certificate: dict[str, Any] = {**HOW, "states": states, "direct_form": told(compared)}
-    certificate["seconds"] = {"couple": round(seconds, 6), "verify": round(perf_counter() - start, 6)}
-    return certificate
+    return {**HOW, "states": states, "direct_form": told(compared)}, not compared.at_defaults
 
 
 def certify_rows(

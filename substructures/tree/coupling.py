@@ -18,6 +18,7 @@ from substructures.mechanics.kinematics import (
     Columns,
     Link,
     Twist,
+    base_functions,
     carried,
     carrier_link,
     constant_rotation,
@@ -27,9 +28,11 @@ from substructures.mechanics.kinematics import (
 )
 from substructures.mechanics.linear3 import ZERO, Rotation, Scalar, Vector, add, apply, dot, transpose
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
+from substructures.mechanics.ratios import Ratios
 from substructures.part.frames import joined_turns
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
 from substructures.part.part import Part
+from substructures.part.relations import MULTIPLIER
 from substructures.tree.grouping import Admitted, Inertias, as_they_are, fixed_inertia, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, Plan, inertial_entries, planned
 from substructures.tree.mounted_part import (
@@ -39,6 +42,7 @@ from substructures.tree.mounted_part import (
     PlacedPart,
     frame_placement,
     links_of,
+    ratios_of,
 )
 
 #: outputs of a stored program that coupling uses
@@ -52,6 +56,8 @@ OWN = (*OWN_INERTIA, "armature")
 
 def asked(part: Part) -> tuple[tuple[str, ...], ...]:
     """All lists of outputs that coupling asks a part for."""
+    if part.topology.is_related:
+        return (OWN, FRAMES, USED, (MULTIPLIER,))
     equations = [EQUATIONS[:1], EQUATIONS] if part.has_christoffel else [EQUATIONS[:1]]
     return (OWN, FRAMES, *((*USED, *names) for names in equations))
 
@@ -67,8 +73,8 @@ class Hanging:
 
 @dataclass(frozen=True)
 class Coupled:
-    """The result, by indices of the tree's coordinates; ``chain``: the links from joint to joint; ``loads``: what the
-    loads of the tree add to the forces.
+    """The result, by indices of the tree's joints; ``chain``: the links from joint to joint; ``ratios``: the
+    coordinates that move them; ``loads``: what the loads of the tree add to the forces.
     """
 
     metric: dict[tuple[int, ...], Scalar]
@@ -78,6 +84,7 @@ class Coupled:
     potential: Scalar
     placed: list[PlacedPart]
     chain: Sequence[Link]
+    ratios: Ratios
     loads: Mapping[int, Scalar] = field(default_factory=dict)
 
     def with_loads(self, loads: Mapping[int, Scalar], potential: Scalar) -> Coupled:
@@ -120,11 +127,12 @@ def couple_parts(
     # V = -gamma . s of the whole about the world's origin, what every part has of its own, and constant forces
     V = -dot(gravity, total.s)
     for here in placed:
-        for c in range(len(here.links)):
-            Q[here.first + c] = Q[here.first + c] + here.outputs.scalar("applied", c)
+        for i, c in enumerate(here.part.topology.movers):
+            Q[here.first + c] = Q[here.first + c] + here.outputs.scalar("applied", i)
         V = V + here.outputs.scalar("potential") + _dead_potential(here)
         _add_wrenches(here, Q)
-    return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed, plan.chain)
+    ratios = ratios_of(run, mounted)
+    return Coupled(inertial.metric, inertial.christoffel, Q_gravity, Q, V, placed, plan.chain, ratios)
 
 
 def _by_angles(plan: Plan, body: Callable[[int], Inertia], gravity: Vector, christoffel: bool) -> ByAngles:
@@ -152,7 +160,7 @@ def with_momenta(
         inertias = with_moments_about_axes(chain, inertias, body)
     momenta = [joint_momentum(link.s, inertia) for link, inertia in zip(chain, inertias, strict=True)]
     return [
-        replace(part, momenta=tuple(momenta[part.mounted.first : part.mounted.first + part.mounted.part.dof]))
+        replace(part, momenta=tuple(momenta[part.mounted.first : part.mounted.first + part.mounted.part.joint_count]))
         for part in evaluated
     ]
 
@@ -245,6 +253,8 @@ def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) ->
         host = placed[m.host]
         seat = host.frame_link(m.frame, m.E, m.position)
     here = PlacedPart(part, host, seat, columns, gamma)
+    # where relations move joints, what is stored is of the coordinates: of the joints it is formed again
+    own = base_functions(part.links) if m.part.topology.is_related else None
     for c, link in enumerate(part.links):
         # of a first joint over the interfaces, from the carrier in the host: z = r + tau_host e3
         before, way = here.from_carrier(link)
@@ -255,10 +265,14 @@ def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) ->
         else:
             columns[c] = {a: carried(twist, link) for a, twist in columns[link.parent].items() if a < m.first}
         for a in path(part.links, c):
-            columns[c][m.first + a] = Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
+            columns[c][m.first + a] = _stored_twist(part, c, a) if own is None else own[c][a]
     if host is not None:
         columns[INTERFACE], gamma[INTERFACE] = host.columns_beyond(seat), seat.rotation.forward(host.gamma[seat.parent])
     return here
+
+
+def _stored_twist(part: EvaluatedPart, c: int, a: int) -> Twist:
+    return Twist(part.outputs.vector("U", c, a), part.outputs.vector("Omega", c, a))
 
 
 def _add_wrenches(here: PlacedPart, Q: list[Scalar]) -> None:

@@ -121,6 +121,11 @@ class TreeSpec(WithTables):
     inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree")
     loads: tuple[LoadOfTree, ...] = Field((), max_length=1000)
 
+    def _given(self) -> dict[str, Any]:
+        """Gravity that was given as zero stays: it was not forgotten."""
+        is_given = "gravity" in self.model_fields_set
+        return super()._given() | (self.model_dump(include={"gravity"}) if is_given else {})
+
     def __repr__(self) -> str:
         """Two lines: its name, and what hangs on what."""
         loops = f"; closures {', '.join(c.name for c in self.closures)}" if self.closures else ""

@@ -39,7 +39,7 @@ from substructures.tree.glossary_motions import Glossary, inverse_terms, matrix,
 from substructures.tree.grouping import Admitted, every, numbers
 from substructures.tree.inertial import planned
 from substructures.tree.model_outputs import rate_symbols
-from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart, joint_position
 
 TENSOR = ("xx", "yy", "zz", "xy", "xz", "yz")
 #: joints of which sums of angles are named
@@ -68,7 +68,8 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, mod
     found |= velocity_terms(placed, chain, momenta, rates)
     found |= inverse_terms(placed, chain, rates, accelerations)
     if model is not None:
-        found |= _stored(assembly.scope.graph, model, rates)
+        own = (rates[m.first + c] for m in assembly.mounted for c in m.part.topology.movers)
+        found |= _stored(assembly.scope.graph, model, list(own))
     of_loads = {} if model is None else {symbol.name: symbol for symbol in model.symbols}
     return _written(assembly.scope.graph, found, {**of_loads, **assembly.scope.symbols})
 
@@ -203,5 +204,4 @@ def _coordinates(placed: Sequence[PlacedPart], graph: Graph) -> Iterator[tuple[i
     for here in placed:
         for c, joint in enumerate(here.part.topology.joints):
             if not joint.s:
-                bound = here.mounted.bindings.get(joint.coordinate)
-                yield here.first + c, graph.symbol(joint.coordinate) if bound is None else graph.lift(bound)
+                yield here.first + c, joint_position(graph, here.mounted, c)

@@ -53,7 +53,11 @@ class Inertial:
 
 def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen: bool) -> Plan:
     """Frames for the fewest operations; not ``chosen``: every joint in its own frame and all own entries as stored."""
-    kinds = [EQUATIONS if christoffel and m.part.has_christoffel else EQUATIONS[:1] for m in mounted]
+    # where relations move joints, what is stored is of the coordinates
+    kinds = [
+        () if m.part.topology.is_related else EQUATIONS if christoffel and m.part.has_christoffel else EQUATIONS[:1]
+        for m in mounted
+    ]
     if not chosen:
         # where nothing is carried from joint to joint, links are only of some kind
         kind_only = [Link(j.parent, j.s, Rotation(), ZERO) for m in mounted for j in m.part.topology.joints]
@@ -78,7 +82,7 @@ def _is_as_stored(m: MountedPart, frames: Frames, by_angles: frozenset[int], sum
     moments, and not by absolute angles, which the tree has from the links and what is fixed in the carriers.
     """
     links = links_of(m.part, over_formulas(Graph())(m.part, {}, LINKS))
-    if absolute(links) or by_angles.intersection(_joints(m)):
+    if m.part.topology.is_related or absolute(links) or by_angles.intersection(_joints(m)):
         return False
     stored, own = evaluation_frames(links, m.part.has_christoffel), _moments_summed(links)
     if {(m.first + p, m.first + c) for p, c in own} != {pair for pair in sums if pair[0] in _joints(m)}:
@@ -88,7 +92,7 @@ def _is_as_stored(m: MountedPart, frames: Frames, by_angles: frozenset[int], sum
 
 def _joints(m: MountedPart) -> range:
     """Indices of the joints of a part in the tree."""
-    return range(m.first, m.first + m.part.dof)
+    return range(m.first, m.first + m.part.joint_count)
 
 
 def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool, by_angles: ByAngles) -> Inertial:

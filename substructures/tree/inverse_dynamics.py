@@ -43,11 +43,13 @@ def inverse_dynamics(
     subtract_applied(placed, loads)
     result = pass_back(placed, loads, len(rates))
     for here in placed:
+        own = {c: i for i, c in enumerate(here.part.topology.movers)}
         for c in range(len(here.links)):
             a = here.first + c
             # + armature_a q''^a - Q_a of the joint itself
             rotor = here.evaluated.own.scalar("armature", c) * accelerations[a]
-            result[a] = result[a] + rotor - here.outputs.scalar("applied", c)
+            applied = here.outputs.scalar("applied", own[c]) if c in own else 0
+            result[a] = result[a] + rotor - applied
     return result
 
 

@@ -9,13 +9,14 @@ w_a the axes, d_b Q_a - d_a Q_b = M . (w_b x w_a), which is also what Q_a change
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from typing import Any
 
 from substructures.expr.calculus.integrate import from_zero, needed, potential
 from substructures.expr.graph import Expr, Graph
 from substructures.loads.pairs import wrench_forces
-from substructures.part.outputs import Run
+from substructures.part.outputs import Run, over_formulas
 from substructures.tree.coupling import place
-from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, links_of
+from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, links_of, ratios_of
 
 #: terms of a generalised force that is integrated
 LIMIT = 50
@@ -46,11 +47,15 @@ def found_potential(graph: Graph, placed: Sequence[PlacedPart], coordinates: Seq
 
 
 def _potentials(graph: Graph, placed: Sequence[PlacedPart], coordinates: Sequence[str]) -> Iterator[Expr]:
+    ratios = ratios_of(over_formulas(graph), [here.mounted for here in placed])
     for here in placed:
         if not any(here.part.steady_loads):
             continue
         for is_steady, (carrier, wrench) in zip(here.part.steady_loads, here.applied_wrenches(), strict=True):
-            forces = {a: graph.lift(x) for a, x in wrench_forces(here, carrier, wrench).items()} if is_steady else {}
+            on_joints: dict[tuple[int, ...], Any] = (
+                {(a,): x for a, x in wrench_forces(here, carrier, wrench).items()} if is_steady else {}
+            )
+            forces = {a: graph.lift(x) for (a,), x in ratios.reduced(on_joints, (0,)).items()}
             used = frozenset().union(*(needed(x, LIMIT) for x in forces.values()))
             some = [a for a, name in enumerate(coordinates) if a in forces or name in used]
             names = [coordinates[a] for a in some]

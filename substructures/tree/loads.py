@@ -45,14 +45,15 @@ def loads_apart(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequenc
 
 
 class LoadNames(Names):
-    """Of a tree; ``placed``: its parts over formulas; ``rates``: q'^a."""
+    """Of a tree; ``placed``: its parts over formulas; ``rates``: of all joints."""
 
     def __init__(self, assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> None:
         self.assembly, self.placed, self._rates = assembly, placed, rates
         pairs = zip(assembly.instances, assembly.mounted, strict=True)
-        names = [f"{i.name}.{joint.coordinate}" for i, m in pairs for joint in m.part.topology.joints]
-        self.coordinates = {name: a for a, name in enumerate(names)}
-        self.units = [UNITS[j.s] for m in assembly.mounted for j in m.part.topology.joints]
+        joints = [(i.name, m, c) for i, m in pairs for c in m.part.topology.movers]
+        names = [f"{name}.{m.part.topology.joints[c].coordinate}" for name, m, c in joints]
+        self.coordinates = {name: m.first + c for name, (_, m, c) in zip(names, joints, strict=True)}
+        self.units = {m.first + c: UNITS[m.part.topology.joints[c].s] for _, m, c in joints}
         assembly.scope.more = (*names, *(f"{name}'" for name in names), *assembly.inputs)
         super().__init__(assembly.scope)
 

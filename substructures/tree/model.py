@@ -18,7 +18,7 @@ from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, recheck, told_operations
 from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
-from substructures.tree.certificate import certify_tree
+from substructures.tree.certificate import certified, seconds_of
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
@@ -27,6 +27,7 @@ from substructures.tree.load_potentials import found_potential
 from substructures.tree.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
+from substructures.tree.shape import CertifiedProgram, KnownShapes, shape_digest
 from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
@@ -153,6 +154,7 @@ def couple(
     max_nodes: int = MAX_NODES,
     admit: Callable[[int], None] | None = None,
     group: bool = False,
+    known: KnownShapes | None = None,
 ) -> Model:
     """Couple stored parts (by instance name) to a model and verify it. ``spec``: the tree, or its document.
 
@@ -164,7 +166,8 @@ def couple(
     ``group``: base parameters also of masses, lengths and inertias that are symbols, not only of numbers: fewer
     operations for each state, more for the parameters (:mod:`substructures.tree.grouping`).
 
-    ``admit`` is told how many operations to expect before the work begins, and may raise instead.
+    ``admit`` is told how many operations to expect before the work begins, and may raise instead. ``known``: shapes
+    that were coupled and certified before; a tree of one of them has its program and certificate, and its own warnings.
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
     VerificationFailed, which names the part whose stored formulas are wrong.
     """
@@ -180,41 +183,73 @@ def couple(
     entries.require("the tree")
     if admit is not None:
         admit(expected_operations(joints_of))
-    names = _coordinate_names(assembly)
+    shape = "" if known is None else shape_digest(spec, parts, group)
+    found = None if known is None else known.get(shape)
+    christoffel = not entries.is_large
+    result = _limited(found.program, max_nodes) if found else _formulas(spec, assembly, christoffel, group, max_nodes)
+    seconds = perf_counter() - start
+    plausibility = Plausibility(spec, definitions)
+    model = _model(assembly, result, plausibility)
+    is_shared, start = False, perf_counter()
+    if found is None:
+        try:
+            certificate, is_shared = certified(spec, definitions, model.described(), result)
+        except VerificationFailed as error:
+            raise _blamed(parts, error) from None
+        found = CertifiedProgram(result.marked(not_judged(certificate)), certificate, tuple(assembly.scope.notices))
+    if known is not None and is_shared:
+        known.put(shape, found)
+    told = [*units.warnings, *found.notices, *tree_warnings(spec, parts, result, model.coordinates)]
+    warnings = {"warnings": [*told, *plausibility.at_defaults], "converted": units.converted}
+    taken = {"seconds": seconds_of(seconds, perf_counter() - start)}
+    return replace(model, program=found.program, certificate={**found.certificate, **taken, **warnings})
+
+
+def couple_formulas(
+    spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES, christoffel: bool = True
+) -> Model:
+    """The model of :func:`couple` with the fewest operations for each state, and without a certificate: for numbers of
+    many parameter sets, some of which are compared with those of models that have one. Raises as :func:`couple`.
+    """
+    assembly = assemble(spec, parts)
+    entries = entries_of(joint_parents(assembly.mounted))
+    entries.require("the tree")
+    result = _formulas(spec, assembly, christoffel and not entries.is_large, True, max_nodes)
+    return _model(assembly, result, Plausibility(spec, {name: part.definition for name, part in parts.items()}))
+
+
+def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> Model:
+    """The model of an assembly, without a certificate."""
+    names, joints = _coordinate_names(assembly), "".join(m.part.joints for m in assembly.mounted)
+    rows = tuple(cut.rows for cut in assembly.cuts)
+    moving = [
+        f"{i.name}.{x.coordinate}"
+        for i, m in zip(assembly.instances, assembly.mounted, strict=True)
+        for x in m.part.topology.joints
+    ]
+    limited = tuple(moving[a] for a in sorted(assembly.limits))
+    names_of = (names, joints, _frame_names(assembly))
+    return Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
+
+
+def _formulas(spec: TreeSpec, assembly: Assembly, christoffel: bool, group: bool, max_nodes: int) -> Program:
+    """All outputs of a tree; ``christoffel``: with the Christoffel symbols."""
+    graph, names = assembly.scope.graph, _coordinate_names(assembly)
+    admitted = every if group else numbers
     try:
-        result = _formulas(assembly, names, not entries.is_large, group)
+        coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
+        coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
+        result = hoisted(program(graph, loaded_outputs(assembly, coupled), assembly.scope.symbols))
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
+    return _limited(result, max_nodes)
+
+
+def _limited(result: Program, max_nodes: int) -> Program:
+    """The program. Raises TooLarge for more than so many operations."""
     if len(result) > max_nodes:
         raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
-    seconds = perf_counter() - start
-    joints = "".join(m.part.joints for m in assembly.mounted)
-    plausibility = Plausibility(spec, definitions)
-    warnings = [
-        *units.warnings,
-        *assembly.scope.notices,
-        *tree_warnings(spec, parts, result, names),
-        *plausibility.at_defaults,
-    ]
-    rows = tuple(cut.rows for cut in assembly.cuts)
-    names_of = (names, joints, _frame_names(assembly))
-    limited = tuple(names[a] for a in sorted(assembly.limits))
-    model = Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
-    try:
-        certificate = certify_tree(spec, definitions, model.described(), result, seconds)
-    except VerificationFailed as error:
-        raise _blamed(parts, error) from None
-    certificate |= {"warnings": warnings, "converted": units.converted}
-    return replace(model, program=result.marked(not_judged(certificate)), certificate=certificate)
-
-
-def _formulas(assembly: Assembly, names: Sequence[str], christoffel: bool, group: bool) -> Program:
-    """All outputs of a tree; ``names``: of its coordinates; ``christoffel``: with the Christoffel symbols."""
-    graph = assembly.scope.graph
-    admitted = every if group else numbers
-    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
-    coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-    return hoisted(program(graph, loaded_outputs(assembly, coupled), assembly.scope.symbols))
+    return result
 
 
 def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] | None = None) -> dict[str, Formulas]:

@@ -32,11 +32,13 @@ from collections.abc import Callable, Mapping, Sequence
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.part.outputs import over_formulas
+from substructures.part.relations import of_coordinates
 from substructures.tree.assembly import Assembly
 from substructures.tree.closures import closure_formulas
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import PlacedPart, ratios_of
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
@@ -52,7 +54,8 @@ def model_outputs(
 ) -> dict[str, Formulas]:
     """The table above, over the scalars of the assembly; ``names``: those that are wanted, and some more.
 
-    ``forces``: ``bias`` and ``nonlinear_effects``, if not by Newton and Euler's recursion.
+    ``rates``, ``accelerations``: of all joints; ``forces``: ``bias`` and ``nonlinear_effects``, if not by Newton and
+    Euler's recursion.
     """
     n, placed = len(coupled.gravity), coupled.placed
 
@@ -82,7 +85,8 @@ def model_outputs(
     outputs |= {name: found for name, found in _joint_laws(assembly, n).items() if wanted(name)}
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
-    return outputs | (_kinematics(placed, n) if wanted(*KINEMATICS) else {})
+    outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
+    return of_coordinates(outputs, coupled.ratios)
 
 
 def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
@@ -106,15 +110,18 @@ def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequenc
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
-    """The symbols of all velocities and accelerations."""
+    """Velocities and accelerations of all joints: the symbols, or what relations make of them."""
     rates: list[Expr] = []
     accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
-        for joint in m.part.topology.joints:
-            name, unit = f"{instance.name}.{joint.coordinate}", "m" if joint.s else "rad"
-            rates.append(assembly.scope.declare(f"{name}'", "velocity", f"{unit}/s"))
-            accelerations.append(assembly.scope.declare(f"{name}''", "acceleration", f"{unit}/s^2"))
-    return rates, accelerations
+        for name, kind in zip(m.part.coordinates, m.part.joints, strict=True):
+            whole, unit = f"{instance.name}.{name}", "m" if kind == "P" else "rad"
+            rates.append(assembly.scope.declare(f"{whole}'", "velocity", f"{unit}/s"))
+            accelerations.append(assembly.scope.declare(f"{whole}''", "acceleration", f"{unit}/s^2"))
+    ratios = ratios_of(over_formulas(assembly.scope.graph), assembly.mounted)
+    lift = assembly.scope.graph.lift
+    first, second = ([lift(x) for x in ratios.rates(some)] for some in (rates, accelerations))
+    return first, second
 
 
 def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:

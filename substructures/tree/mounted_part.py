@@ -6,9 +6,11 @@ that is mounted on it, whatever its own host does. :class:`PlacedPart`: what it 
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.laws import magnitude, maximum, minimum
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import (
     INTERFACE,
@@ -33,8 +35,10 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.newton_euler import Wrench
-from substructures.part.outputs import PartOutputs
+from substructures.mechanics.ratios import Ratios
+from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
+from substructures.part.relations import MULTIPLIER, OFFSET
 from substructures.part.wrenches import wrench_about_origin
 
 #: the host of what is not mounted on a part
@@ -45,7 +49,7 @@ WORLD = -1
 class MountedPart:
     """A part in a tree: host (index of an earlier one, or WORLD), frame of the host, constant placement, bindings.
 
-    ``first``: index of its first coordinate in the tree.
+    ``first``: index of its first joint in the tree.
     """
 
     part: Part
@@ -63,6 +67,74 @@ def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
         Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
         for c, j in enumerate(part.topology.joints)
     )
+
+
+def ratios_of(run: Run, mounted: Sequence[MountedPart]) -> Ratios:
+    """The coordinates of a tree that move its joints, over the scalars of ``run``."""
+    of: list[int] = []
+    movers: list[int] = []
+    multipliers: list[Scalar] = []
+    for m in mounted:
+        of += [len(movers) + i for i in m.part.topology.moved_by]
+        movers += [m.first + c for c in m.part.topology.movers]
+        if m.part.topology.is_related:
+            found = run(m.part, m.bindings, (MULTIPLIER,))
+            multipliers += [found.scalar(MULTIPLIER, a) for a in range(m.part.joint_count)]
+        else:
+            multipliers += [1] * m.part.joint_count
+    return Ratios(tuple(of), tuple(multipliers), tuple(movers))
+
+
+def joint_position(graph: Graph, m: MountedPart, c: int) -> Expr:
+    """q of a joint of a mounted part: its coordinate, or what a relation makes of another one."""
+    name = m.part.coordinates[m.part.topology.moved_by[c]]
+    bound = m.bindings.get(name)
+    q: Expr = graph.symbol(name) if bound is None else graph.lift(bound)
+    if c in m.part.topology.movers:
+        return q
+    found = over_formulas(graph)(m.part, m.bindings, (MULTIPLIER, OFFSET))
+    return q * graph.lift(found.scalar(MULTIPLIER, c)) + graph.lift(found.scalar(OFFSET, c))
+
+
+def limits_of_movers(run: Run, m: MountedPart, limits: Mapping[int, tuple[Expr, Expr]]) -> dict[int, tuple[Expr, Expr]]:
+    """What the limits of joints, by joint, leave of the ranges of the coordinates that move them; over formulas."""
+    if not m.part.topology.is_related:
+        return dict(limits)
+    relations, result = run(m.part, m.bindings, (MULTIPLIER, OFFSET)), dict[int, tuple[Expr, Expr]]()
+    for c, (low, high) in limits.items():
+        k = m.part.topology.movers[m.part.topology.moved_by[c]]
+        mu, delta = (low.graph.lift(relations.scalar(name, c)) for name in (MULTIPLIER, OFFSET))
+        if mu.is_zero:
+            continue
+        # q = (q^d - delta) / mu, between the smaller and the larger one of the ends
+        ends = low if k == c else (low - delta) / mu, high if k == c else (high - delta) / mu
+        least, most = ends if k == c else (minimum(*ends), maximum(*ends))
+        known = result.get(k)
+        result[k] = (maximum(known[0], least), minimum(known[1], most)) if known else (least, most)
+    return result
+
+
+def friction_of_movers(
+    run: Run, m: MountedPart, laws: Mapping[int, tuple[Expr, Expr, Expr, Expr]]
+) -> tuple[dict[int, tuple[Expr, Expr, Expr, Expr]], bool]:
+    """F_c, F_s, v_s, v_0 by joint as those of the coordinates that move them, |mu| F at the rate |mu| q', and whether
+    those of one coordinate are one law: of the same velocities.
+    """
+    if not m.part.topology.is_related:
+        return dict(laws), True
+    relations, result, is_one = run(m.part, m.bindings, (MULTIPLIER,)), dict[int, tuple[Expr, Expr, Expr, Expr]](), True
+    for c, law in laws.items():
+        k = m.part.topology.movers[m.part.topology.moved_by[c]]
+        mu = magnitude(law[0].graph.lift(relations.scalar(MULTIPLIER, c)))
+        if mu.is_zero:
+            continue
+        F, S, v, w = law[0] * mu, law[1] * mu, law[2] / mu, law[3] / mu
+        known = result.get(k)
+        if known is not None:
+            is_one = is_one and (known[2] - v).is_zero and (known[3] - w).is_zero
+            F, S = known[0] + F, known[1] + S
+        result[k] = F, S, v, w
+    return result, is_one
 
 
 def frame_placement(
@@ -95,6 +167,8 @@ class EvaluatedPart:
 class PlacedPart:
     """An evaluated part on its host, or on the world (None).
 
+    Everything is by joint here; where relations move some, coordinates come at the end (:func:`ratios_of`).
+
     ``seat``: the link from the carrier in the host, or from the world, to the interface. By carrier: ``columns`` of the
     host's and own coordinates, by index in the tree (of the interface only the host's), and ``gamma``, gravity in its
     axes.
@@ -120,7 +194,7 @@ class PlacedPart:
 
     @property
     def first(self) -> int:
-        """Index of its first coordinate in the tree."""
+        """Index of its first joint in the tree."""
         return self.evaluated.mounted.first
 
     @property

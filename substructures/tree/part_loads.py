@@ -15,7 +15,7 @@ from substructures.part.wrenches import acts_on_host
 from substructures.tree.assembly import Assembly
 from substructures.tree.frame_points import place_of
 from substructures.tree.loads import LoadNames
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import PlacedPart, joint_position
 
 
 def loads_of_parts(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[Expr]) -> Sequence[Acting]:
@@ -35,7 +35,13 @@ class _Inside(Names):
 
     def __init__(self, names: LoadNames, here: PlacedPart, instance: str) -> None:
         self.names, self.here, self.instance = names, here, instance
-        self.coordinates = {name: here.first + c for c, name in enumerate(here.part.coordinates)}
+        layout = here.part.topology
+        self.coordinates = {layout.joints[c].coordinate: here.first + c for c in layout.movers}
+        self.moved = {
+            joint.coordinate: (layout.coordinates[layout.moved_by[c]], here.first + c)
+            for c, joint in enumerate(layout.joints)
+            if c not in layout.movers
+        }
         super().__init__(names.scope)
 
     @property
@@ -45,6 +51,13 @@ class _Inside(Names):
 
     def plain(self, name: str) -> Expr | None:
         """What a name of the definition stands for in the tree."""
+        joint = self.moved.get(name.removesuffix("'"))
+        if joint is not None:
+            return (
+                self.rates[joint[1]]
+                if name.endswith("'")
+                else joint_position(self.graph, self.here.mounted, joint[1] - self.here.first)
+            )
         return self.names.plain(name if name == "t" else f"{self.instance}.{name}")
 
     def constant(self, name: str) -> Expr | None:

@@ -17,12 +17,10 @@ from numpy.typing import NDArray
 from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, value
-from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Body, Definition
-from substructures.part.mass import sum_of
+from substructures.part.mass import limits_in_numbers, number_of, sum_of
 from substructures.part.parameters import names_in_limits
-from substructures.part.topology import topology
 from substructures.tree.document import TreeSpec
 
 #: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
@@ -30,7 +28,6 @@ ROUNDING = 1e-9
 #: so much, relative to 1 and its size, a coordinate may be beside the value that a relation gives it
 APART = 1e-6
 Indices = NDArray[np.intp]
-UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
 
 class _Values(Mapping[str, Any]):
@@ -94,6 +91,13 @@ class Plausibility:
         names = {name: _OfInstance(values, name, each.parameters) for name, each in definitions}
         return sum_of((body.mass, names[name]) for name, each in definitions for body in each.bodies)
 
+    def masses(self, given: Mapping[str, Any]) -> Any:
+        """Of all bodies in kg, with the parameters ``given`` (numbers, or (N,)) and defaults; NaN without a value."""
+        values, pairs = _Values(self._texts, given), self.definitions.items()
+        names = {name: _OfInstance(values, name, each.parameters) for name, each in pairs}
+        found = [number_of(body.mass, names[name]) for name, each in pairs for body in each.bodies]
+        return sum((np.nan if x is None else x for x in found), 0.0)
+
     @cached_property
     def at_defaults(self) -> tuple[Notice, ...]:
         """:meth:`inertias` where no parameter is given."""
@@ -127,16 +131,11 @@ class Plausibility:
 
     def limits(self, given: Mapping[str, Any]) -> dict[str, tuple[Any, Any, str]]:
         """Lowest and highest value of every coordinate that has limits, and its unit; (N,) where parameters are."""
-        values, found = _Values(self._texts, given), {}
+        values, found = _Values(self._texts, given), dict[str, tuple[Any, Any, str]]()
         for instance in self.spec.instances:
             definition = self.definitions[instance.name]
             names = _OfInstance(values, instance.name, definition.parameters)
-            for joint in topology(definition).joints:
-                limits = definition.bodies[joint.body].joint.limits
-                pair = limits[joint.step] if limits and isinstance(limits[0], tuple) else limits
-                low, high = (_value(x, names) for x in pair or (None, None))
-                if low is not None and high is not None:
-                    found[f"{instance.name}.{joint.coordinate}"] = low, high, UNITS[joint.s]
+            found |= {f"{instance.name}.{q}": ends for q, ends in limits_in_numbers(definition, names).items()}
         return found
 
     def left(self, coordinates: tuple[str, ...], q: Array, given: Mapping[str, Any], first: int = 0) -> list[Notice]:
@@ -212,14 +211,6 @@ def _more(count: int) -> str:
     return f" (and in {count - 1} more)" if count > 1 else ""
 
 
-def _value(given: Any, names: Mapping[str, Any]) -> Any:
-    """The value, None of what is not given or names a parameter without one."""
-    try:
-        return None if given is None else value(in_si(given), names)
-    except ExpressionError:
-        return None
-
-
 def _faults(body: Body, names: Mapping[str, Any], first: int) -> Iterator[tuple[str, str]]:
     """Code and message of what a body cannot have; numbers alone were looked at when formulas were derived."""
     tensor = body.inertia
@@ -227,10 +218,10 @@ def _faults(body: Body, names: Mapping[str, Any], first: int) -> Iterator[tuple[
     armature = body.joint.armature
     for given in armature if isinstance(armature, tuple) else (armature,):
         if isinstance(given, str):
-            yield from _negative("armature", _value(given, names), "kg m^2", first)
+            yield from _negative("armature", number_of(given, names), "kg m^2", first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
         return
-    numbers = [_value(x, names) for x in (body.mass, *body.com, *inertia)]
+    numbers = [number_of(x, names) for x in (body.mass, *body.com, *inertia)]
     if isinstance(body.mass, str):
         yield from _negative("mass", numbers[0], "kg", first)
     if all(x is not None for x in numbers):

@@ -13,9 +13,9 @@ from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimens
 from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
-from substructures.part.left_out import left_out_warnings, weightless_warnings
 from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part
+from substructures.part.relations import left_out_warnings, weightless_warnings
 from substructures.part.topology import topology
 from substructures.part.units import (
     ACCELERATION,
@@ -25,6 +25,7 @@ from substructures.part.units import (
     placement_places,
 )
 from substructures.tree.document import TreeSpec
+from substructures.tree.interfaces import differing_interfaces
 
 TIME = read_unit("s").dimension
 #: parameters of a definition by name, with their SI units
@@ -104,8 +105,8 @@ def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[P
 
 
 def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, names: Sequence[str]) -> list[Notice]:
-    """Gravity that was not given, coordinates (``names``) without mass, what parts leave out, parameters and bindings
-    without effect, bindings whose unit is only assumed.
+    """Gravity that was not given, coordinates (``names``) without mass, flanges that do not fit, what parts leave out,
+    parameters and bindings without effect, bindings whose unit is only assumed.
     """
     notices: list[Notice] = []
     if names and "gravity" not in spec.model_fields_set:
@@ -124,6 +125,7 @@ def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, n
         if name not in used
     ]
     notices += weightless_warnings(program, names)
+    notices += differing_interfaces(spec, {name: part.definition for name, part in parts.items()})
     for i, instance in enumerate(spec.instances):
         part = parts[instance.name]
         told = left_out_warnings(part.definition)

@@ -19,7 +19,7 @@ from substructures.analysis.control.problem import ControlProblem, Cost, initial
 from substructures.analysis.control.shooting import Shooting
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import Direction, EvaluationOptions, evaluate
+from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 

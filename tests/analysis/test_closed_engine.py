@@ -8,7 +8,7 @@ from closed_trees import angles, tree_model
 from random_trees import GRAVITY, Plain, add_inertia, vector
 
 from substructures.analysis.closed.loops import loop_state
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional

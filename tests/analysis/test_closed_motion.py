@@ -13,7 +13,7 @@ from simulated import simulated
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Event, Outputs, Table, simulate
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -9,7 +9,8 @@ import pytest
 from random_trees import Plain, model_of
 
 from substructures import Model
-from substructures.analysis.equations.first_integrals import Integral, first_integrals
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.integral import Integral
 from substructures.analysis.simulate import Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 

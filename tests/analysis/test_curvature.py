@@ -23,7 +23,7 @@ from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.replay import replay
 from substructures.expr.rings.expand import is_zero
-from substructures.quantities.evaluation import EvaluationOptions, evaluate, interpreted
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate, interpreted
 
 
 def symbolic(bodies: list[Plain], parameters: str) -> Model:

@@ -11,7 +11,7 @@ from random_trees import GRAVITY, Plain, add_inertia, number, vector
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.part.topology import CHAINS
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 KINDS = ("revolute", "prismatic", "spherical", "fixed", "cylindrical", "universal", "planar")
 

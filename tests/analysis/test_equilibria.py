@@ -14,7 +14,7 @@ from random_trees import Plain, model_of
 from substructures import InvalidInput, Model
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.root_locus import root_locus
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 SLIDE: Plain = {"name": "b", "parent": "base", "mass": 2, "joint": {"type": "prismatic", "coordinate": "s"}}
 

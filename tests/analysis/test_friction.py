@@ -20,7 +20,7 @@ from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.simulate import Event, FixedStep
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 G = 9.81
 

@@ -20,9 +20,9 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
-from substructures.quantities.states import default_number
 
 UP = (0, 0, "-9.81")
 IN_PLANE = (0, "-9.81", 0)

@@ -24,8 +24,8 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.errors import InvalidArgument, InvalidDocument
-from substructures.quantities.evaluation import evaluate
-from substructures.tree.published import Publication, published
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.tree.publishing.published import Publication, published
 
 Plain = dict[str, Any]
 PUSH: Plain = {"unit": "kN", "default": "3/1000"}

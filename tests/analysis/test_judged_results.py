@@ -18,7 +18,7 @@ from substructures import Model
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ClosedMotion, Event, FixedStep, Integrator, Outputs, simulate
 from substructures.analysis.verdict import Check
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 TREES: dict[str, tuple[str, Plain]] = {
     "acrobot": ("acrobot", {"q": [1.2, 0], "span": [0, 5], "step": 0.02}),

@@ -19,7 +19,7 @@ from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.vibrations import modes
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 G = 9.81
 STEP = 1e-4

@@ -16,7 +16,7 @@ from substructures.analysis.motion import loaded_friction
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.reactions import ReactionModel, reactions
 
 G = 9.81

@@ -13,7 +13,7 @@ from random_trees import Plain
 from substructures import Definition, InvalidInput, TreeSpec, couple, derive
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Table, simulate
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def test_planar_pin_is_redundant_but_harmless() -> None:

@@ -16,7 +16,7 @@ from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.nonlinear_program import Demands, End, ShootingProgram
 from substructures.analysis.control.optimal_control import Optimum, optimal_control
 from substructures.analysis.control.problem import ControlProblem, Cost
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 @cache

@@ -26,7 +26,7 @@ from substructures.analysis.equations.quasi_velocities import quasi_velocity_equ
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.simulate import Closed, Linear
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def same(found: Any, expected: Any, tolerance: float = 1e-9) -> None:

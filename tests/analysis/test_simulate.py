@@ -17,7 +17,7 @@ from substructures.analysis.motion.right_hand_side import RightHandSide, forward
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv, to_npz
 from substructures.analysis.simulate import Event, FixedStep, Outputs, Table, simulate
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def names(trajectory: Trajectory) -> set[str]:

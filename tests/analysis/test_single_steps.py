@@ -17,8 +17,10 @@ from simulated import simulated
 from substructures.analysis.closed import simulation as closed
 from substructures.analysis.motion import rolling, simulation, single_steps
 from substructures.analysis.motion.integrators import fixed_step, integration
+from substructures.analysis.motion.integrators.fixed_step import StepMethod
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, FixedStep, Outputs, simulate
+from substructures.compile.motion import CompiledRates
 
 CRANK = slider_crank()
 MOTIONS: dict[str, tuple[Any, Callable[[], Trajectory]]] = {
@@ -99,8 +101,14 @@ def test_no_more_steps_are_told_of_than_there_are(count: int) -> None:
 def test_steps_of_a_fixed_size_that_are_too_long(monkeypatch: pytest.MonkeyPatch) -> None:
     request: Plain = {"q": [0.5], "span": (0, 1), "fixed_step": FixedStep(0.001)}
     assert simulated(shipped("simple-pendulum"), **request).is_right
-    rk4 = fixed_step.rk4
-    monkeypatch.setattr(fixed_step, "rk4", lambda f, t, x, h: rk4(f, t, x, 1.001 * h))
+    right = fixed_step.rk4_of
+
+    def wrong(rates: CompiledRates | None) -> StepMethod:
+        """Steps a little too long, in machine code or not."""
+        step = right(rates)
+        return lambda f, t, x, h: step(f, t, x, 1.001 * h)
+
+    monkeypatch.setattr(fixed_step, "rk4_of", wrong)
     assert failed(simulated(shipped("simple-pendulum"), **request)) == ["steps"]
 
 

@@ -25,7 +25,7 @@ from substructures.analysis.stability.steady_motions import SteadyMotion, steady
 from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 G, LENGTH, MASS, FRAME = 9.81, 0.5, 2.0, 0.3
 

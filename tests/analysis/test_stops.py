@@ -16,7 +16,7 @@ from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.simulate import ClosedMotion, Event, Integrator, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def slide(stops: Plain, gravity: float = 0, **joint: Any) -> Model:

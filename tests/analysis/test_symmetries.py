@@ -11,10 +11,11 @@ from independent import value
 from random_trees import Plain, model_of, random_states
 
 from substructures import Definition, Model, TreeSpec, couple, derive
-from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral, first_integrals
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.integral import FirstIntegrals, Integral
 from substructures.analysis.simulate import Outputs, simulate
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 AT = {"p": 0.5}
 PARAMETERS = {"m": {"value": 1.3}, "p": {"value": 0.5}, "k": {"value": 3}}
@@ -100,7 +101,11 @@ def test_a_damper_between_both_leaves_the_momentum() -> None:
         {"type": "joint", "coordinate": "y", "force": "p*(x' - p*y')"},
     ]
     found = first_integrals(two(*loads))
-    assert {i.kind: i.rule for i in found.integrals} == {"energy": "falling", "symmetry": "constant"}
+    assert {i.kind: i.rule for i in found.integrals} == {
+        "energy": "falling",
+        "symmetry": "constant",
+        "linear": "constant",
+    }
 
 
 def test_a_pitch_of_zero_is_no_infinite_direction() -> None:

@@ -23,7 +23,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
 from substructures.expr.rings.expand import is_zero
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def exact(equations: QuasiVelocities, expected: Plain) -> None:

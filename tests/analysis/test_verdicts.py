@@ -31,7 +31,7 @@ from substructures.analysis.simulate import Event, FixedStep, Integrator, Linear
 from substructures.analysis.stability.equilibria import Equilibrium, equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check, verdict
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.regressor import regressor
 
 HOLDS = Check("a", "constant", "", "J", 0.0, 1.0, 1e-7)

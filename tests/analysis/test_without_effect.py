@@ -19,7 +19,7 @@ from substructures.analysis.motion.parameter_sensitivity import sensitivities, s
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.errors import InvalidInput
 from substructures.quantities.derivative_directions import Direction
-from substructures.quantities.evaluation import EvaluationOptions
+from substructures.quantities.numbers.evaluation import EvaluationOptions
 
 PENDULUM: dict[str, Any] = {
     "name": "pendulum",

@@ -13,7 +13,7 @@ from catalogue_entries import shipped_part
 from substructures import TreeSpec, couple
 from substructures.expr.interpret import constant, interpret
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.states import default_number
 from substructures.tree.model import Model
 
 Array = Any
@@ -38,6 +38,8 @@ def _magnitude(operation: tuple[Any, ...], value: Callable[[int], Array], size: 
         return np.abs(value(x)) ** n * (size(x) / np.abs(value(x))) ** abs(n)
     if op == "acos":  # pi
         return np.pi * size(x)
+    if op == "sign":
+        return np.ones_like(size(x))
     assert op in ("neg", "abs"), op
     return size(x)
 
@@ -48,6 +50,7 @@ def _deviation(compiled: Program, values: Mapping[str, Any], found: Mapping[str,
     sizes: dict[int, Array] = {}
     expected = interpret(compiled, values, list(found))
     single = {"sin": np.sin, "cos": np.cos, "neg": np.negative, "sqrt": np.sqrt, "abs": np.abs, "acos": np.arccos}
+    single["sign"] = np.sign
     double = {"add": np.add, "sub": np.subtract, "mul": np.multiply, "div": np.divide}
     with np.errstate(all="ignore"):
         for i in compiled.reachable(list(found)):

@@ -1,5 +1,7 @@
 """Kernels of random trees and of the whole catalogue beside Pinocchio."""
 
+# ruff: noqa: N806 -- symbols of the notation
+
 from __future__ import annotations
 
 from typing import Any
@@ -9,10 +11,11 @@ import pytest
 from independent import by_coordinate, value, values
 from machine_code import NEEDS_MACHINE_CODE
 from random_trees import GRAVITY, Kind, model_of, random_definition
+from related import joints_of, reduction
 
 from substructures import catalogue
 from substructures.compile import compile_program
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.states import default_number
 from substructures.tree.model import Model
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
@@ -31,19 +34,23 @@ def compare(model: Model, definition: Plain, numbers: dict[str, float], count: i
     kernel = compile_program(model.program, ["metric", "gravity", "christoffel"])
     found = kernel.evaluate(numbers, columns=[(model.coordinates, q)])
     assert all(np.isfinite(found[name]).all() for name in ("metric", "gravity", "christoffel"))
-    engine, names = engine_of(definition, gravity), [c.removeprefix("x.") for c in model.coordinates]
+    engine, names = engine_of(definition, gravity), list(joints_of(definition))
     order = engine.order(names)
     place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))
+    N, q0 = reduction(definition, names, [c.removeprefix("x.") for c in model.coordinates])
+    joints, rates = q @ N.T + q0, qd @ N.T
     data, worst = engine.model.createData(), 0.0
     for i in range(count):
-        upper = np.triu(pin.crba(engine.model, data, q[i][place]))
+        upper = np.triu(pin.crba(engine.model, data, joints[i][place]))
         metric = (upper + np.triu(upper, 1).T)[np.ix_(order, order)] + rotors
-        coriolis = pin.computeCoriolisMatrix(engine.model, data, q[i][place], qd[i][place])[np.ix_(order, order)]
-        forces = -pin.computeGeneralizedGravity(engine.model, data, q[i][place])[order]
+        coriolis = pin.computeCoriolisMatrix(engine.model, data, joints[i][place], rates[i][place])[
+            np.ix_(order, order)
+        ]
+        forces = -pin.computeGeneralizedGravity(engine.model, data, joints[i][place])[order]
         pairs = (
-            (found["metric"][i], metric),
-            (found["gravity"][i], forces),
-            (found["christoffel"][i] @ qd[i], coriolis),
+            (found["metric"][i], N.T @ metric @ N),
+            (found["gravity"][i], N.T @ forces),
+            (found["christoffel"][i] @ qd[i], N.T @ coriolis @ N),
         )
         worst = max(worst, *(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-2)) for a, b in pairs))
     return worst
@@ -64,14 +71,14 @@ def numeric(definition: Plain, names: dict[str, float]) -> Plain:
 
     def numbers(given: Any) -> Any:
         if isinstance(given, dict):
-            return {k: v if k in ("type", "about", "coordinate") else numbers(v) for k, v in given.items()}
+            return {k: v if k in ("type", "about", "coordinate", "of") else numbers(v) for k, v in given.items()}
         return values(given, names).tolist() if isinstance(given, list) else value(given, names)
 
     bodies = [{k: v if k in ("name", "parent") else numbers(v) for k, v in b.items()} for b in definition["bodies"]]
     for body in bodies:
         if "placement" in body["joint"]:
             body["joint"]["placement"] = {"position": [0.0] * 3, "rpy": [0.0] * 3} | body["joint"]["placement"]
-    return {"bodies": bodies}
+    return {"bodies": bodies, "relations": [numbers(each) for each in definition.get("relations", [])]}
 
 
 def entry(name: str, count: int, tree: Any, states: Any) -> float:

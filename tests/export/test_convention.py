@@ -19,7 +19,7 @@ from substructures.export import TARGETS, exported_model, files, interface_of_mo
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.part.outputs import with_own_inertia
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 
 #: the contract, section 8
 CONTRACT = {
@@ -95,9 +95,7 @@ def test_files_of_several_quantities_and_trees_link(acrobot: Model, tmp_path: Pa
     other = tree_of("cart-pendulum")
     sources = []
     for model, name in ((acrobot, "one"), (other, "two")):
-        sources += [
-            p for p in write(exported_of(model, name), "c", tmp_path) if p.suffix == ".c" and "selftest" not in p.name
-        ]
+        sources += [p for p in write(exported_of(model, name), "c", tmp_path) if p.name == f"{name}.c"]
     interface = interface_of_model(acrobot)
     for quantity in ("metric", "forces"):  # as format=c serves them
         text = render(acrobot.program.select([quantity]), "c", name=f"just_{quantity}", interface=interface)
@@ -148,7 +146,7 @@ def test_all_share_what_they_have_in_common(acrobot: Model, tmp_path: Path) -> N
     exported = exported_of(acrobot, together=True)
     *single, together = exported.functions
     assert together.program.count()["total"] < sum(f.program.count()["total"] for f in single)
-    library = shared([p for p in write(exported, "c", tmp_path) if p.suffix == ".c" and "selftest" not in p.name])
+    library = shared([p for p in write(exported, "c", tmp_path) if p.name == "demo.c"])
     values = state(exported.interface)
     agree(call_c(library, exported, together, values), together, values)
 
@@ -169,7 +167,7 @@ def test_the_interface_as_a_document(acrobot: Model) -> None:
 def test_a_caller_that_knows_the_interface_alone(acrobot: Model, tmp_path: Path) -> None:
     """Every function through the one entry that takes all vectors, by numbers and shapes of the document."""
     exported = exported_of(acrobot)
-    library = shared([p for p in write(exported, "c", tmp_path) if p.suffix == ".c" and "selftest" not in p.name])
+    library = shared([p for p in write(exported, "c", tmp_path) if p.name == "demo.c"])
     told = json.loads(files(exported, "interface", LIMIT)["demo_interface.json"])
     values = state(exported.interface)
     vectors = [np.array([values[n] for n in told["vectors"][s]["names"]]) for s in ("t", "q", "qd", "qdd", "u")]

@@ -52,11 +52,11 @@ def test_names_do_not_leave_their_line(target: str) -> None:
             continue
         text = data.decode()
         assert text.isascii()
-        assert not set(text) - set(map(chr, range(32, 127))) - {"\n"}
+        assert not set(text) - set(map(chr, range(32, 127))) - {"\n", *("\t" * (name == "Makefile"))}
         # in Python and JavaScript names stand in strings, whose ends are escaped
         assert target in ("python", "jax", "sympy", "javascript") or "*/ int" not in text
         mark = MARKS.get(target, "")
-        if mark:
+        if mark and name != "README.md":
             assert not re.search("boom|import os|system|passwd", code_only(text, mark))
 
 
@@ -86,13 +86,16 @@ def test_an_fmu_has_plain_names_alone(target: str) -> None:
 
 @pytest.mark.parametrize("target", ["python", "jax", "sympy"])
 def test_python_has_the_same_structure_whatever_the_names(target: str) -> None:
-    text = files(HOSTILE, target, 10**6)["model.py"]
+    name, text = next(iter(files(HOSTILE, target, 10**6).items()))
     tree = ast.parse(text)
     called = {ast.unparse(n.func) for n in ast.walk(tree) if isinstance(n, ast.Call)}
     assert not {c for c in called if re.search("system|import|eval|exec|open|boom", c)}
     kinds = {type(n) for n in tree.body}
-    assert kinds <= {ast.Expr, ast.Import, ast.ImportFrom, ast.Assign, ast.FunctionDef}
-    assert sum(isinstance(n, (ast.Import, ast.ImportFrom)) for n in tree.body) == 1
+    assert kinds <= {ast.Expr, ast.Import, ast.ImportFrom, ast.Assign, ast.FunctionDef, ast.ClassDef}
+    imported = [ast.unparse(n) for n in tree.body if isinstance(n, (ast.Import, ast.ImportFrom))]
+    assert imported == [ast.unparse(n) for n in ast.parse(files(PLAIN, target, 10**6)[name]).body if "Import" in str(n)]
+    members = [n for each in tree.body if isinstance(each, ast.ClassDef) for n in each.body]
+    assert {type(n) for n in members} <= {ast.Expr, ast.AnnAssign}
 
 
 def test_c_has_the_same_functions_whatever_the_names(tmp_path: Path) -> None:

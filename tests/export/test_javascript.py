@@ -16,7 +16,7 @@ from run_code import agree, alone, arguments, state, tool
 from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, Function, Interface, exported_model, files, interface_of_model
 from substructures.expr.program import Program, Symbol
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 
 LIMIT = 1_000_000
 #: prints what every call gives, or the name and the message of its error
@@ -112,6 +112,31 @@ def test_wrong_calls_are_refused(acrobot: Model, tmp_path: Path) -> None:
     ]
 
 
+def test_vectors_by_names(acrobot: Model, tmp_path: Path) -> None:
+    """What has a default may be left out; nothing else may, and no name may be wrong."""
+    exported = exported_of(acrobot)
+    q = {"i0.q2": 0.4, "i0.q1": 0.3}
+    heavy = [2.0 if name == "i0.m2" else x for name, x in zip(*_parameters(exported), strict=True)]
+    calls: list[tuple[str, list[Any]]] = [("demo_metric", [q, {"i0.m2": 2.0}]), ("demo_metric", [[0.3, 0.4], heavy])]
+    wrong = [
+        ("demo_metric", [{"i0.q1": 1.0}]),
+        ("demo_metric", [q, {"i0.m9": 2.0}]),
+        ("demo_metric", [q, {"i0.m2": "2"}]),
+    ]
+    first, second, *errors = run(exported, [*calls, *wrong], tmp_path)
+    assert first == second
+    assert errors == [
+        "TypeError: demo_metric: q needs a number for 'i0.q2'",
+        "RangeError: demo_metric: p has no 'i0.m9' (i0.Ic1, i0.Ic2, i0.l1, i0.l2, i0.lc1, i0.lc2, i0.m1, i0.m2)",
+        "TypeError: demo_metric: p needs a number for 'i0.m2'",
+    ]
+
+
+def _parameters(exported: Exported) -> tuple[tuple[str, ...], tuple[float, ...]]:
+    p = exported.interface.vectors["p"]
+    return p.names, p.defaults
+
+
 def test_names_of_users_stay_inert(tmp_path: Path) -> None:
     names = ['</script><script>alert(1)//"@heap@"', "`${process.exit(3)}`", "\u2028 */ process.exit(4) /*", "@name@"]
     symbols = tuple(Symbol(name, "parameter") for name in names)
@@ -129,6 +154,7 @@ def test_names_of_users_stay_inert(tmp_path: Path) -> None:
 
 def test_types_name_every_function(acrobot: Model) -> None:
     text = files(exported_of(acrobot), "javascript", LIMIT)["demo.d.mts"].decode()
-    assert "demo_metric(q: ArrayLike<number>, p?: ArrayLike<number>): Float64Array;" in text
-    assert "demo_forces(t: number, q: ArrayLike<number>, qd: ArrayLike<number>, u: ArrayLike<number>, p?:" in text
+    assert "demo_metric(q: ArrayLike<number> | Coordinates, p?: ArrayLike<number> | Parameters): Float64Array;" in text
+    assert "demo_forces(t: number, q: ArrayLike<number> | Coordinates, qd: ArrayLike<number> | Velocities, u: " in text
+    assert '    /** i0.m2 [kg], default 1.0 */\n    "i0.m2"?: number;\n' in text
     assert '"rotation": Float64Array' in text

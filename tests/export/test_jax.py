@@ -32,7 +32,7 @@ def loaded(tmp_path_factory: pytest.TempPathFactory) -> tuple[Exported, Any, Pat
 def test_every_operation(form: str, tmp_path: Path) -> None:
     exported = alone(mixed_program(), "two_links", form)
     (function,) = exported.functions
-    module = load_python(files(exported, "jax", 10**5)["two_links.py"].decode(), tmp_path)
+    module = load_python(files(exported, "jax", 10**5)["two_links_jax.py"].decode(), tmp_path)
     agree(by_output(function, jax.jit(module.two_links_any)(**arguments(function, POINT))), function, POINT)
     with pytest.raises(ValueError, match=r"p has the shape \(1,\), \(5,\) is needed"):
         module.two_links_any(0.0, [], [], [], [], [1.0])
@@ -67,6 +67,6 @@ def test_derivatives_are_differences(loaded: tuple[Exported, Any, Path]) -> None
 
 def test_the_selftest_is_passed(loaded: tuple[Exported, Any, Path]) -> None:
     done = subprocess.run(
-        [sys.executable, "demo_selftest.py"], cwd=loaded[2], capture_output=True, text=True, check=False
+        [sys.executable, "demo_jax_selftest.py"], cwd=loaded[2], capture_output=True, text=True, check=False
     )
     assert (done.stdout.strip(), done.returncode) == ("ok", 0), done.stderr

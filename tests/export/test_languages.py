@@ -49,7 +49,7 @@ def test_c(form: str, compiler: str, tmp_path: Path) -> None:
 def test_sympy(form: str, tmp_path: Path) -> None:
     exported = alone(mixed_program(), form=form)
     (function,) = exported.functions
-    module = load_python(files(exported, "sympy", LIMIT)["model.py"].decode(), tmp_path)
+    module = load_python(files(exported, "sympy", LIMIT)["model_sympy.py"].decode(), tmp_path)
     assert all(s.is_real for s in module.p)
     values = {s: POINT[s.name] for s in module.p}
     found = {}

@@ -90,7 +90,7 @@ def test_the_interface_tells_the_indices(scara: Model, exported: Exported) -> No
     ("target", "commands"),
     [
         ("c", [["gcc", *STRICT, "-o", "run", "lean_selftest.c", "lean.c", "-lm"], ["./run"]]),
-        ("fortran", [["gfortran", "-std=f2008", "-o", "run", "lean.f90", "lean_selftest.f90"], ["./run"]]),
+        ("fortran", [["gfortran", "-std=f2018", "-o", "run", "lean.f90", "lean_selftest.f90"], ["./run"]]),
         ("cpp", [["g++", "-std=c++17", "-o", "run", "lean_selftest.cpp"], ["./run"]]),
         ("javascript", [["node", "lean_selftest.mjs"]]),
         ("python", [[sys.executable, "lean_selftest.py"]]),

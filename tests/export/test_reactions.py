@@ -13,7 +13,7 @@ from run_code import STRICT, tool
 
 from substructures import TreeSpec, couple
 from substructures.export import exported_model, files, interface_of_model
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
 
 COMMANDS = {

@@ -13,7 +13,7 @@ from run_code import arguments, shared, state
 from substructures.errors import InvalidArgument
 from substructures.export import exported_model, files, interface_of_model
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 
 STUB = Path(__file__).with_name("simulink")
 FLAGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{STUB}"]
@@ -28,8 +28,8 @@ def pointer(x: np.ndarray) -> object:
 def test_the_block_gives_what_the_interpreter_gives(parts: tuple[str, ...], tmp_path: Path) -> None:
     exported = exported_of(tree_of(*parts))
     write(exported, "simulink", tmp_path)
-    assert "mex demo_sfun.c demo.c" in (tmp_path / "demo_build.m").read_text()
-    library = shared([tmp_path / "demo_sfun.c", tmp_path / "demo.c"], FLAGS)
+    assert "mex demo_sfun.c demo_simulink.c" in (tmp_path / "demo_build.m").read_text()
+    library = shared([tmp_path / "demo_sfun.c", tmp_path / "demo_simulink.c"], FLAGS)
     library.block_start.restype = ctypes.c_char_p
     vectors = exported.interface.vectors
     n = len(vectors["q"])
@@ -60,7 +60,7 @@ def test_the_block_gives_what_the_interpreter_gives(parts: tuple[str, ...], tmp_
 def test_defaults_and_wrong_lengths(tmp_path: Path) -> None:
     exported = exported_of(tree_of("acrobot"))
     write(exported, "simulink", tmp_path)
-    library = shared([tmp_path / "demo_sfun.c", tmp_path / "demo.c"], FLAGS)
+    library = shared([tmp_path / "demo_sfun.c", tmp_path / "demo_simulink.c"], FLAGS)
     library.block_start.restype = ctypes.c_char_p
     nothing = ctypes.c_size_t(0)
     assert library.block_start(None, nothing, None, nothing) is None

@@ -25,7 +25,7 @@ from run_code import STRICT, agree, arguments, by_output, load_python, octave, s
 
 from substructures import catalogue
 from substructures.export import Exported, exported_model, interface_of_model, reference
-from substructures.quantities.evaluation import Sources
+from substructures.quantities.numbers.evaluation import Sources
 
 pytestmark = pytest.mark.deep
 
@@ -90,7 +90,7 @@ def by_self_test(*commands: list[str]) -> Runner:
 
 def by_jax(exported: Exported, folder: Path) -> dict[str, float]:
     pytest.importorskip("jax", reason="the wheel jax is not installed")
-    return by_self_test([sys.executable, "{}_selftest.py"])(exported, folder)
+    return by_self_test([sys.executable, "{}_jax_selftest.py"])(exported, folder)
 
 
 def by_octave(exported: Exported, folder: Path) -> dict[str, float]:
@@ -108,7 +108,7 @@ def compared(exported: Exported, call: Callable[[Any, Mapping[str, float]], Any]
 
 
 def by_sympy(exported: Exported, folder: Path) -> dict[str, float]:
-    module = load_python((folder / f"{exported.name}.py").read_text(), folder)
+    module = load_python((folder / f"{exported.name}_sympy.py").read_text(), folder)
 
     def call(function: Any, values: Mapping[str, float]) -> dict[str, Any]:
         found = by_output(function, getattr(module, exported.called(function))(**arguments(function, values)))
@@ -124,7 +124,7 @@ def by_cuda_on_cpu(exported: Exported, folder: Path) -> dict[str, float]:
 
 def by_casadi(exported: Exported, folder: Path) -> dict[str, float]:
     casadi = pytest.importorskip("casadi", reason="the wheel casadi is not installed")
-    name = shared([folder / f"{exported.name}.c"], STRICT)._name
+    name = shared([folder / f"{exported.name}_casadi.c"], STRICT)._name
 
     def call(function: Any, values: Mapping[str, float]) -> dict[str, Any]:
         found = casadi.external(exported.called(function), name)(*arguments(function, values).values())
@@ -172,9 +172,9 @@ TABLE: dict[str, tuple[str, str, Runner]] = {
     "fortran": (
         "fortran",
         "gfortran",
-        by_self_test(["gfortran", "-std=f2008", "-o", "run", "{}.f90", "{}_selftest.f90"], ["./run"]),
+        by_self_test(["gfortran", "-std=f2018", "-o", "run", "{}.f90", "{}_selftest.f90"], ["./run"]),
     ),
-    "rust": ("rust", "rustc", by_self_test(["rustc", "--edition", "2021", "-o", "run", "{}_selftest.rs"], ["./run"])),
+    "rust": ("rust", "rustc", by_self_test(["rustc", "--edition", "2024", "-o", "run", "{}_selftest.rs"], ["./run"])),
     "python": ("python", "NumPy", by_self_test([sys.executable, "{}_selftest.py"])),
     "jax": ("jax", "JAX", by_jax),
     "javascript": ("javascript", "Node", by_self_test(["node", "{}_selftest.mjs"])),

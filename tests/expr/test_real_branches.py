@@ -31,7 +31,7 @@ def partial() -> Program:
 
 def test_sympy(partial: Program) -> None:
     space: dict[str, Any] = {}
-    text = files(alone(partial), "sympy", 1000)["model.py"]
+    text = files(alone(partial), "sympy", 1000)["model_sympy.py"]
     exec(text, space)  # noqa: S102 -- our own text
     found = space["model_any"]()
     values = {sympy.Symbol("x", real=True): sympy.Rational(-3, 2), sympy.Symbol("y", real=True): 2}

@@ -17,11 +17,12 @@ import numpy as np
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.errors import InvalidInput
 from substructures.interchange.importing import import_file
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 sys.path.insert(0, str(Path(__file__).parent))
-from engines import deviation
-from package_files import included, mjcf_files, urdf_files
+from engines import Reduced, deviation
+from package_files import included, mjcf_files, more_files, urdf_files
+from related import joints_of, reduction
 from with_mujoco import MujocoTwin
 from with_pinocchio import PinocchioTwin
 
@@ -32,7 +33,7 @@ STATES = 2
 
 @dataclass
 class Row:
-    """What came of a file: ``refused`` says why."""
+    """What came of a file: ``refused`` says why, ``unread`` why the other engine does not read it."""
 
     file: str
     dof: int = 0
@@ -40,10 +41,12 @@ class Row:
     error: float = 0.0
     singular: bool = False
     refused: str = ""
+    unread: str = ""
 
     def __str__(self) -> str:
         told = (
             self.refused
+            or self.unread
             or f"{self.dof:>4} {self.seconds:>7.2f} s {self.error:>9.1e}{'  metric singular' * self.singular}"
         )
         return f"{self.file:<58} {told}"
@@ -63,19 +66,32 @@ def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
     rng = np.random.default_rng(len(name))
     states = {key: rng.uniform(-1.2, 1.2, (STATES, model.dof)) for key in ("q", "qd", "qdd")}
     answer = evaluate(model, QUANTITIES, **states)
-    twin = twin_of(path, found.names, [c.removeprefix("x.") for c in model.coordinates], GRAVITY)
+    left, order = [c.removeprefix("x.") for c in model.coordinates], list(joints_of(found.definition))
+    try:
+        twin = twin_of(path, found.names, order, GRAVITY)
+    except ValueError as error:
+        return Row(name, model.dof, seconds, unread=f"not read there: {error}")
+    if "relations" in found.definition:
+        twin = Reduced(twin, *reduction(found.definition, order, left))
+    else:
+        assert order == left
     expected = [twin.numbers(*(states[k][i] for k in states)) for i in range(STATES)]
     errors = [deviation(answer, numbers, i) for i, numbers in enumerate(expected)]
     return Row(name, model.dof, seconds, max(errors), any(x.forward_dynamics is None for x in expected))
 
 
+def all_files() -> dict[str, Path]:
+    """Of all packages, by their path in it."""
+    return {**urdf_files(), **mjcf_files(), **more_files()}
+
+
 def compared_file(name: str) -> Row:
     """A URDF file beside Pinocchio, an MJCF file beside MuJoCo."""
-    path = (urdf_files() | mjcf_files())[name]
+    path = all_files()[name]
     return compared(name, path, PinocchioTwin if path.suffix == ".urdf" else MujocoTwin)
 
 
 if __name__ == "__main__":
-    for file in [*urdf_files(), *mjcf_files()]:
+    for file in all_files():
         if not sys.argv[1:] or sys.argv[1] in file:
             print(compared_file(file), flush=True)

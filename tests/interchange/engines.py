@@ -69,6 +69,22 @@ class Numbers:
     forward_dynamics: Array | None  #: None where the metric is singular
 
 
+class Reduced:
+    """Another engine with joints that follow others: q = N y + q_0 of our coordinates y."""
+
+    def __init__(self, twin: Any, N: Array, q0: Array) -> None:
+        self.twin, self.N, self.q0 = twin, N, q0
+
+    def numbers(self, q: Array, qd: Array, qdd: Array) -> Numbers:
+        """At a state of ours."""
+        N = self.N
+        found = self.twin.numbers(N @ q + self.q0, N @ qd, N @ qdd)
+        M, needed = N.T @ found.metric @ N, N.T @ found.inverse_dynamics
+        is_regular = np.linalg.matrix_rank(M) == len(q)
+        forward = qdd - np.linalg.solve(M, needed) if is_regular else None
+        return Numbers(M, N.T @ found.gravity, N.T @ found.bias, needed, forward)
+
+
 def velocity_map(places: list[Place], nv: int, q: Array, qd: Array, local: bool) -> tuple[Array, Array]:
     """T and T' with v = T q'; of free joints v is the velocity of the origin in the world, or (local) in the body."""
     n = len(q)

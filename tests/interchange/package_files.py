@@ -19,8 +19,17 @@ def mjcf_files() -> dict[str, Path]:
     return {name: path for name, path in found.items() if _is_whole(path)}
 
 
+def more_files() -> dict[str, Path]:
+    """URDF and MJCF files of the packages airo-models, robosuite and pybullet (of its random objects a few)."""
+    found: dict[str, Path] = {}
+    for package in ("airo-models", "pybullet", "robosuite"):
+        found |= dict(_files(package, "urdf"))
+        found |= {name: path for name, path in _files(package, "xml") if _is_whole(path)}
+    return {name: path for name, path in found.items() if "random_urdfs" not in name or int(path.stem) % 100 == 0}
+
+
 def _is_whole(path: Path) -> bool:
-    text = path.read_text()
+    text = path.read_text(errors="replace")
     return "<mujoco" in text and "<body" in text
 
 
@@ -29,7 +38,7 @@ def included(path: Path) -> dict[str, bytes]:
     found: dict[str, bytes] = {}
     waiting = [path]
     while waiting:
-        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text()):
+        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text(errors="replace")):
             file = path.parent / name
             if name not in found and file.exists():
                 found[name] = file.read_bytes()

@@ -1,4 +1,4 @@
-"""Joints that follow others: in independent velocities the metric is G^T M G of another engine's M."""
+"""Joints that follow others have no coordinate: the metric is N^T M N of another engine's M."""
 
 from __future__ import annotations
 
@@ -9,14 +9,13 @@ from typing import Any
 import numpy as np
 import pytest
 
-from substructures import Definition, Model, TreeSpec, couple, derive
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
-from substructures.analysis.equations.velocity_constraints import Linear
-from substructures.expr.interpret import interpret
+from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.interchange.as_part import Options
 from substructures.interchange.importing import Imported, import_file
 
 sys.path.insert(0, str(Path(__file__).parent))
+from engines import Reduced, deviation
+from related import joints_of, reduction
 
 BODY = '<inertial><origin xyz=".1 .02 -.03" rpy=".1 .2 .3"/><mass value="2"/><inertia ixx=".3" iyy=".4" izz=".5" ixy=".01" ixz="0" iyz="0"/></inertial>'  # noqa: E501
 JOINT = '<joint name="{}" type="{}"><parent link="{}"/><child link="{}"/><origin xyz=".1 .2 .3" rpy=".3 -.2 .5"/><axis xyz="0 1 .5"/>{}</joint>'  # noqa: E501
@@ -51,30 +50,21 @@ def model_of(found: Imported) -> Model:
     return couple(spec, {"x": derive(Definition.read(found.definition))})
 
 
-def constraint(found: Imported) -> Linear:
-    (binding,) = found.bindings
-    text = binding["constraint"]["expression"]
-    for name in (binding["coordinate"], binding["of"]):
-        text = text.replace(f"{name}'", f"x.{name}'")
-    return Linear(binding["constraint"]["name"], text)
-
-
 def test_the_metric_is_that_of_the_reduced_robot(tmp_path: Path) -> None:
     pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
     from with_pinocchio import PinocchioTwin  # noqa: PLC0415 -- beside this file
 
     found = read(URDF)
     model = model_of(found)
+    assert model.coordinates == ("x.turn", "x.left")
     path = tmp_path / "a.urdf"
     path.write_text(URDF)
-    twin = PinocchioTwin(path, found.names, [c.removeprefix("x.") for c in model.coordinates], np.zeros(3))
-    equations = quasi_velocity_equations(model, [constraint(found)], independent=["x.turn", "x.left"])
+    twin = PinocchioTwin(path, found.names, ["turn", "left", "right"], np.zeros(3))
     q = np.array([0.3, -0.2, -0.75 * -0.2 + 0.1])
-    values = dict(zip(model.coordinates, q, strict=True)) | dict.fromkeys(equations.velocities, 0.0)
-    ours = interpret(equations.program, values, ["metric"])["metric"]
     # dq/d(turn, left)
     slope = np.array([[1, 0], [0, 1], [0, -0.75]])
     free = twin.numbers(q, 0 * q, 0 * q).metric
+    ours = evaluate(model, ["metric"], q=q[:2])["metric"]
     np.testing.assert_allclose(ours, slope.T @ free @ slope, rtol=1e-12)
 
 
@@ -89,23 +79,62 @@ def test_the_metric_is_that_of_the_reduced_robot(tmp_path: Path) -> None:
 )
 def test_bindings_of_all_formats(text: str, expected: dict[str, Any]) -> None:
     found = read(text)
-    (binding,) = found.bindings
+    (relation,) = found.definition["relations"]
     told = {key: x if isinstance(x, str) else pytest.approx(float(x)) for key, x in expected.items()}
-    assert {key: binding[key] if key in ("coordinate", "of") else float(binding[key]) for key in expected} == told
-    assert [r["level"] for r in found.report if "both coordinates are free" in r["message"]] == ["warning"]
+    assert {key: relation[key] if key in ("coordinate", "of") else float(relation[key]) for key in expected} == told
+    assert [r["level"] for r in found.report if "has no coordinate" in r["message"]] == ["merged"]
+    assert found.bindings == []
+    part = derive(Definition.read(found.definition))
+    assert expected["coordinate"] not in part.coordinates
+    assert not [w for w in part.certificate["warnings"] if w["code"] == "left-out"]
+
+
+def test_a_joint_that_follows_twice_leads_the_second() -> None:
+    """c of b, and b of a written as a joint that c bounds: one relation is turned round."""
+    more = '<body name="c" pos=".3 0 0"><joint name="l" axis="0 0 1"/><geom size=".1"/></body></body></body>'
+    twice = '<joint joint1="k" joint2="l" polycoef="0.1 4 0 0 0"/></equality>'
+    found = read(MJCF.replace("</body></body>", more, 1).replace("</equality>", twice))
+    first, second = found.definition["relations"]
+    assert (first["coordinate"], first["of"], second["coordinate"], second["of"]) == ("k", "j", "l", "k")
+    model = model_of(found)
+    assert model.coordinates == ("x.j",)
+    circle = twice.replace("</equality>", '<joint joint1="l" joint2="j" polycoef="0 3 0 0 0"/></equality>')
+    over = read(MJCF.replace("</body></body>", more, 1).replace("</equality>", circle))
+    assert [binding["coordinate"] for binding in over.bindings] == ["l"]
+    assert [r["level"] for r in over.report if "both coordinates are free" in r["message"]] == ["warning"]
 
 
 def test_mujoco_holds_its_joint_where_the_binding_says() -> None:
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
     model = mujoco.MjModel.from_xml_string(MJCF)
     data = mujoco.MjData(model)
-    (binding,) = read(MJCF).bindings
+    (binding,) = read(MJCF).definition["relations"]
     data.qpos[:] = 0.7, float(binding["multiplier"]) * 0.7 + float(binding["offset"])
     mujoco.mj_fwdPosition(model, data)
     assert abs(data.efc_pos[: data.ne]).max() < 1e-12
     data.qpos[1] += 0.1
     mujoco.mj_fwdPosition(model, data)
     assert abs(data.efc_pos[: data.ne]).max() == pytest.approx(0.1)
+
+
+def test_mujoco_has_the_same_numbers_on_its_equality(tmp_path: Path) -> None:
+    """Metric, gravity, bias, inverse and forward dynamics at random states that the equality holds."""
+    pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
+    from with_mujoco import MujocoTwin  # noqa: PLC0415 -- beside this file
+
+    found, path = read(MJCF), tmp_path / "a.xml"
+    path.write_text(MJCF)
+    definition, gravity = found.definition, np.array([0.3, -0.4, -9.81])
+    spec = TreeSpec.read(
+        {"name": "t", "gravity": gravity.tolist(), "instances": [{"name": "x", "substructure": "robot"}]}
+    )
+    model = couple(spec, {"x": derive(Definition.read(definition))})
+    order = list(joints_of(definition))
+    twin = Reduced(MujocoTwin(path, found.names, order, gravity), *reduction(definition, order, ["j"]))
+    states = {key: np.random.default_rng(1).uniform(-1.2, 1.2, (3, 1)) for key in ("q", "qd", "qdd")}
+    answer = evaluate(model, ["metric", "gravity", "bias", "inverse_dynamics", "forward_dynamics"], **states)
+    for i in range(3):
+        assert deviation(answer, twin.numbers(*(x[i] for x in states.values())), i) < 1e-10
 
 
 @pytest.mark.parametrize(
@@ -123,4 +152,5 @@ def test_mujoco_holds_its_joint_where_the_binding_says() -> None:
 def test_what_cannot_be_bound_is_told(text: str, said: str) -> None:
     found = read(text)
     assert found.bindings == []
+    assert "relations" not in found.definition
     assert any(said in r["message"] and r["level"] == "warning" and r["line"] for r in found.report)

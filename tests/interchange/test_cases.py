@@ -87,13 +87,36 @@ def test_a_symbolic_table_has_its_symbols_as_parameters() -> None:
     assert answer["inverse_dynamics"] == pytest.approx([17.607865388, 3.055849106], abs=1e-9)
 
 
-def test_mimic_joints_are_told_of_wherever_they_are() -> None:
-    """By the import, the part and its trees; with the constraints the motion is that of the robot."""
+def test_mimic_joints_are_relations() -> None:
+    """The motion of the reduced mechanism is that of the free one with velocity constraints."""
     found = read("11-mimic-offset-chain.urdf")
-    relations = [each["relation"] for each in found.definition["left_out"]]
+    relations = found.definition["relations"]
     assert [(r["coordinate"], r["of"]) for r in relations] == [("c_joint", "b_joint"), ("b_joint", "a_joint")]
     part = derive(Definition.read(found.definition))
-    model = model_of(found)
+    assert part.coordinates == ("a_joint",)
+    assert not part.certificate["warnings"]
+    motion = simulate(
+        model_of(found),
+        {"x.a_joint": 0.3},
+        span=(0, 1),
+        integrator=Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-12),
+    )
+    a = 2.57323616
+    assert motion.q[-1] == pytest.approx([a], abs=1e-6)
+    # what velocity constraints gave for b and c
+    assert (-1.5 * a + 0.2, 0.5 * (-1.5 * a + 0.2) + 0.05) == pytest.approx((-3.65985424, -1.77992712), abs=1e-7)
+
+
+def test_relations_that_a_definition_leaves_out_are_told_of_wherever_they_are() -> None:
+    """By the part and its trees; with the constraints the motion is that of the robot."""
+    plain = read("11-mimic-offset-chain.urdf").definition
+    plain["left_out"] = [
+        {"message": f"'{r['coordinate']}' = {r['multiplier']} * '{r['of']}' + {r['offset']}", "relation": r}
+        for r in plain.pop("relations")
+    ]
+    part = derive(Definition.read(plain))
+    spec = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "robot"}]}
+    model = couple(spec, {"x": part})
     for certificate, pointers in (
         (part.certificate, ["/left_out/0", "/left_out/1"]),
         (model.certificate, ["/instances/0"] * 2),
@@ -101,10 +124,7 @@ def test_mimic_joints_are_told_of_wherever_they_are() -> None:
         told = [w for w in certificate["warnings"] if w["code"] == "left-out"]
         assert [w["pointer"] for w in told] == pointers
         assert "'b_joint' = -1.5 * 'a_joint' + 0.2" in told[1]["message"]
-    constraints = [
-        Linear(b["constraint"]["name"], re.sub(r"([abc]_joint)", r"x.\1", b["constraint"]["expression"]))
-        for b in found.bindings
-    ]
+    constraints = [Linear("c", "x.c_joint' - 0.5*x.b_joint'"), Linear("b", "x.b_joint' + 1.5*x.a_joint'")]
     motion = followed(model, constraints, q_b=-0.25)
     assert motion.q[-1] == pytest.approx([2.57323616, -3.65985424, -1.77992712], abs=1e-6)
     assert not motion.warnings

@@ -11,7 +11,7 @@ from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Options
 from substructures.interchange.importing import Imported, import_file
-from substructures.tree.published import Publication, published
+from substructures.tree.publishing.published import Publication, published
 
 from .seeds import DH, MJCF, PAR, SDF, TABLE, URDF
 
@@ -169,14 +169,16 @@ def test_what_is_left_out_at_several_places_is_kept_once() -> None:
 
 def test_messages_are_not_longer_than_a_definition_may_keep() -> None:
     long = ARM.replace('name="k"', f'name="{"k" * 9000}"').replace("MORE", '<mimic joint="j"/>')
-    assert [len(message) for message in kept(read(long))] == [2000]
-    Definition.read(read(long).definition)
+    (told,) = (each for each in (read(long, cut=["c"]).tree or {})["instances"] if "left_out" in each["definition"])
+    assert [len(each["message"]) for each in told["definition"]["left_out"]] == [2000]
+    Definition.read(told["definition"])
 
 
 def test_relations_name_coordinates_of_the_part() -> None:
     found = read(ARM.replace("MORE", '<mimic joint="j" multiplier="2"/>')).definition
-    assert found["left_out"][0]["relation"] == {"coordinate": "k", "of": "j", "multiplier": 2, "offset": 0}
-    found["left_out"][0]["relation"] |= {"of": "i", "offset": "m"}
+    (relation,) = found.pop("relations")
+    assert relation == {"coordinate": "k", "of": "j", "multiplier": 2, "offset": 0}
+    found["left_out"] = [{"message": "of old", "relation": relation | {"of": "i", "offset": "m"}}]
     with pytest.raises(InvalidDocument) as raised:
         derive(Definition.read(found))
     assert [fault.pointer for fault in raised.value.faults] == [
@@ -198,7 +200,9 @@ def test_a_relation_between_parts_is_told_in_words_by_the_one_that_follows() -> 
 
 
 def test_a_tree_that_becomes_a_part_keeps_what_is_left_out() -> None:
-    part = derive(Definition.read(read(ARM.replace("MORE", '<mimic joint="j" multiplier="2"/>')).definition))
+    found = read(ARM.replace("MORE", '<mimic joint="j" multiplier="2"/>')).definition
+    found["left_out"] = [{"message": "of old", "relation": found.pop("relations")[0]}]
+    part = derive(Definition.read(found))
     spec = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "r"}]})
     made = published(spec, {"x": part}, Publication({"name": "whole"})).definition
     (told,) = made.left_out

@@ -10,6 +10,7 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 import pytest
 from catalogue_entries import shipped_part
+from related import reduction
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.errors import InvalidDocument, MissingValue
@@ -20,9 +21,10 @@ from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
 from substructures.part.part import Part
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 sys.path.insert(0, str(Path(__file__).parent))
+from engines import Reduced
 from package_files import included, mjcf_files, urdf_files
 
 FILES = {**urdf_files(), **mjcf_files()}
@@ -68,8 +70,17 @@ def worst_in_pinocchio(data: bytes, model: Model, coordinates: list[str], path: 
     from with_pinocchio import PinocchioTwin  # noqa: PLC0415 -- beside this file
 
     path.write_bytes(data)
-    twin = PinocchioTwin(path, {f"joint {c}": c for c in coordinates}, coordinates, np.array(GRAVITY))
-    assert twin.model.nv == model.dof
+    joints = Tree.fromstring(data).iterfind("joint[mimic]")  # noqa: S314 -- our own
+    followers = {joint.get("name"): joint.find("mimic") for joint in joints}
+    relations = [
+        {"coordinate": name, "of": mimic.get("joint"), **{x: float(mimic.get(x)) for x in ("multiplier", "offset")}}
+        for name, mimic in followers.items()
+    ]
+    order = [*coordinates, *followers]
+    engine = PinocchioTwin(path, {f"joint {c}": c for c in order}, order, np.array(GRAVITY))
+    assert engine.model.nv == len(order) == model.dof + len(relations)
+    # Pinocchio moves followers by themselves
+    twin = Reduced(engine, *reduction({"relations": relations}, order, coordinates))
     q, qd, qdd = np.random.default_rng(3).uniform(-1.2, 1.2, (3, 2, model.dof))
     names = ("metric", "gravity", "bias", "inverse_dynamics")
     found, worst = evaluate(model, names, q, qd, qdd), 0.0
@@ -102,6 +113,30 @@ def test_tensors_about_the_origin_and_offsets_of_joints(tmp_path: Path) -> None:
     ]  # fmt: skip
     part = derive(Definition.read({"name": "rows", "bodies": bodies}))
     assert worst_in_pinocchio(urdf_of(part), at_world(part), list(part.coordinates), tmp_path / "a.urdf") < 1e-12
+
+
+def test_relations_are_mimic_joints() -> None:
+    """Read again it is the same mechanism: chains are written as followers of the joint that leads."""
+    bodies = [
+        {"name": name, "parent": parent, "joint": {"type": kind, "coordinate": f"q{name}", "theta": 0.3, "d": 0.2},
+         "mass": 2, "com": [0.1, 0.2, 0.3], "inertia": {"xx": 0.1, "yy": 0.12, "zz": 0.15}}
+        for name, parent, kind in (("a", "base", "revolute"), ("b", "a", "prismatic"), ("c", "b", "revolute"))
+    ]  # fmt: skip
+    relations = [
+        {"coordinate": "qa", "of": "qc", "multiplier": "r", "offset": 0.5},
+        {"coordinate": "qb", "of": "qa", "multiplier": -0.25, "offset": 0.1},
+    ]
+    parameters = {"r": {"value": 2}}
+    part = derive(Definition.read({"name": "x", "bodies": bodies, "relations": relations, "parameters": parameters}))
+    data = urdf_of(part)
+    assert b'<mimic joint="qc" multiplier="2" offset="0.5" />' in data
+    assert b'<mimic joint="qc" multiplier="-0.5" offset="-0.025" />' in data
+    again = derive(Definition.read(import_file(data).definition))
+    assert again.coordinates == part.coordinates == ("qc",)
+    states = {name: [[0.3], [-0.8]] for name in ("q", "qd", "qdd")}
+    mine, its = (evaluate(at_world(each), ["metric", "inverse_dynamics"], **states) for each in (part, again))
+    for name in ("metric", "inverse_dynamics"):
+        assert its[name] == pytest.approx(mine[name], rel=1e-10)
 
 
 @pytest.mark.parametrize("name", ["positioner", "scara"])

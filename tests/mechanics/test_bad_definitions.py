@@ -10,7 +10,7 @@ from bad_documents import GOOD, Path, Plain, cell, changed, pointer_of, request
 
 from substructures import Definition, InvalidDocument, TooLarge, TreeSpec, couple, derive
 from substructures.part.topology import entries_of
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 B: Path = ("bodies", 1)
 J: Path = ("bodies", 0, "joint")

@@ -12,7 +12,7 @@ from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, c
 from substructures.documents.fields import LONGEST
 from substructures.errors import InvalidArgument
 from substructures.expr.syntax import MAX_LENGTH
-from substructures.quantities.evaluation import EvaluationOptions, Sources, check, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, Sources, check, evaluate
 from substructures.quantities.regressor import regressor
 
 INSTANCE: Path = ("instances", 1)

@@ -12,7 +12,7 @@ from substructures import Definition, TreeSpec, couple, derive
 from substructures.certificate.compare import VerificationFailed
 from substructures.errors import InvalidArgument
 from substructures.quantities import centroidal as module
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.sources import Sources, of_parts
 
 Plain = dict[str, Any]

@@ -22,8 +22,8 @@ from substructures.analysis.equations.routh import routh
 from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification.base_parameters import base_parameters
 from substructures.analysis.motion.parameter_sensitivity import sensitivities, variational
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.formulas import derived, kept
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.regressor import regressor
 
 FD = "forward_dynamics"

@@ -16,8 +16,8 @@ from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import condition, definite_solve
 from substructures.quantities.derivatives import forward_dynamics
-from substructures.quantities.evaluation import Direction, EvaluationOptions, Sources, evaluate
 from substructures.quantities.formulas import derived
+from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, Sources, evaluate
 
 FD = "forward_dynamics"
 EPS = float(np.finfo(float).eps)

@@ -20,7 +20,7 @@ from random_trees import (
 )
 
 from substructures import Model
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 TOLERANCE = 1e-10
 QUANTITIES = ["metric", "christoffel", "gravity", "forces", "potential_energy", "kinematics", "momentum"]

@@ -11,7 +11,7 @@ from in_depth import seeds
 from random_trees import Kind, Plain, random_definition
 
 from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.regressor import regressor
 
 TREE: Plain = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "a", "substructure": "part"}]}

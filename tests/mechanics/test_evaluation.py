@@ -8,7 +8,7 @@ from analysis_models import catalogue_model
 
 from substructures import InvalidArgument, InvalidInput
 from substructures.documents.grouped import take
-from substructures.quantities.evaluation import QUANTITIES, Direction, Evaluation, EvaluationOptions, evaluate
+from substructures.quantities.numbers.evaluation import QUANTITIES, Direction, Evaluation, EvaluationOptions, evaluate
 from substructures.quantities.quantity import needs_parts
 
 

@@ -18,8 +18,8 @@ from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
 from substructures.quantities.derivatives import SingularMetric, forward_dynamics
-from substructures.quantities.evaluation import Direction, EvaluationOptions, Sources, cost, evaluate
 from substructures.quantities.formulas import DERIVED, derived
+from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, Sources, cost, evaluate
 
 N = 5
 Q: Plain = {"quantities": ["forward_dynamics"]}

@@ -11,7 +11,7 @@ from random_trees import Kind, Plain, random_definition, random_states, with_par
 from serial_chains import IIWA, RX90, SIX, SIX14, revolute
 
 from substructures import Definition, Model, TreeSpec, couple, derive
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree import model as models
 
 KINDS = [

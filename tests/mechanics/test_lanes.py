@@ -7,7 +7,7 @@ import pytest
 
 from substructures.expr.graph import Graph
 from substructures.expr.program import Symbol, array, program
-from substructures.quantities.array_scalars import Lanes, Supports, lanes, plain
+from substructures.quantities.numbers.array_scalars import Lanes, Supports, lanes, plain
 
 X, Y = np.array([1.0, -2.0, 0.5]), np.array([3.0, 0.25, -1.0])
 OTHERS = [Y, 2.5, 0.0, 0, 1, -1]

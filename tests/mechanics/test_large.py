@@ -25,8 +25,8 @@ from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part import topology
 from substructures.part.part import recheck
-from substructures.quantities.evaluation import Sources, evaluate, steps
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import Sources, evaluate, steps
 from substructures.tree.certificate import certify_tree
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")

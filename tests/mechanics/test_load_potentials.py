@@ -19,8 +19,8 @@ from substructures.errors import VerificationFailed
 from substructures.expr.graph import Graph
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree.certificate import certify_tree
 
 GRAVITY = (0, -9.81, 0)

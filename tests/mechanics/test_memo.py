@@ -8,7 +8,7 @@ from exported_models import derived_anew
 from substructures import Model
 from substructures.expr.program import Program
 from substructures.quantities.formulas import derived, kept
-from substructures.quantities.memo import ProgramCache
+from substructures.quantities.numbers.memo import ProgramCache
 
 
 def test_equal_models_share_what_follows_from_them() -> None:

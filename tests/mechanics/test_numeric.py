@@ -12,8 +12,8 @@ from catalogue_entries import shipped_part
 from substructures import MissingValue, Model, Part, TreeSpec, catalogue, couple
 from substructures.compile import compile_program
 from substructures.expr.interpret import interpret
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.from_parts import EQUATIONS, CompiledParts, NumericTree
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def parts_of(spec: TreeSpec) -> dict[str, Part]:

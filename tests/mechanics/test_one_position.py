@@ -14,7 +14,7 @@ from substructures import Definition, Model, couple, derive
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import (
+from substructures.quantities.numbers.evaluation import (
     QUANTITIES,
     Direction,
     Evaluation,

@@ -10,8 +10,8 @@ from catalogue_entries import shipped_part
 
 from substructures import TreeSpec, couple
 from substructures.compile import compile_program
-from substructures.quantities.evaluation import evaluate
-from substructures.quantities.one_state import OneState, prepared
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.one_state import OneState, prepared
 from substructures.quantities.quantity import QUANTITIES
 from substructures.quantities.sources import Sources
 from substructures.tree.model import Model

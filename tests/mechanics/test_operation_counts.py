@@ -113,6 +113,13 @@ MODELS: dict[str, Callable[[], Part | Model]] = {
     "puma560 and parallel-gripper": lambda: mounted(
         ("arm", entry("puma560"), "world"), ("hand", entry("parallel-gripper"), "arm.flange")
     ),
+    "puma560 and screw-gripper": lambda: mounted(
+        ("arm", entry("puma560"), "world"), ("hand", entry("screw-gripper"), "arm.flange")
+    ),
+    "puma560 and screw-gripper without relations": lambda: mounted(
+        ("arm", entry("puma560"), "world"),
+        ("hand", derive({**catalogue.load("screw-gripper"), "relations": []}), "arm.flange"),
+    ),
     "humanoid of 34": humanoid,
 }
 

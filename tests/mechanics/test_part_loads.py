@@ -17,11 +17,11 @@ from simulated import simulated
 
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, couple, derive
 from substructures.pictures.tree import picture
-from substructures.quantities.evaluation import Sources, evaluate
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import Sources, evaluate
 from substructures.quantities.reactions import reactions
-from substructures.tree.published import Publication, published
-from substructures.tree.published_formulas import published_part
+from substructures.tree.publishing.published import Publication, published
+from substructures.tree.publishing.published_formulas import published_part
 
 QUANTITIES = ["metric", "forces", "inverse_dynamics", "potential_energy"]
 #: loads of the instance ``x``, one of every type and law

@@ -10,7 +10,7 @@ from in_depth import seeds
 from independent import by_coordinate
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, with_parameters
 
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional

@@ -12,8 +12,8 @@ from in_depth import seeds
 from random_trees import Plain, model_of, number
 
 from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import evaluate
 
 NONE = (0, 0, 0)
 

@@ -19,7 +19,7 @@ from substructures.analysis.simulate import Geodesic, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.part import load_forces as by_load
 from substructures.quantities import powers as module
-from substructures.quantities.evaluation import Evaluation, Sources, evaluate
+from substructures.quantities.numbers.evaluation import Evaluation, Sources, evaluate
 from substructures.quantities.powers import PowerModel, powers
 
 Plain = dict[str, Any]

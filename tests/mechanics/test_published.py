@@ -11,7 +11,7 @@ import pytest
 from formulas import alone, assert_formulas
 from random_trees import Plain
 
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 def symbols(*names: str) -> Plain:

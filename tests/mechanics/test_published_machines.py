@@ -15,7 +15,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.replay import replay
 from substructures.expr.rings.expand import is_zero
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 #: P. Corke, Robotics Toolbox for Python, models/DH/Puma560.py and tests/test_DHRobot.py
 PUMA_ROWS = [(0.67183, 0, 90), (0, 0.4318, 0), (0.15005, 0.0203, -90), (0.4318, 0, 90), (0, 0, -90), (0, 0, 0)]

@@ -11,8 +11,8 @@ from catalogue_entries import shipped_part
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.errors import VerificationFailed
 from substructures.part.part import recheck
-from substructures.tree.published import Publication, published
-from substructures.tree.published_formulas import published_part
+from substructures.tree.publishing.published import Publication, published
+from substructures.tree.publishing.published_formulas import published_part
 
 QUANTITIES = ("metric", "christoffel", "gravity", "forces", "bias", "potential_energy")
 Instances = list[dict[str, Any]]

@@ -16,7 +16,7 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.quantities import reactions as module
-from substructures.quantities.evaluation import Evaluation, Sources, evaluate
+from substructures.quantities.numbers.evaluation import Evaluation, Sources, evaluate
 from substructures.quantities.reactions import ReactionModel, reactions
 
 Plain = dict[str, Any]

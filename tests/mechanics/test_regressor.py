@@ -21,10 +21,10 @@ from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.replay import replay
-from substructures.quantities.evaluation import Sources, evaluate
 from substructures.quantities.formulas import derived
+from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
-from substructures.quantities.states import default_number
 
 N = 3
 TEN = ("m", "sx", "sy", "sz", "Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz")
@@ -61,9 +61,12 @@ def check(spec: TreeSpec, parts: dict[str, Part], armature: Any) -> RegressorMod
 
 
 def rotors(part: Part) -> Any:
-    """The armature of a part at the defaults of its parameters."""
+    """The armature of a part at the defaults of its parameters, by coordinate: mu^2 I of what it moves."""
     values = {name: default_number(p["value"]) for name, p in part.parameters.items()}
-    return interpret(part.program, values, ["armature"])["armature"]
+    found = interpret(part.program, values, ["armature", *part.program.outputs.keys() & {"multiplier"}])
+    sums = np.zeros(len(part.coordinates))
+    np.add.at(sums, list(part.topology.moved_by), found["armature"] * found.get("multiplier", 1) ** 2)
+    return sums
 
 
 @pytest.mark.parametrize("name", all_entries())

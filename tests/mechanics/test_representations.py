@@ -26,7 +26,7 @@ from substructures.mechanics.kinematics import OneDofJoint, base_functions, link
 from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.part.one_piece import derive_in_one_piece
 from substructures.part.outputs import with_own_inertia
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -28,7 +28,7 @@ from substructures.expr.graph import Expr
 from substructures.mechanics.factorisation import Factors
 from substructures.part import outputs as part_outputs
 from substructures.quantities import centroidal, derivatives, formulas, of_parts, regressor
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 
 MASS = {"mass": "m", "com": [0.1, "l", 0.2], "inertia": {"xx": 1, "yy": 1.2, "zz": 0.9, "xy": 0.1}}
 BODIES = [

@@ -15,7 +15,7 @@ from samples import COUNT, SEEDS, flat, pair, request_for
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.documents import write_json
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -15,7 +15,7 @@ from independent import Moving
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, with_parameters
 
 from substructures import Model
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 N = 3
 STEP = 1e-4

@@ -18,7 +18,7 @@ from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.certificate.compare import TOLERANCE
 from substructures.pictures.tree import picture
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 #: a cart on rails along the first axis of the world: rpy of its base turns the joint axis there
 ALONG = {"position": [0, 0, 0], "rpy": [0, "pi/2", 0]}

@@ -15,8 +15,8 @@ from substructures.expr.hoist import hoisted
 from substructures.expr.program import program
 from substructures.expr.replay import replay
 from substructures.expr.tally import Tally
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.formulas import derived
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree import velocity_forces
 
 KINDS = [

@@ -8,7 +8,7 @@ from typing import Any
 from service.content.derivation import software
 from service.content.summaries import tree_summary
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Work
-from service.jobs.kinds import expand, resolve
+from service.jobs.kinds import expand, resolve, submission
 from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.settings import Limits
 from substructures.documents import write_json
@@ -81,7 +81,7 @@ class MemoryLibrary:
 
     def items(self, kind: str, request: Mapping[str, Any], limits: Limits | None = None) -> list[dict[str, Any]]:
         """Expanded and resolved; numbers as they are after they were stored."""
-        expanded = expand(kind, request, limits or Limits(), self)
+        expanded = expand(submission({"kind": kind, **request}), limits or Limits(), self)
         resolved = [resolve(kind, item, self) for item in expanded]
         assert all(digest in self.blobs for _, digests in resolved for digest in digests)
         assert all(write_json(item) for item, _ in resolved)

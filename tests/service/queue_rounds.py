@@ -12,8 +12,8 @@ from service.app import open_store
 from service.database.job_tables import job_events, job_items, job_uploads, jobs, result_files, results, uploads
 from service.jobs.engines.engine import Outcome
 from service.messages.viewer import ANYBODY
-from service.queries import jobs as queries
-from service.queries.jobs import NewItem
+from service.queries.jobs import jobs as queries
+from service.queries.jobs.jobs import NewItem
 from service.queue.rounds import Ended, Played, Round, play
 from service.settings import Settings
 from service.store.store import Store

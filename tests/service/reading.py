@@ -24,8 +24,25 @@ KNOWN = {
     "div",
     "span",
 } | {
-    *("form", "button"),
+    *(
+        "form",
+        "button",
+        "select",
+        "option",
+        "b",
+        "label",
+        "noscript",
+        "svg",
+        "rect",
+        "circle",
+        "text",
+        "link",
+        "details",
+        "summary",
+    ),
     *("h1", "h2", "h3", "pre", "code", "input", "img", "article", "sub", "sup", "progress"),
+    *("math", "mrow", "mi", "mn", "mo", "msub", "msup", "msubsup", "mfrac", "msqrt", "mtext", "mover", "mspace", "wbr"),
+    *("link", "label", "details", "summary", "output", "section", "ol"),
     *("table", "thead", "tbody", "tr", "th", "td", "dl", "dt", "dd", "ul", "li"),
 }
 
@@ -48,7 +65,7 @@ class Page(HTMLParser):
         assert tag in KNOWN, tag
         self.attributes += attrs
         self.links |= {value or "" for name, value in attrs if name in ("href", "src")}
-        if tag not in ("meta", "img", "input"):
+        if tag not in ("meta", "img", "input", "link"):
             self.open.append(tag)
 
     def handle_endtag(self, tag: str) -> None:

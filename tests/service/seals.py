@@ -11,15 +11,17 @@ from sqlalchemy import select, true, update
 from service.database.connections import Database
 from service.database.tables import parts, trees
 from service.queries.content import seal_of_part
-from service.queries.formulas import index_digest
+from service.queries.searching.formulas import index_digest
 from service.queries.trees import seal_of_tree
 
 
-def seal_again(path: Path, software: str | None = None, only: Collection[str] = ()) -> None:
-    """Seal what is in an SQLite store as it is now; ``software``: that is said to have derived it; ``only``: digests of
-    parts.
+def seal_again(store: Path | str, software: str | None = None, only: Collection[str] = ()) -> None:
+    """Seal what is in a store (an SQLite file, or an address without a key) as it is now.
+
+    ``software``: that is said to have derived it; ``only``: digests of parts.
     """
-    with closing(Database(f"sqlite:///{path}", exclusive=False)) as database, database.write() as connection:
+    address = store if isinstance(store, str) else f"sqlite:///{store}"
+    with closing(Database(address, exclusive=False)) as database, database.write() as connection:
         named = {} if software is None else {"software": software}
         chosen = parts.c.digest.in_(only) if only else true()
         for row in connection.execute(select(parts).where(chosen)).mappings().all():

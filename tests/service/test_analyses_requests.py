@@ -43,7 +43,7 @@ def test_motions_as_files(client: TestClient, media: str) -> None:
         assert rows[0][:3] == ["t", "x.q0", "x.q1"]
         assert np.array_equal(np.array(rows[1:], dtype=float)[:, 1:3], expected)
     elif media == "image/svg+xml":
-        assert asked.text.count("<polyline") == 2 + 2  # coordinates; energy and momentum of the cart
+        assert asked.text.count("<polyline") == 2 + 3  # coordinates; energy, momentum and centre of mass of the cart
         assert "checks hold" in asked.text
         assert "script" not in asked.text
     else:

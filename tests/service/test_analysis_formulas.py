@@ -77,10 +77,11 @@ def test_first_integrals_say_why(double: TestClient) -> None:
     found = answer.json()
     assert found["cyclic"] == ["p.phi"]
     listed = {each["name"]: each for each in found["integrals"]}
-    assert listed.keys() == {"energy", "linear_momentum.x", "linear_momentum.y", "angular_momentum.z"}
+    momenta = {"linear_momentum.x", "linear_momentum.y", "angular_momentum.z"}
+    assert listed.keys() == {"energy", *momenta, "galilei.x", "galilei.y"}
     assert all(each["rule"] == "constant" and each["reason"] and each["unit"] for each in listed.values())
     source = Program.from_bytes(answer.content)
-    state = {"p.phi": 0.3, "p.r": 3.0, "p.phi'": 0.5, "p.r'": 0.2}
+    state = {"t": 0.7, "p.phi": 0.3, "p.r": 3.0, "p.phi'": 0.5, "p.r'": 0.2}
     values = interpret(source, {s.name: state[s.name] for s in source.symbols})
     assert values["angular_momentum.z"] == pytest.approx(2 * 3.0**2 * 0.5)  # m r^2 phi'
 
@@ -242,6 +243,7 @@ def test_what_has_no_grouped_symbols_is_refused(double: TestClient, path: str, s
         ("cell/state_space?inputs=nobody", "/query/inputs/0"),
         ("cell/first_integrals?inputs=nobody", "/query/inputs"),
         ("cell/first_integrals?zero=nobody", "/query/zero"),
+        ("cell/first_integrals?degree=3", "/query/degree"),
         ("cell/parameter_sensitivity?parameters=nobody", "/query/parameters/0"),
         ("cell/parameter_sensitivity?quantities=nothing", "/query/quantities/0"),
         ("cell/adjoint?running=nobody", "/query/running"),

@@ -541,7 +541,7 @@ def test_what_takes_too_long_is_not_gone_on_with(files: Files, tmp_path: Path, m
         begun.append(part.name)
         sleep(0.6)
 
-    monkeypatch.setattr("service.operations.bundles.prepare", slow)
+    monkeypatch.setattr("service.operations.sharing.bundles.prepare", slow)
     with opened(tmp_path / "slow", limits=Limits(sync_seconds=0.05)) as client:
         answer = sent(client, packed(files))
         assert (answer.status_code, answer.json()["code"]) == (503, "took-too-long")

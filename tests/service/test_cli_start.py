@@ -57,10 +57,10 @@ ANALYSES = {
     "substructures.analysis.stability",
     "substructures.abbreviation",
 }
-MOTIONS = {"substructures.analysis.simulate", "service.schemas.motions"}
+MOTIONS = {"substructures.analysis.simulate", "service.schemas.analyses.motions"}
 HERE = NEVER | TALKING | ROBOTS
 STARTS = {
-    "derive d.json": HERE | SCIPY | WRITERS | ANALYSES | MOTIONS | {"substructures.quantities.evaluation"},
+    "derive d.json": HERE | SCIPY | WRITERS | ANALYSES | MOTIONS | {"substructures.quantities.numbers.evaluation"},
     "derive d.json --show metric": HERE | SCIPY | ANALYSES | MOTIONS,
     "evaluate t.json metric": HERE | SCIPY | WRITERS | ANALYSES | MOTIONS | {"llvmlite"},
     "export t.json --target c --out t.zip": HERE | SCIPY | ANALYSES | MOTIONS | {"llvmlite"},

@@ -43,6 +43,22 @@ def test_a_tree_with_closures_is_stored_and_shown(client: TestClient) -> None:
     assert "closures" not in open_tree.json()
 
 
+def test_loops_are_closed_and_opened_one_by_one(client: TestClient) -> None:
+    assert client.post("/v1/trees", json={**TREE, "name": "chain", "closures": []}).status_code == 201
+    first = client.get("/v1/trees/chain").json()["digest"]
+    closed = client.post("/v1/trees/chain/closures", json=TREE["closures"][0])
+    assert (closed.status_code, closed.json()["revision"]) == (201, 2)
+    whole = client.post("/v1/trees", json={**TREE, "name": "chain"})
+    assert (whole.status_code, whole.json()["digest"]) == (200, closed.json()["digest"])
+    wrong = client.post("/v1/trees/chain/closures", json={"name": "rod", "type": "rod", "from": "c.end"})
+    assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "rod-length")
+    assert client.delete("/v1/trees/chain/closures/pins").json()["code"] == "unknown-closure"
+    tag = client.get("/v1/trees/chain").headers["etag"]
+    opened = client.delete("/v1/trees/chain/closures/pin", headers={"If-Match": tag})
+    assert (opened.status_code, opened.json()["digest"]) == (201, first)
+    assert client.post("/v1/trees/chain/closures", json={}, headers={"If-Match": tag}).status_code == 412
+
+
 @pytest.fixture(scope="module")
 def ring(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server that knows the tree."""

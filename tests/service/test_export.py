@@ -18,9 +18,11 @@ from fastapi.testclient import TestClient
 from service.app import open_store
 from service.cli.main import main
 from service.models.exporting import ALL_TARGETS
+from service.server import background
 from service.settings import Settings
 from service.store.keys import create
 from service.store.store import Store
+from substructures.client import Client
 
 from .conftest import PENDULUM, make_client
 from .fake_engine import FakeEngine, finished, running
@@ -142,7 +144,8 @@ def test_urdf_is_no_set_of_functions(made: TestClient) -> None:
 
 def test_c_of_a_tree_compiles_and_is_right(made: TestClient, tmp_path: Path) -> None:
     files = members(exported(made, target="c", quantities="metric,forces,bias", name="swing").content)
-    assert sorted(files) == ["swing.c", "swing.h", "swing_selftest.c"]
+    beside = ["CMakeLists.txt", "README.md", "swing_example.c"]
+    assert sorted(files) == sorted([*beside, "swing.c", "swing.h", "swing_selftest.c"])
     for name, text in files.items():
         (tmp_path / name).write_text(text)
     command = ["cc", "-std=c99", "-Wall", "-Werror", "-o", "run", "swing.c", "swing_selftest.c", "-lm"]
@@ -218,8 +221,16 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert main(["export", "swing.yaml", "--target", "urdf", "--json"]) == 0
     size = Path("swing.urdf").stat().st_size
     assert json.loads(capsys.readouterr().out) == {"file": "swing.urdf", "bytes": size}
-    assert main(["export", "swing.urdf", "--target", "interface"]) == 0
+    before = Path("swing_interface.json").read_bytes()
+    assert main(["export", "swing.urdf", "--target", "interface"]) == 1
+    assert "is another file already" in capsys.readouterr().err
+    assert Path("swing_interface.json").read_bytes() == before
+    assert main(["export", "swing.urdf", "--target", "interface", "--force"]) == 0
+    assert main(["export", "swing.urdf", "--target", "interface"]) == 0  # the same file
     assert "arm_q1" in Path("swing_interface.json").read_text()
+    assert main(["export", "swing.yaml", "--target", "c", "--out", "model.mac"]) == 1  # nor one that is named
+    assert "is another file already" in capsys.readouterr().err
+    assert "swing_metric(q, p) :=" in Path("model.mac").read_text()
 
 
 def test_an_fmu_of_either_version_and_floats_in_c(made: TestClient) -> None:
@@ -237,6 +248,8 @@ def test_an_fmu_of_either_version_and_floats_in_c(made: TestClient) -> None:
     both = members(exported(made, target="c", stages=True).content)
     header = next(text for name, text in both.items() if name.endswith(".h"))
     assert "_prepare(const double *p, double *w" in header
+    old = members(exported(made, target="c", standard="c89").content)
+    assert not any("//" in text for text in old.values())
 
 
 @pytest.mark.parametrize(
@@ -245,6 +258,8 @@ def test_an_fmu_of_either_version_and_floats_in_c(made: TestClient) -> None:
         ({"target": "python", "precision": "single"}, "/query/precision"),
         ({"target": "rust", "stages": "true"}, "/query/stages"),
         ({"target": "c", "fmi": "2.0"}, "/query/fmi"),
+        ({"target": "cpp", "standard": "c89"}, "/query/standard"),
+        ({"target": "c", "standard": "c89", "precision": "single"}, "/query/standard"),
         ({"target": "urdf", "precision": "single"}, "/query/precision"),
         ({"target": "latex", "packed": "true"}, "/query/packed"),
     ],
@@ -292,3 +307,24 @@ def test_jobs_of_what_is_not_there(made: TestClient) -> None:
     assert made.get("/v1/trees/nobody/export", params={"target": "c"}, headers=later).status_code == 404
     refused = made.get("/v1/trees/to-go/export", params={"target": "exe"}, headers=later)
     assert (refused.status_code, refused.json()["errors"][0]["pointer"]) == (422, "/query/target")
+
+
+def test_the_command_waits_where_it_becomes_a_job(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    url = f"sqlite:///{tmp_path / 'store.db'}"
+    with background(Settings(database=url, catalogue=False)) as address, Client(address) as client:
+        client.submit(PENDULUM)
+        client.create_tree(TREE)
+        ask = Client.request
+        later = {"headers": {"Prefer": "respond-async"}}
+
+        def asked(self: Client, method: str, path: str, body: Any = None, **options: Any) -> Any:
+            """As where the server finds that it takes too long."""
+            return ask(self, method, path, body, **(later if path.endswith("/export") else {}), **options)
+
+        monkeypatch.setattr(Client, "request", asked)
+        assert main(["export", "to-go", "--target", "c", "--server", address]) == 0
+    assert "to-go.zip" in capsys.readouterr().out
+    assert "to_go.c" in members(Path("to-go.zip").read_bytes())

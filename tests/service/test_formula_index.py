@@ -18,7 +18,7 @@ from service.database.migrate import upgrade
 from service.database.tables import metadata
 from service.operations.catalogue import store_part
 from service.operations.verification import verify_all
-from service.queries.formulas import FormulaRow, list_formulas
+from service.queries.searching.formulas import FormulaRow, list_formulas
 from substructures import Definition, catalogue, derive
 
 from .databases import fresh

@@ -14,7 +14,8 @@ from sqlalchemy import Engine, event
 
 from service.app import open_store
 from service.messages.refusals import StaleError
-from service.operations import jobs, trees
+from service.operations import trees
+from service.operations.jobs import jobs
 from service.queries import idempotency
 from service.settings import Settings
 from service.store import idempotency as claims

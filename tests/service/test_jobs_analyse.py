@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 from collections.abc import Mapping
 from typing import Any
 
@@ -133,7 +134,7 @@ def test_export_what_follows_from_a_model(library: MemoryLibrary) -> None:
         ("analyse", {"tree": "cell", "analysis": "magic", "request": {}}, "/items/0/analysis"),
         ("analyse", {"tree": "cell", "analysis": "equilibria", "request": {}, "format": "svg"}, "/items/0/format"),
         ("analyse", {"tree": "cell", "request": {}}, "/items/0/analysis"),
-        ("export", {"tree": "cell", "quantity": "x", "format": "text", "options": {"a": "b"}}, "/items/0/options"),
+        ("export", {"tree": "cell", "quantity": "x", "format": "text", "options": {"a": 1}}, "/items/0/options/a"),
         ("export", {"tree": "cell", "quantity": "metric", "format": "text", "request": {}}, "/items/0/request"),
         ("export", {"tree": "cell", "quantity": "velocity-equations", "format": "text"}, "/items/0/request"),
         (
@@ -161,5 +162,5 @@ def test_faults_that_need_the_model_are_outcomes(library: MemoryLibrary) -> None
 @pytest.mark.parametrize("name", ["format", "analysis"])
 def test_a_list_in_place_of_a_text_is_not_shown_as_in_python(library: MemoryLibrary, name: str) -> None:
     item = {"tree": "cell", "analysis": "equilibria", "request": {}, name: ["npz"]}
-    with pytest.raises(InvalidInput, match=f"the {name} is no text"):
+    with pytest.raises(InvalidInput, match=f"/{name}: a text is needed, found " + re.escape('["npz"]')):
         library.items("analyse", {"items": [item]})

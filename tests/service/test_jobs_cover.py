@@ -28,8 +28,13 @@ SWING = {"q": [0.3], "span": [0, 1], "count": 3}
 REQUESTS: dict[str, tuple[str, dict[str, Any]]] = {
     "abbreviations": ("cart", {"quantity": "metric", "simplify": 0.1, "format": "c"}),
     "simulations": ("clock", SWING),
+    "ensembles": ("cart", {**SWING, "q": [[0, 0.3], [0.1, 0.2]], "parameters": {"x.l0": [0.5, 0.7]}}),
     "sensitivities": ("cart", {**SWING, "q": [0, 0.3], "by": ["x.l0"], "of_start": True}),
+    "periodic-orbits": ("cart", {"q": [0, 2.5], "period": 1.3, "hold": ["x.q0", "x.q1", "x.q0'", "x.q1'"]}),
+    "lyapunov-exponents": ("cart", {"q": [0, 0.3], "duration": 5, "intervals": 20}),
     "linearisations": ("clock", {"q": [0.3]}),
+    "frequency-responses": ("cart", {"q": [0, 3], "frequencies": [1, 2], "outputs": {"y": "x.q1"}}),
+    "regulators": ("cart", {"q": [0, 0], "weights": {"x.q1": 2, "x.q0": 1}, "of_inputs": ["tau.x.q0"]}),
     "equilibria": ("clock", {"count": 4}),
     "steady-motions": ("cart", {"rates": {"x.q0": 1}, "count": 4}),
     "root-loci": ("cart", {"parameter": "x.l0", "values": [1, 2], "q": [0, 0]}),

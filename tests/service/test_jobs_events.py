@@ -13,7 +13,7 @@ import httpx2
 import pytest
 from fastapi.testclient import TestClient
 
-from service.routes import job_streams
+from service.routes.jobs import job_streams
 from service.server import background
 from service.settings import Limits, Settings
 from service.store import job_events as feed

@@ -8,7 +8,7 @@ import pytest
 
 from service.content.summaries import PartContent, part_content
 from service.database.packed import unpack
-from service.jobs.kinds import KINDS, expand, run
+from service.jobs.kinds import KINDS, expand, run, submission
 from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
@@ -66,12 +66,14 @@ def test_equal_items_are_equal_whatever_reference_is_used(library: MemoryLibrary
 def test_template_gives_every_combination_with_names(library: MemoryLibrary) -> None:
     tree = {**TREE, "instances": [*TREE["instances"], HAND]}
     choices = {"hand": ["pendulum", "limited"], "arm.l": [1, "1.5"], "/parameters/g/value": [9.81]}
-    items = expand("assemble", {"template": tree, "choices": choices}, Limits(), library)
+    asked = {"kind": "assemble", "template": tree, "choices": choices}
+    items = expand(submission(asked), Limits(), library)
     names = ["cell-pendulum-1-9-81", "cell-pendulum-1-5-9-81", "cell-limited-1-9-81", "cell-limited-1-5-9-81"]
     assert [item["tree"]["name"] for item in items] == names
     assert [item["tree"]["instances"][0]["parameters"] for item in items] == [{"l": 1}, {"l": "1.5"}] * 2
     assert "parameters" not in tree["instances"][0]
-    long = expand("assemble", {"template": {**tree, "name": "c" * 64}, "choices": {"arm.l": [1, 2]}}, Limits(), library)
+    asked = {"kind": "assemble", "template": {**tree, "name": "c" * 64}, "choices": {"arm.l": [1, 2]}}
+    long = expand(submission(asked), Limits(), library)
     assert [item["tree"]["name"] for item in long] == ["c" * 62 + "-1", "c" * 62 + "-2"]
 
 
@@ -175,7 +177,7 @@ def test_export_makes_the_files_of_targets(library: MemoryLibrary) -> None:
     ("given", "pointer"),
     [
         ({"target": "exe"}, "/target"),
-        ({"quantities": "metric"}, "/quantities"),
+        ({"quantities": ["metric", 1]}, "/quantities/1"),
         ({"target": "urdf", "quantities": ["metric"]}, "/quantities"),
         ({"together": 1}, "/together"),
         ({"packed": "yes"}, "/packed"),
@@ -218,7 +220,7 @@ def test_every_kind_is_tried_here() -> None:
     assert KINDS[:5] == ("assemble", "evaluate", "export", "derive", "verify")
     assert KINDS[5:7] == ("upgrade", "compare")
     assert KINDS[7:10] == ("simulate", "optimise", "analyse")  # tests/service/test_jobs_analyse.py
-    assert KINDS[10:] == ("mirror",)  # tests/service/test_jobs_mirror.py
+    assert KINDS[10:] == ("mirror", "sweep")  # tests/service/test_jobs_mirror.py, test_sweeps.py
 
 
 def test_an_error_of_ours_is_the_problem_of_one_item(caplog: pytest.LogCaptureFixture) -> None:

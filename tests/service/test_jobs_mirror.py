@@ -16,7 +16,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.operations import mirrors
+from service.operations.sharing import mirrors
 from service.server import background
 from service.settings import Settings, SettingsError, from_environment
 from service.sources import read_source, source_of
@@ -228,7 +228,7 @@ def test_who_may(source: str, client: TestClient, store: Store) -> None:
         ("parts.example.org", "bad-source"),
         ("https://parts.example.org:99999", "bad-source"),
         ("", "bad-source"),
-        (7, "bad-source"),
+        (7, "string-type"),
     ],
 )
 def test_no_other_source_is_asked(given: Any, code: str, client: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:

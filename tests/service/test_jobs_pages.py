@@ -30,7 +30,7 @@ def test_pages_of_jobs(filled: TestClient, store: Store) -> None:
         for path in ("/jobs", f"/jobs/{job}"):
             page = filled.get(path)
             assert '<meta http-equiv="refresh" content="2">' in page.text
-            assert "<progress" in page.text
+            assert 'class="share"' in page.text
             assert "script-src" in page.headers["content-security-policy"]
             read(filled, path)
         engine.open()

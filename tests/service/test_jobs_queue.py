@@ -7,8 +7,8 @@ import sqlalchemy as sa
 
 from service.database.job_tables import job_items
 from service.jobs.engines.engine import Outcome
-from service.queries import queue
 from service.queries.attempts import Attempt
+from service.queries.jobs import queue
 from service.queue import rounds
 from service.queue.rounds import Ended
 from service.store.store import Store

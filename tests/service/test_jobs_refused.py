@@ -31,17 +31,17 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
     ("kind", "request_", "expected"),
     [
         ("dance", {"items": [{}]}, ("/kind", "unknown-kind")),
-        ("verify", {}, ("/items", "missing")),
-        ("verify", {"items": []}, ("/items", "empty")),
-        ("verify", {"items": {}}, ("/items", "empty")),
-        ("verify", {"items": [{}], "template": {}}, ("/items", "missing")),
-        ("verify", {"items": [{}], "priority": 1}, ("/priority", "unknown-field")),
+        ("verify", {}, ("/items", "one-source")),
+        ("verify", {"items": []}, ("/items", "too-short")),
+        ("verify", {"items": {}}, ("/items/0/substructure", "one-source")),
+        ("verify", {"items": [{}], "template": {}}, ("/items", "one-source")),
+        ("verify", {"items": [{}], "priority": 1}, ("/priority", "extra-forbidden")),
         ("verify", {"items": [{"substructure": "pendulum"}] * 101}, ("/items", "too-many-items")),
         ("verify", {"items": [{"substructure": "pendulum"}, 5]}, ("/items/1", "object-expected")),
-        ("verify", {"items": [{"substructure": "pendulum"}, {}]}, ("/items/1/substructure", "missing")),
-        ("verify", {"items": [{"substructure": "pendulum", "x": 1}]}, ("/items/0/x", "unknown-field")),
+        ("verify", {"items": [{"substructure": "pendulum"}, {}]}, ("/items/1/substructure", "one-source")),
+        ("verify", {"items": [{"substructure": "pendulum", "x": 1}]}, ("/items/0/x", "extra-forbidden")),
         ("verify", {"items": [{"substructure": "nothing"}]}, ("/substructure", "unknown-substructure")),
-        ("verify", {"items": [{"substructure": {}}]}, ("/substructure", "unknown-substructure")),
+        ("verify", {"items": [{"substructure": {}}]}, ("/items/0/substructure", "string-type")),
         ("assemble", {"items": [{"name": "BAD"}]}, ("/name", "string-pattern-mismatch")),
         (
             "assemble",
@@ -68,8 +68,8 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ("derive", {"items": [with_body({"mass": "nope"})]}, ("/bodies/0/mass", "unknown-name")),
         ("derive", {"items": [with_body({"com": [0, "l*(", 0]})]}, ("/bodies/0/com/1", "bad-expression")),
         ("derive", {"items": [with_body({"parent": "nobody"})]}, ("/bodies/0/parent", "unknown-parent")),
-        ("assemble", {"template": TREE}, ("/choices", "missing")),
-        ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "list-expected")),
+        ("assemble", {"template": TREE}, ("/choices", "no-choices")),
+        ("assemble", {"template": TREE, "choices": {"arm": []}}, ("/choices/arm", "too-short")),
         ("assemble", {"template": TREE, "choices": {"leg": ["x"]}}, ("/choices/leg", "unknown-choice")),
         (
             "assemble",
@@ -77,7 +77,7 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             ("/choices/~1instances~17~1at", "unknown-choice"),
         ),
         ("assemble", {"template": TREE, "choices": {"arm.l": list(range(101))}}, ("/choices", "too-many-items")),
-        ("assemble", {"template": [], "choices": {"arm": ["x"]}}, ("/template", "object-expected")),
+        ("assemble", {"template": [], "choices": {"arm": ["x"]}}, ("/template", "dict-type")),
         *(
             (
                 "assemble",
@@ -115,17 +115,17 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         (
             "export",
             {"items": [{"tree": "cell", "quantity": 5, "format": "c"}]},
-            ("/items/0/quantity", "string-expected"),
+            ("/items/0/quantity", "string-type"),
         ),
         ("evaluate", {"items": [{"tree": "no", "request": {}}]}, ("/items/0/tree", "unknown-tree")),
-        ("evaluate", {"items": [{"tree": "cell", "request": []}]}, ("/items/0/request", "object-expected")),
+        ("evaluate", {"items": [{"tree": "cell", "request": []}]}, ("/items/0/request", "dict-type")),
         ("evaluate", {"items": [{"tree": "cell", "request": {}}]}, ("/items/0/request/quantities", "missing")),
         (
             "evaluate",
             {"items": [{"tree": "cell", "request": {"quantities": [{}]}}]},
             ("/items/0/request/quantities/0", "unknown-quantity"),
         ),
-        ("evaluate", {"items": [EVALUATION | {"grid": {}}]}, ("/items/0/grid", "object-expected")),
+        ("evaluate", {"items": [EVALUATION | {"grid": {}}]}, ("/items/0/grid", "too-short")),
         ("evaluate", {"items": [EVALUATION | {"grid": {"arm.x": [1]}}]}, ("/items/0/grid/arm.x", "unknown-name")),
         (
             "evaluate",
@@ -170,8 +170,8 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
             {"items": [EVALUATION | {"sample": {"count": 1}, "grid": {"arm.q": 0}}]},
             ("/items/0/request", "states"),
         ),
-        ("evaluate", {"items": [EVALUATION | {"format": []}]}, ("/items/0/format", "unknown-format")),
-        ("evaluate", {"items": [EVALUATION | {"states": "sha256:0"}]}, ("/items/0/states", "unknown-field")),
+        ("evaluate", {"items": [EVALUATION | {"format": "x"}]}, ("/items/0/format", "unknown-format")),
+        ("evaluate", {"items": [EVALUATION | {"states": "sha256:0"}]}, ("/items/0/states", "extra-forbidden")),
     ],
 )
 def test_what_cannot_be_resolved_is_refused_with_a_pointer(

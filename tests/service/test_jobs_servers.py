@@ -6,6 +6,7 @@ import os
 import sqlite3
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
@@ -14,6 +15,7 @@ from typing import Any
 
 import pytest
 
+from service import server
 from service.app import open_store
 from service.cli.main import main
 from service.jobs.engines.engine import Outcome, Work
@@ -50,10 +52,10 @@ class Slow(FakeEngine):
 @contextmanager
 def serving(database: str, folder: Path, *options: str) -> Iterator[tuple[Server, Client]]:
     """A server with one worker, and its client."""
-    server = Server(database, folder / "log", ("--workers", "1", *options))
-    server.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "2"
-    with running_servers([server]), Client(server.address) as client:
-        yield server, client
+    one = Server(database, folder / "log", ("--workers", "1", *options))
+    one.environment["SUBSTRUCTURES_LIMIT_LEASE_SECONDS"] = "2"
+    with running_servers([one]), Client(one.address) as client:
+        yield one, client
 
 
 @contextmanager
@@ -77,15 +79,15 @@ def until(condition: Callable[[], bool], seconds: float = 30) -> None:
 
 def test_a_killed_server_loses_and_doubles_nothing(tmp_path: Path) -> None:
     """Neither of what was acknowledged, nor of a job. The two starts take 7 s of CPU."""
-    with serving(f"sqlite:///{tmp_path / 'x.db'}", tmp_path) as (server, client):
+    with serving(f"sqlite:///{tmp_path / 'x.db'}", tmp_path) as (one, client):
         version, is_new = client.submit(PENDULUM)
         assert is_new
         client.create_tree(TREE)
         tree = client.couple("cell", HAND)
         job = client.submit_job(cells(40))["id"]
         until(lambda: client.job(job)["progress"]["done"] >= 10)
-        server.kill()
-        server.start()
+        one.kill()
+        one.start()
         assert client.substructure("pendulum@1") == version
         assert client.request("GET", "/v1/trees/cell").json() == tree
         assert client.evaluate("cell", quantities=["metric"], q=[0, 0])["count"] == 1
@@ -93,7 +95,7 @@ def test_a_killed_server_loses_and_doubles_nothing(tmp_path: Path) -> None:
         view = client.wait(job)
         assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
         names = [item["result"]["name"] for item in client.job_items(job)]
-        assert server.stop() == 0
+        assert one.stop() == 0
     with closing(sqlite3.connect(tmp_path / "x.db")) as connection:
         trees = connection.execute("SELECT name, count(*) FROM trees GROUP BY name").fetchall()
         assert sorted(trees) == sorted([("cell", 2), *((name, 1) for name in names)])
@@ -147,6 +149,41 @@ def test_a_killed_worker_on_postgresql_is_replaced(tmp_path: Path) -> None:
             view = client.wait(job)
         assert (view["state"], view["progress"]["failed"]) == ("succeeded", 0)
         assert len({item["result"]["tree"] for item in client.job_items(job)}) == 40
+
+
+@pytest.mark.deep
+def test_a_worker_ends_when_all_jobs_have_ended(tmp_path: Path) -> None:
+    """With exit status 0; what came while it worked is done, too."""
+    with fresh("postgresql", tmp_path) as address, serving(address, tmp_path, "--engine", "none") as (_, client):
+        client.submit(PENDULUM)
+        first = client.submit_job(cells(20))["id"]
+        command = [sys.executable, "-m", "service.cli.main", "worker", "--database", address, "--workers", "1"]
+        process = subprocess.Popen([*command, "--exit-when-idle"])
+        try:
+            until(lambda: client.job(first)["progress"]["done"] >= 1)
+            second = client.submit_job(cells(20, "d"))["id"]
+            assert process.wait(60) == 0
+        finally:
+            process.kill()
+        assert {client.job(job)["state"] for job in (first, second)} == {"succeeded"}
+
+
+def test_a_worker_waits_for_jobs_that_others_have(settings: Settings, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(server, "IDLE", 0.2)
+    monkeypatch.setattr(server, "LOOK", 0.02)
+    with open_store(settings) as store:
+        client = make_client(store)
+        client.post("/v1/substructures", json=PENDULUM)
+        client.post("/v1/trees", json=TREE)
+        job = submitted(client, export("cell", "metric"))
+        waiting = threading.Thread(target=server.wait_for_end, args=(store,))
+        waiting.start()
+        waiting.join(1.0)
+        assert waiting.is_alive()
+        with running(store, FakeEngine()):
+            finished(client, job)
+        waiting.join(10)
+        assert not waiting.is_alive()
 
 
 def test_a_worker_needs_a_shared_database(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

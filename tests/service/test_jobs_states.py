@@ -11,10 +11,10 @@ import sqlalchemy as sa
 from service.database.connections import Connection
 from service.database.job_tables import ITEM_STATES, JOB_STATES, jobs, result_files, results
 from service.database.tables import metadata
-from service.queries import jobs as queries
 from service.queries import removal
 from service.queries.common import now
-from service.queries.job_events import events_after
+from service.queries.jobs import jobs as queries
+from service.queries.jobs.job_events import events_after
 from service.queue.rounds import Ended
 from service.store.store import Store
 

@@ -75,7 +75,7 @@ def test_a_sample_over_a_parameter_that_is_given_is_refused(library: MemoryLibra
         ({"bind": "defaults,nose:1"}, "/bind", "unknown-parameter"),
         ({"options": {"inputs": ["tau.arm.q"]}}, "/options/inputs", "unknown-option"),
         ({"quantity": "state_space", "options": {"nose": ["x"]}}, "/options/nose", "unknown-option"),
-        ({"format": ["npz"]}, "/items/0/format", "unknown-format"),
+        ({"format": ["npz"]}, "/items/0/format", "string-type"),
     ],
 )
 def test_exports_that_cannot_be_made_are_refused(

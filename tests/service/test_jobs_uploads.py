@@ -15,7 +15,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.database.job_tables import job_items, job_uploads, jobs, results, uploads
-from service.operations import batches
+from service.operations.jobs import batches
 from service.queries.common import now
 from service.queue.retention import sweep
 from service.settings import Limits, Settings

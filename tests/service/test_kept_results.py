@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from service.queries.results import Result, get_file, put_results
+from service.queries.jobs.results import Result, get_file, put_results
 from service.store.store import Store
 
 

@@ -20,8 +20,8 @@ from service.store.kernels import Kernels
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
 from substructures.part.part import Part
-from substructures.quantities.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ from fastapi.testclient import TestClient
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.certificate import part_outputs
 from substructures.part import topology
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 TREE = {"name": "long", "gravity": [0, 0, "-9.81"], "instances": [{"name": "a", "substructure": "arm"}]}
 ZEROS = [0.0] * 6

@@ -17,7 +17,7 @@ from service.models.numbers import ANALYSES
 from service.models.requests import arguments, read_request
 from service.models.results import plain
 from service.models.source import Source
-from service.schemas.motions import (
+from service.schemas.analyses.motions import (
     AnySimulationRequest,
     ClosedRequest,
     LoopRequest,
@@ -25,7 +25,7 @@ from service.schemas.motions import (
     SensitivityRequest,
     SimulationRequest,
 )
-from service.schemas.velocity_constraints import VelocityConstraints
+from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.settings import Limits
 from substructures import InvalidInput, Model
 from substructures.analysis.closed.loops import loop_state

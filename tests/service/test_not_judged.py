@@ -8,6 +8,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from .analysis_trees import client, store
+from .job_outcomes import outcomes
+from .jobs_library import MemoryLibrary
 
 __all__ = ["client", "store"]  # fixtures
 
@@ -81,6 +83,32 @@ def test_formulas_of_parts_and_exports_are_marked(trees: TestClient) -> None:
 def test_analyses_of_what_nothing_judges_are_marked(trees: TestClient) -> None:
     answer = trees.post("/v1/trees/lost/linearisations", json={"q": [0.0]})
     assert "not-judged" in _codes(answer)
+
+
+@pytest.mark.parametrize(
+    ("kind", "item"),
+    [
+        ("evaluate", {"request": {"quantities": ["forces"], "q": [[0.1]]}}),
+        ("simulate", {"request": {"q": [0.5], "span": [0, 1], "count": 3}}),
+        ("analyse", {"analysis": "linearisations", "request": {"q": [0.0]}}),
+    ],
+)
+def test_items_of_jobs_are_marked(kind: str, item: dict[str, Any]) -> None:
+    tree = {"name": "lost", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "nowhere"}]}
+    library = MemoryLibrary([NOWHERE], [tree])
+    (outcome,) = outcomes(library, kind, {"items": [{"tree": "lost", **item}]})
+    assert outcome.problem is None
+    assert "not-judged" in [each["code"] for each in outcome.summary["warnings"]]
+
+
+def test_files_of_jobs_are_marked() -> None:
+    tree = {"name": "lost", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "nowhere"}]}
+    library = MemoryLibrary([NOWHERE], [tree])
+    items = [{"tree": "lost", "quantity": "forces", "format": format_} for format_ in ("text", "latex")]
+    for outcome in outcomes(library, "export", {"items": items}):
+        (data,) = outcome.files.values()
+        assert b"Warning: " in data
+        assert b"could not be judged" in data
 
 
 def test_a_tree_without_coordinates_is_told(trees: TestClient) -> None:

@@ -18,7 +18,7 @@ from service.jobs.kinds.trees import source_of
 from service.messages.viewer import ANYBODY
 from service.models.numbers import ANALYSES
 from service.models.results import JSON, written
-from service.operations.sources import pinned_tree
+from service.operations.sharing.sources import pinned_tree
 from service.operations.trees import find
 from service.settings import Settings
 from service.store.store import Store

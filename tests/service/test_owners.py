@@ -18,7 +18,7 @@ from service.cli.main import main
 from service.database.migrate import upgrade
 from service.http import openapi
 from service.messages.viewer import Viewer
-from service.queries.jobs import get_job
+from service.queries.jobs.jobs import get_job
 from service.settings import Settings
 from service.store import keys
 from service.store.store import Store
@@ -34,11 +34,16 @@ ANALYSES = (
         "abbreviations",
         "cost-gradients",
         "curvatures",
+        "ensembles",
         "equilibria",
         "excitations",
         "identifications",
         "linearisations",
         "loop-states",
+        "lyapunov-exponents",
+        "frequency-responses",
+        "regulators",
+        "periodic-orbits",
     ),
     *("optimal-controls", "root-loci", "sensitivities", "simulations", "steady-motions", "velocity-equations"),
 )
@@ -64,6 +69,7 @@ LET_IN = (0, 0, 404), (0, 0, 0)
 FORM: dict[str, Any] = {"name": "{tree}", "gravity": [0, 0, 0], "instances": [{"name": "a", "substructure": "{part}"}]}
 CAMERA = {"name": "b", "substructure": "{part}", "at": "arm.tip"}
 PULL = {"name": "pull", "type": "joint", "coordinate": "arm.q", "force": 2}
+RING = {"name": "ring", "type": "rod", "from": "arm.tip", "length": 1}
 PUSH = {"name": "push", "type": "joint", "coordinate": "arm.q", "force": 1}
 JOB = {"kind": "export", "items": [{"tree": "{tree}", "quantity": "metric", "format": "text"}]}
 PART, TREE, JOBS = "/v1/substructures", "/v1/trees", "/v1/jobs/{job}"
@@ -110,6 +116,11 @@ TABLE: dict[str, Row] = {
     "post /v1/trees": Row(TREE, (201, 403, 403), (201, 403, 403), FORM),
     "get /v1/trees/{ref}": Row(TREE + "/{tree}", *READ),
     "get /v1/trees/{ref}/picture": Row(TREE + "/{tree}@1/picture", *READ),
+    **{
+        f"get /v1/{kind}/{{ref}}/{file}": Row(f"/v1/{kind}/{name}@1/{file}", *READ)
+        for kind, name in (("trees", "{tree}"), ("substructures", "{part}"))
+        for file in ("program.wasm", "program.json", "origins", "scene")
+    },
     "get /v1/trees/{ref}/{quantity}": Row(TREE + "/{tree}@1/metric", *READ),
     "get /v1/trees/{name}/visibility": Row(TREE + "/{tree}/visibility", *READ),
     "put /v1/trees/{name}/visibility": Row(
@@ -119,6 +130,8 @@ TABLE: dict[str, Row] = {
     "delete /v1/trees/{ref}/couplings/{instance}": Row(
         TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403)
     ),
+    "post /v1/trees/{ref}/closures": Row(TREE + "/{tree}/closures", (201, 403, 404), (201, 403, 403), RING),
+    "delete /v1/trees/{ref}/closures/{closure}": Row(TREE + "/{tree}/closures/none", (404, 403, 404), (404, 403, 403)),
     "post /v1/trees/{ref}/loads": Row(TREE + "/{tree}/loads", (201, 403, 404), (201, 403, 403), PUSH),
     "delete /v1/trees/{ref}/loads/{load}": Row(TREE + "/{tree}/loads/pull", (201, 403, 404), (201, 403, 403)),
     "get /v1/substructures/{ref}/export": Row(PART + "/{part}@1/export?target=c", *READ),
@@ -134,6 +147,12 @@ TABLE: dict[str, Row] = {
     "get /v1/jobs": Row("/v1/jobs", *LISTED),
     "post /v1/jobs": Row("/v1/jobs", (202, 403, 422), (202, 403, 202), JOB),
     "get /v1/jobs/{job}": Row(JOBS, *READ),
+    "get /v1/jobs/{job}/table": Row("/v1/jobs/{sweep}/table", *READ),
+    "get /v1/jobs/{job}/pareto": Row("/v1/jobs/{sweep}/pareto", *READ),
+    "get /v1/jobs/{job}/table/columns/{column}": Row("/v1/jobs/{sweep}/table/columns/mass", *READ),
+    "post /v1/jobs/{job}/rows/{row}/tree": Row(
+        "/v1/jobs/{sweep}/rows/0/tree", (201, 403, 404), (201, 403, 403), {"name": "{tree}"}
+    ),
     "get /v1/jobs/{job}/archive": Row(JOBS + "/archive", *READ),
     "get /v1/jobs/{job}/events": Row(JOBS + "/events", *READ),
     "get /v1/jobs/{job}/items": Row(JOBS + "/items", *READ),
@@ -148,6 +167,13 @@ TABLE: dict[str, Row] = {
     "page /jobs": Row("/jobs", *LISTED),
     "page /substructures/{ref}": Row("/substructures/{part}", *READ),
     "page /trees/{ref}": Row("/trees/{tree}", *READ),
+    "page /trees/{ref}/edit": Row("/trees/{tree}/edit", *READ),
+    "page /trees/{ref}/motion": Row("/trees/{tree}/motion", *READ),
+    **{
+        f"page /{kind}/{{ref}}/{part}": Row(f"/{kind}/{name}/{part}{query}", *READ)
+        for kind, name in (("trees", "{tree}"), ("substructures", "{part}"))
+        for part, query in (("entry", "?entry=metric,0,0"), ("grid", "?tab=metric"))
+    },
     "page /substructures/{ref}/difference": Row("/substructures/{part}/difference?to={part}", *READ),
     "page /trees/{ref}/difference": Row("/trees/{tree}/difference?to={tree}@1", *READ),
     "page /jobs/{job}": Row("/jobs/{job}", *READ),
@@ -163,6 +189,7 @@ class World:
     keys: tuple[Headers, Headers, Headers]
     admin: Headers
     jobs: dict[str, str]
+    sweeps: dict[str, str]
 
 
 def store_of(client: TestClient) -> Store:
@@ -175,13 +202,19 @@ def key(store: Store, owner: str, *scopes: str) -> Headers:
         return {"Authorization": f"Bearer {keys.create(connection, '', scopes, None, owner)}"}
 
 
+def sweep(part: str, visibility: str) -> dict[str, Any]:
+    template = {"name": "arm", "gravity": [0, 0, 0], "instances": [{"name": "arm", "substructure": part}]}
+    columns = {"columns": {"mass": "mass"}, "pareto": {"minimise": ["mass"]}}
+    return {"kind": "sweep", "template": template, "shared": visibility == "public", **columns}
+
+
 @pytest.fixture(scope="module")
 def world(tmp_path_factory: pytest.TempPathFactory) -> World:
     path = tmp_path_factory.mktemp("world") / "store.db"
     with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, key_seconds=0)) as store:
         acme, reads = key(store, "acme", "read", "write", "jobs"), key(store, "acme", "read")
         bolt, admin = key(store, "bolt", "read", "write", "jobs"), key(store, "root", "admin")
-        client, jobs = make_client(store), {}
+        client, jobs, sweeps = make_client(store), {}, {}
         with running(store, FakeEngine()):
             for visibility, name in NAMES.items():
                 part = {**PENDULUM, "name": name, "title": name, "visibility": visibility}
@@ -196,10 +229,14 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> World:
                 answer = client.post("/v1/jobs", json=job, headers=acme)
                 assert answer.status_code == 202, answer.text
                 jobs[visibility] = answer.json()["id"]
+                answer = client.post("/v1/jobs", json=sweep(name, visibility), headers=acme)
+                assert answer.status_code == 202, answer.text
+                sweeps[visibility] = answer.json()["id"]
                 client.headers.update(acme)
-                finished(client, jobs[visibility])
+                for each in (jobs, sweeps):
+                    finished(client, each[visibility])
                 del client.headers["Authorization"]
-        return World(path, (acme, reads, bolt), admin, jobs)
+        return World(path, (acme, reads, bolt), admin, jobs, sweeps)
 
 
 @pytest.fixture
@@ -223,7 +260,8 @@ def ask(client: TestClient, endpoint: str, row: Row, given: dict[str, str], head
 
 def places(world: World, visibility: str) -> dict[str, str]:
     name = NAMES[visibility]
-    return {"part": name, "tree": f"{name}-cell", "job": world.jobs[visibility]}
+    jobs = {"job": world.jobs[visibility], "sweep": world.sweeps[visibility]}
+    return {"part": name, "tree": f"{name}-cell", **jobs}
 
 
 def test_every_endpoint_has_a_row() -> None:
@@ -255,7 +293,8 @@ def test_what_is_private_is_not_there_for_others(endpoint: str, served: TestClie
     """The answer about something private is the one about nothing, but for the name in it."""
     row, given, bolt = TABLE[endpoint], places(world, "private"), world.keys[2]
     answer = ask(served, endpoint, row, given, bolt)
-    nothing = {"part": "mush", "tree": "mush-cell", "job": "0" * len(world.jobs["private"])}
+    size = len(world.jobs["private"])
+    nothing = {"part": "mush", "tree": "mush-cell", "job": "0" * size, "sweep": "1" * size}
     other = ask(served, endpoint, row, nothing, bolt)
     if endpoint in ("post /v1/substructures", "post /v1/trees"):  # the name is taken: nothing else is told
         assert (answer.status_code, answer.json()["code"], "acme" in answer.text) == (403, "name-taken", False)
@@ -266,7 +305,9 @@ def test_what_is_private_is_not_there_for_others(endpoint: str, served: TestClie
         assert world.jobs["private"][:16] not in answer.text
         return
     assert answer.status_code == other.status_code
-    expected = other.text.replace("mush", MARK).replace(nothing["job"], given["job"])
+    expected = other.text.replace("mush", MARK)
+    for kind in ("job", "sweep"):
+        expected = expected.replace(nothing[kind], given[kind])
 
     def told(text: str) -> Any:
         return {name: value for name, value in json.loads(text).items() if name != "request_id"}

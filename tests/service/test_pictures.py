@@ -63,3 +63,19 @@ def test_numbers_of_any_size_are_drawn(client: TestClient) -> None:
         assert answer.status_code == 201, answer.text
         draw(client, answer.headers["location"] + "/picture")
         read(client, "/substructures/pendulum")
+
+
+@pytest.mark.parametrize("path", ["/v1/substructures/pendulum@1/scene", "/v1/trees/cell@1/scene"])
+def test_scenes_are_data_and_immutable(filled: TestClient, path: str) -> None:
+    first = filled.get(path)
+    assert first.headers["cache-control"].endswith("immutable")
+    assert filled.get(path, headers={"If-None-Match": first.headers["etag"]}).status_code == 304
+    assert "immutable" not in filled.get(path.replace("@1", "")).headers["cache-control"]
+    prefix = "arm." if "cell" in path else ""
+    told = first.json()
+    assert [frame["name"] for frame in told["frames"]] == [f"{prefix}{name}" for name in ("base", "rod", "tip")]
+    assert [frame["parent"] for frame in told["frames"]] == [-1, 0, 1]
+    assert told["joints"][0]["coordinate"] == f"{prefix}q"
+    assert told["bodies"][0]["name"] == f"{prefix}rod"
+    assert list(told["poses"]) == ["home"]
+    assert filled.get(f"/v1/{path.split('/')[2]}/nothing/scene").status_code == 404

@@ -30,6 +30,8 @@ ASKED: list[tuple[str, str, dict[str, Any], list[str]]] = [
     ("POST", "/v1/trees/cell/couplings", {"json": HAND}, ["assemble"]),
     ("POST", "/v1/trees/cell@1/publish", {"json": {"name": "cell-part"}}, ["publish"]),
     ("POST", "/v1/imports", XML, ["import"]),
+    ("POST", "/v1/imports?preview=true", XML, ["import", "preview"]),
+    ("POST", "/v1/imports?preview=true&cut=rod&name=cut", XML, ["import", "preview"]),
     ("POST", "/v1/imports?store=true", XML, ["import", "derive"]),
     ("POST", "/v1/imports?store=true&cut=rod&name=cut", XML, ["import", "assemble"]),
     ("POST", "/v1/equivalences", {"json": COMPARED}, ["import", "compare"]),

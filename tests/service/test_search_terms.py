@@ -11,7 +11,7 @@ import sqlalchemy as sa
 
 from service.app import open_store
 from service.database.migrate import upgrade
-from service.queries.terms import terms_of
+from service.queries.searching.terms import terms_of
 from service.settings import Settings
 from service.store.store import Store
 

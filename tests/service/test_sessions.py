@@ -57,24 +57,54 @@ def test_signing_in_and_out(filled: TestClient, store: Store) -> None:
     assert filled.get("/", headers={"Cookie": f"{SESSION}={value}"}).status_code == 401
 
 
-def test_a_session_is_shown_the_command_in_place_of_a_form_that_it_cannot_send(
-    filled: TestClient, store: Store
-) -> None:
+def test_who_may_not_write_is_shown_the_command(filled: TestClient, store: Store) -> None:
     assert ("id", "file") in read(filled, "/").attributes
-    sign_in(filled, token(store, "read", "write"))
+    sign_in(filled, token(store, "read"))
     page = read(filled, "/")
     assert ("id", "file") not in page.attributes
     assert 'substructures submit FILE --server http://localhost --key "$SUBSTRUCTURES_KEY"' in page.text
-
-
-def test_the_cookie_is_no_key(filled: TestClient, store: Store) -> None:
-    """What is stored of it does not let anybody in, and it changes nothing."""
     sign_in(filled, token(store, "read", "write"))
-    assert filled.post("/v1/substructures", json={**PENDULUM, "tags": []}).status_code == 401
-    assert filled.get("/v1/substructures").status_code == 200
+    assert ("id", "file") in read(filled, "/").attributes
+
+
+OURS = {"Sec-Fetch-Site": "same-origin", "Origin": "http://localhost"}
+
+
+def test_a_session_acts_with_the_scopes_of_its_key(filled: TestClient, store: Store) -> None:
+    """For scripts of our own pages; what is stored of the cookie does not let anybody in."""
+    sign_in(filled, token(store, "read", "write"))
+    made = filled.post("/v1/substructures", json={**PENDULUM, "name": "another"}, headers=OURS)
+    assert made.status_code == 201, made.text
+    assert filled.delete("/v1/trees/cell", headers=OURS).status_code == 204
+    denied = filled.post("/v1/jobs", json={"kind": "verify", "items": [{"substructure": "*"}]}, headers=OURS)
+    assert (denied.status_code, denied.json()["code"]) == (403, "scope-missing")
     with store.database.read() as connection:
         stored = connection.execute(select(sessions.c.id)).scalar_one()
     assert filled.get("/", headers={"Cookie": f"{SESSION}={stored}"}).status_code == 401
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"Sec-Fetch-Site": "same-site"},
+        {"Sec-Fetch-Site": "cross-site"},
+        {"Sec-Fetch-Site": "none"},
+        {"Origin": "https://localhost.evil.example"},
+        {"Origin": "null"},
+        {"Origin": ""},
+        {"Content-Type": "text/plain"},
+        {"Content-Type": "application/x-www-form-urlencoded; charset=utf-8"},
+        {"Content-Type": "multipart/form-data; boundary=x"},
+    ],
+)
+def test_nobody_else_acts_with_a_session(filled: TestClient, store: Store, change: dict[str, str]) -> None:
+    key = new_key(store, "read", "write")
+    sign_in(filled, key["Authorization"].removeprefix("Bearer "))
+    headers = {"Content-Type": "application/json", **OURS, **change}
+    for method, path in (("POST", "/v1/trees"), ("POST", "/v1/trees/cell/evaluations"), ("DELETE", "/v1/trees/cell")):
+        refused = filled.request(method, path, content=b"{}", headers=headers)
+        assert (refused.status_code, refused.json()["code"]) == (403, "cross-site")
+    assert filled.get("/v1/trees/cell").status_code == 200
 
 
 @pytest.mark.parametrize("key", ["", "sub_x_y", "sub__", "x" * 3000, "é"])

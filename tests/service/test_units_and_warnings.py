@@ -19,6 +19,7 @@ from service.content.summaries import part_content
 from service.database.tables import trees
 from service.messages.viewer import ANYBODY
 from service.operations import catalogue, exchange
+from service.operations.verification import verify_all
 from service.store.store import Store
 from substructures import Definition, Part, derive
 from substructures.formats.arrays import as_answer, read_npz
@@ -169,6 +170,9 @@ def test_gravity_that_nobody_gave_is_told(filled: TestClient) -> None:
     # zero that was given stays given when the tree grows
     assert _codes(_posted(filled, "trees/zero/couplings", HAND)) == []
     assert _codes(_posted(filled, "trees/loose/couplings", HAND)) == [("/gravity", "gravity-not-given")]
+    # it is stored as given, so that what is derived of the stored document is the same
+    store: Store = filled.app.state.store  # type: ignore[attr-defined]
+    assert [finding for finding in verify_all(store.database) if finding.fault] == []
 
 
 def test_joint_limits_left_are_told(filled: TestClient) -> None:

@@ -26,7 +26,7 @@ from service.schemas.state_sets import Grid, Sample
 from service.settings import Limits
 from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
 from substructures.documents import escape
-from substructures.quantities.evaluation import evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 
 from .conftest import PENDULUM, SLIDER
 from .job_outcomes import joined, known_library, outcomes
@@ -87,6 +87,17 @@ QUESTIONS: list[Row] = [
     ("linearisations", {"q": [0, 0]}, "/t", measured([1, 2], "min"), [60.0, 120.0], "m"),
     ("linearisations", {"q": [0, 0]}, "/parameters/arm.m", measured([250, 500], "g"), [0.25, 0.5], "m"),
     ("linearisations", {"q": [0, 0]}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("frequency-responses", {"q": [0, 0]}, "/frequencies", measured([60], "rpm"), [2 * pi], "m"),
+    ("frequency-responses", {"q": [0, 0]}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("frequency-responses", {}, "/q", *HANDS, "s"),
+    ("frequency-responses", {"q": [0, 0]}, "/qd", [measured(60, "rpm"), 0], [2 * pi, 0], "m"),
+    ("frequency-responses", {"q": [0, 0]}, "/t", measured(1, "min"), 60.0, "m"),
+    ("frequency-responses", {"q": [0, 0]}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
+    ("regulators", {}, "/q", *HANDS, "s"),
+    ("regulators", {"q": [0, 0]}, "/qd", [measured(60, "rpm"), 0], [2 * pi, 0], "m"),
+    ("regulators", {"q": [0, 0]}, "/t", measured(1, "min"), 60.0, "m"),
+    ("regulators", {"q": [0, 0]}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("regulators", {"q": [0, 0]}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
     ("equilibria", {}, "/starts", [HANDS[0]], [HANDS[1]], "s"),
     ("equilibria", {}, "/reach", MM, 0.25, "rad"),
     ("equilibria", {}, "/t", measured(1, "min"), 60.0, "m"),
@@ -103,6 +114,11 @@ QUESTIONS: list[Row] = [
     ("root-loci", {"parameter": "arm.l", "values": [1]}, "/q", *HANDS, "s"),
     ("root-loci", LOCUS, "/parameters/g", measured(981, "cm/s^2"), 9.81, "m"),
     ("root-loci", LOCUS, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/values", measured([250], "mm"), [0.25], "kg"),
+    ("periodic-orbits", {"vary": "arm.q'", "period": 1, "q": [0, 0]}, "/values", measured([60], "rpm"), [2 * pi], "m"),
+    ("periodic-orbits", {"q": [0, 0]}, "/period", measured(1, "min"), 60.0, "m"),
+    ("lyapunov-exponents", {"q": [0, 0]}, "/duration", measured(1, "min"), 60.0, "m"),
+    ("lyapunov-exponents", {"q": [0, 0], "duration": 1}, "/transient", measured(1, "min"), 60.0, "m"),
     ("curvatures", {}, "/q", *HANDS, "s"),
     ("curvatures", {"q": [0, 0]}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
     ("excitations", {"qdd": [[0, 0]]}, "/q", [HANDS[0]], [HANDS[1]], "s"),
@@ -140,7 +156,11 @@ TABLE = [*MOTION, *QUESTIONS, *CONTROLS, *RANGES]
 #: numbers without a dimension, or with one that changes from coordinate to coordinate
 PURE = {
     "simplify",
+    # of squares of anything
+    *("weights", "efforts"),
     *("absolute_tolerance", "relative_tolerance", "drift_limit", "error_limit", "tolerance", "constraints.normal"),
+    # samples have a unit beside the numbers, columns may be of anything
+    *("samples.of.values", "samples.of.uniform", "samples.of.normal", "columns.expression"),
 }
 
 

@@ -18,10 +18,10 @@ from service.cli.tree_files import local_source
 from service.cli.values import values
 from substructures.client.steps import step
 from substructures.documents.grouped import take
-from substructures.quantities.evaluation import EvaluationOptions
-from substructures.quantities.evaluation import evaluate as evaluated
+from substructures.quantities.numbers.evaluation import EvaluationOptions
+from substructures.quantities.numbers.evaluation import evaluate as evaluated
+from substructures.quantities.numbers.states import STATE, wrong_length
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
-from substructures.quantities.states import STATE, wrong_length
 
 Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
 

@@ -14,10 +14,22 @@ from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.tree_files import coupled_source, part_or_tree
-from service.models.exporting import ALL_TARGETS, FMI, PRECISIONS, ExportRequest, Package, part_package, tree_package
+from service.models.exporting import (
+    ALL_TARGETS,
+    FMI,
+    PRECISIONS,
+    STANDARDS,
+    ExportRequest,
+    Package,
+    part_package,
+    tree_package,
+)
+from service.models.formulas import makers
 from service.settings import Limits
 from substructures.client.steps import step
 from substructures.part.part import Part
+
+FORCE = "--force"
 
 
 @with_server
@@ -47,20 +59,24 @@ def export(
     stages: Annotated[
         bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
     ] = False,
+    standard: Annotated[str, one_of(STANDARDS, help="Of c.")] = STANDARDS[0],
     part: Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")] = False,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
     ] = None,
+    force: Annotated[bool, typer.Option(FORCE, help="Write over another file of that name.")] = False,
     json: Json = False,
 ) -> int:
     """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
     names = tuple(text for text in quantities.split(",") if text)
     if out is not None and out.is_dir():
         raise IsADirectoryError(EISDIR, "a folder", str(out))
-    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages)
+    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages, standard)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
     path = out or Path(package.name)
+    if not force and path.exists() and (not path.is_file() or path.read_bytes() != package.data):
+        raise ValueError(f"{path} is another file already: name one with --out, or write over it with {FORCE}")
     path.write_bytes(package.data)
     if json:
         print_json({"file": str(path), "bytes": len(package.data)})
@@ -78,8 +94,8 @@ def _local(path: Path, request: ExportRequest) -> Package:
     if isinstance(read, Part):
         return part_package(read, path.name, read.definition.digest, request, limit)
     source = coupled_source(*read)
-    sources = source.sources
-    return tree_package(sources, path.stem, path.name, source.digest, request, limit, lambda: read)
+    others = makers(source)
+    return tree_package(source.sources, path.stem, path.name, source.digest, request, limit, lambda: read, others)
 
 
 def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) -> Package:
@@ -94,11 +110,16 @@ def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) ->
         "fmi": request.fmi,
         "precision": request.precision,
         "stages": request.stages,
+        "standard": request.standard,
     }
     with server.client() as client:
         answer = client.request("GET", f"/v1/{kind}/{step(tree)}/export", params=wanted)
-    name = answer.headers["content-disposition"].partition('filename="')[2].rstrip('"')
-    return Package(Path(name).name, answer.headers["content-type"], answer.content)
+        content = client.content_of(answer)  # waits where it became a job
+    told = answer.headers.get("content-disposition", "").partition('filename="')[2].rstrip('"')
+    zipped = ".zip" if content.startswith(b"PK") else ".txt"
+    ending = ".fmu" if request.target == "fmu" else zipped
+    name = told or f"{request.name or tree.partition('@')[0]}{ending}"
+    return Package(Path(name).name, answer.headers["content-type"], content)
 
 
 COMMANDS = {"export": export}

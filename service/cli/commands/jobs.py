@@ -13,6 +13,7 @@ import typer
 
 from service.cli import completion
 from service.cli.choices import one_of
+from service.cli.commands.sweeps import rows
 from service.cli.documents import named, read_document, read_from
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, table
@@ -72,6 +73,7 @@ def submit(
       export               tree, quantity, format, form, bind, options
       upgrade              substructure (* for all)
       mirror               source
+      sweep                the whole file: template, choices, samples, columns (see 'substructures sweep')
 
     A choice is a list of values for a place in the template: a JSON pointer, or in a tree document an instance or
     instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
@@ -177,11 +179,12 @@ def show_all(
     server: Server,
     state: Annotated[str | None, typer.Option(help="Only those in this state.")] = None,
     kind: Annotated[str | None, typer.Option(help="Only those of this kind.")] = None,
+    label: Annotated[str | None, typer.Option(help="Only those with this label, or with it as a word.")] = None,
     count: Annotated[int, typer.Option(min=1, help="How many.")] = 20,
     json: Json = False,
 ) -> int:
     """List jobs, the newest first."""
-    filters = {name: x for name, x in (("state", state), ("kind", kind)) if x}
+    filters = {name: x for name, x in (("state", state), ("kind", kind), ("label", label)) if x}
     with server.client() as client:
         found = [job for _, job in zip(range(count), client.jobs(**filters), strict=False)]
     if json:
@@ -259,5 +262,6 @@ COMMANDS = {
         "cancel": cancel,
         "watch": watch,
         "result": result,
+        "table": rows,
     }
 }

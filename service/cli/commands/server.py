@@ -35,11 +35,15 @@ def serve(
 
 
 def worker(
-    engine: Engine = None, engine_address: EngineAddress = None, workers: Workers = None, database: Store = None
+    engine: Engine = None,
+    engine_address: EngineAddress = None,
+    workers: Workers = None,
+    exit_when_idle: Annotated[bool, typer.Option("--exit-when-idle", help="End when all jobs have ended.")] = False,
+    database: Store = None,
 ) -> int:
     """Compute the jobs of servers that share a PostgreSQL database, until interrupted."""
     logs.configure()
-    work(settings(engine=engine, engine_address=engine_address, workers=workers, database=database))
+    work(settings(engine=engine, engine_address=engine_address, workers=workers, database=database), exit_when_idle)
     return 0
 
 

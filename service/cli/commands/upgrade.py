@@ -23,7 +23,8 @@ def upgrade(
 
     Definitions, versions and digests stay. What is told of is on the disk.
     """
-    opened = Database(settings(database=database).database, exclusive=False)
+    given = settings(database=database)
+    opened = Database(given.database, exclusive=False, seal_key=given.seal_key)
     told, faults = [], 0
     try:
         for each in upgraded(opened, OPERATOR, all):

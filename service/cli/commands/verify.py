@@ -21,7 +21,8 @@ def verify(
     json: Json = False,
 ) -> int:
     """Prove every part and tree of a store by deriving it anew; a server may go on using it meanwhile."""
-    opened = Database(settings(database=database).database, exclusive=False)
+    given = settings(database=database)
+    opened = Database(given.database, exclusive=False, seal_key=given.seal_key)
     told, verified, wrong, mended = [], 0, 0, 0
     try:
         for finding in verify_all(opened, repair):

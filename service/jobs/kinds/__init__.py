@@ -19,15 +19,18 @@ from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.mirror import MIRROR, MIRROR_KIND
 from service.jobs.kinds.requested import REQUESTED
+from service.jobs.kinds.sweep import OWN, SWEEP
 from service.jobs.kinds.upgrade import UPGRADE
 from service.jobs.kinds.verify import VERIFY
 from service.messages.refusals import Refused, known_refusal, problem
-from service.schemas.jobs import ItemDocument
+from service.schemas.jobs import ItemDocument, SubmittedItems, SubmittedSweep
 from service.settings import Limits
-from substructures.errors import Fault, InvalidDocument, InvalidInput, InvalidProgram, among, meant
+from substructures.documents import read_model
+from substructures.errors import InvalidDocument, InvalidInput, InvalidProgram, meant
 
-__all__ = ["KINDS", "Library", "expand", "given", "resolve", "run"]
+__all__ = ["KINDS", "Library", "expand", "given", "resolve", "run", "submission"]
 
+SWEEP_KIND = "sweep"
 _KINDS: dict[str, Kind] = {
     "assemble": ASSEMBLE,
     "evaluate": EVALUATE,
@@ -40,27 +43,32 @@ _KINDS: dict[str, Kind] = {
     "optimise": analysis_kind("optimal-controls"),
     "analyse": analysis_kind(),
     MIRROR_KIND: MIRROR,
+    SWEEP_KIND: SWEEP,
 }
 KINDS = tuple(_KINDS)
-FIELDS = ("kind", "items", "template", "choices", "shared", "on_invalid", "label")
 _log = logging.getLogger(__name__)
 
 
-def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Library) -> list[ItemDocument]:
+def submission(document: Mapping[str, Any]) -> SubmittedItems | SubmittedSweep:
+    """What is submitted, read by the model of its kind. Raises InvalidDocument."""
+    kind = document.get("kind")
+    if kind not in KINDS:
+        what = "'kind' is needed" if kind is None else f"unknown kind '{str(kind)[:80]}'"
+        message = f"{what}; there are {', '.join(KINDS)}{meant(str(kind), KINDS)}"
+        raise InvalidDocument.at("/kind", "missing" if kind is None else "unknown-kind", message)
+    return read_model(SubmittedSweep, document) if kind == SWEEP_KIND else read_model(SubmittedItems, document)
+
+
+def expand(asked: SubmittedItems | SubmittedSweep, limits: Limits, library: Library) -> list[ItemDocument]:
     """The items of a submission: ``items``, or every combination of the ``choices`` put into the ``template``.
 
     An item may stand for several: states are split into parts of bounded size, ``*`` into the
     versions of the catalogue. Raises InvalidDocument with pointers into the submission.
     """
-    if kind not in _KINDS:
-        message = f"unknown kind '{kind[:80]}'; there are {', '.join(KINDS)}{meant(kind, KINDS)}"
-        raise InvalidDocument.at("/kind", "unknown-kind", message)
     items: list[ItemDocument] = []
-    for pointer, one in given(request, limits.job_items):
-        if not isinstance(one, dict):
-            raise InvalidDocument.at(pointer, "object-expected", "an object is needed")
+    for pointer, one in given(asked, limits.job_items):
         try:
-            items += _KINDS[kind].spread(one, limits, library)
+            items += _KINDS[asked.kind].spread(one, limits, library)
         except InvalidInput as error:
             raise error.below(pointer) from None
         if len(items) > limits.job_items:
@@ -71,22 +79,13 @@ def expand(kind: str, request: Mapping[str, Any], limits: Limits, library: Libra
     return items
 
 
-def given(request: Mapping[str, Any], limit: int) -> list[tuple[str, Any]]:
+def given(asked: SubmittedItems | SubmittedSweep, limit: int) -> list[tuple[str, Any]]:
     """The items as given or put together, each with the place of its faults."""
-    faults = [
-        Fault(f"/{key}", "unknown-field", f"unknown field '{key[:80]}'{among(key, FIELDS, k)}")
-        for k, key in enumerate(key for key in request if key not in FIELDS)
-    ]
-    if ("items" in request) == ("template" in request):
-        faults.append(Fault("/items", "missing", "give either 'items', or a 'template' with 'choices'"))
-    if faults:
-        raise InvalidDocument(faults)
-    if "template" in request:
-        made = combinations(request["template"], request.get("choices"), limit)
-        return [("/template", item) for item in made]
-    items = request["items"]
-    if not isinstance(items, list) or not items:
-        raise InvalidDocument.at("/items", "empty", "a list of at least one item is needed")
+    if isinstance(asked, SubmittedSweep):
+        return [("", asked.model_dump(include=set(OWN), exclude_unset=True))]
+    if asked.template is not None and asked.choices is not None:
+        return [("/template", item) for item in combinations(asked.template, asked.choices, limit)]
+    items = asked.items or []
     if len(items) > limit:
         raise InvalidDocument.at("/items", "too-many-items", f"{len(items):,} items; the limit is {limit:,}")
     return [(f"/items/{k}", item) for k, item in enumerate(items)]

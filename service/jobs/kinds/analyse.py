@@ -16,7 +16,8 @@ import orjson
 
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.items import Analysed, Requested
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, inside, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
@@ -25,11 +26,16 @@ from service.models.numbers import ANALYSES
 from service.models.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
+from substructures.documents import read_model
 from substructures.errors import InvalidDocument, meant
 
-#: analyses that begin at one state, and those whose coordinates are only where something is looked for
-MOTIONS = ("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states")
+#: analyses that begin at one state, those whose coordinates are only where something is looked for, and those of many
+MOTIONS = (
+    *("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states"),
+    *("periodic-orbits", "lyapunov-exponents"),
+)
 NEAR = ("equilibria", "root-loci", "steady-motions")
+MANY = ("ensembles",)
 TOLD = ("status", "message", "is_right", "cost", "warnings")
 
 
@@ -38,14 +44,12 @@ def analysis_kind(name: str | None = None) -> Kind:
 
     def spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
         """One item for each request."""
-        which = ("analysis",) if name is None else ()
-        what = "requests" if "requests" in item else "request"
-        check_fields(item, ("tree", what, *which), ("format",))
-        common = {"tree": item["tree"], "analysis": name or item["analysis"], "format": item.get("format", "json")}
-        _check(common)
-        summary = summary_of(known_tree(item, library).summary)
-        requests = _requests(common["analysis"], item, summary)
-        return [{**common, "request": each, **_limits(limits)} for each in requests]
+        read = read_model(Requested if name else Analysed, item)
+        analysis = read.analysis if isinstance(read, Analysed) else str(name)
+        _check_format(analysis, read.format)
+        requests = _requests(analysis, read, summary_of(known_tree(item, library).summary))
+        common = {"tree": read.tree, "analysis": analysis, "format": read.format, **_limits(limits)}
+        return [{**common, "request": each} for each in requests]
 
     return Kind(spread, _resolve, _run)
 
@@ -54,34 +58,23 @@ def _limits(limits: Limits) -> ItemDocument:
     return {"limits": {"program_nodes": limits.job_nodes, "binary_bytes": limits.binary_bytes}}
 
 
-def _check(item: ItemDocument) -> None:
-    name, form = item["analysis"], item["format"]
-    if name not in tuple(ANALYSES):
-        what = f"unknown analysis '{name[:40]}'" if isinstance(name, str) else "the analysis is no text"
-        message = f"{what}; there are {', '.join(ANALYSES)}{meant(str(name), ANALYSES)}"
-        raise InvalidDocument.at("/analysis", "unknown-analysis", message)
+def _check_format(name: str, form: str) -> None:
     known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
     if form not in known:
-        what = f"unknown format '{form[:40]}'" if isinstance(form, str) else "the format is no text"
-        message = f"{what}; '{name}' can be {', '.join(known)}{meant(str(form), known)}"
+        message = f"unknown format '{form[:40]}'; '{name}' can be {', '.join(known)}{meant(form, known)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
 
 
-def _requests(name: str, item: ItemDocument, summary: Mapping[str, Any]) -> list[Any]:
+def _requests(name: str, item: Requested, summary: Mapping[str, Any]) -> list[ItemDocument]:
     """The requests that an item stands for, each of the right shape and for coordinates and parameters of the tree."""
-    if "requests" not in item:
-        given, places = [item["request"]], ["/request"]
-    elif isinstance(item["requests"], list) and item["requests"]:
-        given = item["requests"]
-        places = [f"/requests/{k}" for k in range(len(given))]
-    else:
-        raise InvalidDocument.at("/requests", "empty", "a list of at least one request is needed")
-    for request, place in zip(given, places, strict=True):
+    given = {"/request": item.request} if item.request is not None else {}
+    given |= {f"/requests/{k}": each for k, each in enumerate(item.requests or [])}
+    for place, request in given.items():
         with inside(place):
             read = ANALYSES[name].read(request, without_formulas(summary))
-            if name not in NEAR:
+            if name not in (*NEAR, *MANY):
                 check_analysis(summary, read, name in MOTIONS, not ANALYSES[name].needs_parts)
-    return given
+    return list(given.values())
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:

@@ -12,6 +12,7 @@ from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, admitted, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
+from service.jobs.kinds.shapes import shapes_of
 from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -20,7 +21,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
-from substructures.quantities.warnings import no_coordinates
+from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.model import couple
 from substructures.tree.plausibility import Plausibility
@@ -71,8 +72,6 @@ def pinned_spec(
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
-    if "gravity" in spec.model_fields_set:  # also where it is none: it was given
-        tree.setdefault("gravity", [0, 0, 0])
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
@@ -133,7 +132,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     given, parts = tree_parts(item, blobs)
     spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
-    model = couple(spec, parts, item["nodes"], admitted(item))
+    model = couple(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
     progress(0.9)
     files = {"program": pack(model.program), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
     for instance in given.instances:

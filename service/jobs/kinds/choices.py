@@ -15,24 +15,13 @@ from math import prod
 from typing import Any
 
 from substructures.documents import pointer_step
-from substructures.errors import Fault, InvalidDocument
+from substructures.errors import InvalidDocument
 
 MAX_NAME = 64
 
 
-def combinations(template: Any, choices: Any, limit: int) -> list[Any]:
+def combinations(template: Mapping[str, Any], choices: Mapping[str, list[Any]], limit: int) -> list[Any]:
     """Copies of the template. Raises InvalidDocument with pointers ``/template`` and ``/choices``."""
-    if not isinstance(template, dict):
-        raise InvalidDocument.at("/template", "object-expected", "an object is needed")
-    if not isinstance(choices, Mapping) or not choices:
-        raise InvalidDocument.at("/choices", "missing", "an object of lists of choices is needed")
-    faults = [
-        Fault("/choices" + pointer_step(key), "list-expected", f"a list of choices is needed for '{key[:80]}'")
-        for key, values in choices.items()
-        if not isinstance(values, list) or not values
-    ]
-    if faults:
-        raise InvalidDocument(faults)
     count = prod(len(values) for values in choices.values())
     if count > limit:
         raise InvalidDocument.at("/choices", "too-many-items", f"{count:,} combinations; the limit is {limit:,}")

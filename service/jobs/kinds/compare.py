@@ -13,11 +13,12 @@ from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.derive import DERIVE
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, check_fields, inside
+from service.jobs.kinds.items import Compared
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, inside
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import read_json
+from substructures.documents import read_json, read_model
 from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import equivalence
 from substructures.interchange.sides import Parts, sides
@@ -28,29 +29,22 @@ ALL, SIDES = "*", ("a", "b")
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
-    check_fields(item, ("a", "b"), ("coordinates",))
-    coordinates = item.get("coordinates", {})
-    if not isinstance(coordinates, dict) or not all(isinstance(name, str) for name in coordinates.values()):
-        raise InvalidDocument.at("/coordinates", "object-expected", "names in a to names in b are needed")
-    many = list(library.catalogue()) if item["b"] == ALL else item["b"]
-    found: list[ItemDocument] = []
+    read = read_model(Compared, item)
+    common = {"coordinates": read.coordinates, "nodes": limits.job_nodes}
     with inside("/a"):
-        a = _read(item["a"], library)
-    for k, b in enumerate(many if isinstance(many, list) else [many]):
-        with inside(f"/b/{k}" if isinstance(item["b"], list) else "/b"):
-            found.append({"a": a, "b": _read(b, library), "coordinates": coordinates, "nodes": limits.job_nodes})
+        a = _document(read.a, library)
+    found: list[ItemDocument] = []
+    for k, b in enumerate(library.catalogue() if read.b == ALL else read.b if isinstance(read.b, list) else [read.b]):
+        with inside(f"/b/{k}" if isinstance(read.b, list) else "/b"):
+            found.append({"a": a, "b": _document(b, library), **common})
     if not found:
-        raise InvalidDocument.at("/b", "empty", "a list of at least one model is needed")
+        raise InvalidDocument.at("/b", "empty", "the catalogue has no versions")
     return found
 
 
-def _read(given: Any, library: Library) -> Any:
+def _document(given: str | Mapping[str, Any], library: Library) -> Any:
     """A reference or a document; a file as what is read of it. Raises InvalidDocument."""
-    if isinstance(given, str):
-        return given
-    if not isinstance(given, Mapping):
-        raise InvalidDocument.at("", "object-expected", "a reference, a definition, a tree or a file is needed")
-    return library.file(given) if "file" in given else given
+    return library.file(given) if not isinstance(given, str) and "file" in given else given
 
 
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:

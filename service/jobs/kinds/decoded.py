@@ -10,6 +10,7 @@ from service.content.cache import Cache
 from service.content.integrity import reading
 from service.jobs.kinds.library import StoredTree
 from substructures.documents import read_json
+from substructures.expr.program import Program
 from substructures.part.certificate import not_judged
 from substructures.part.definition import Definition
 from substructures.part.part import Part
@@ -18,16 +19,21 @@ from substructures.tree.model import Model
 CAPACITY = 300_000  # operations
 
 _parts: Cache[Part] = Cache(CAPACITY, lambda part: len(part.program))
+_programs: Cache[Program] = Cache(CAPACITY, len)
 _models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.program))
 
 
 def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
-    """The part with these digests; its certificate is left out. Raises Refused for damaged content."""
+    """The part with these digests; its certificate is left out. Raises Refused for damaged content.
+
+    A program is read once for all definitions that differ in numbers and words alone.
+    """
     key = definition, program
     part = _parts.get(key)
     if part is None:
         with reading("a part", definition):
-            part = Part.load(Definition.stored(read_json(blobs[definition])), blobs[program], {})
+            read = _programs.once(program, lambda: Program.from_bytes(blobs[program]))
+            part = Part(Definition.stored(read_json(blobs[definition])), read, {})
         _parts.put(key, part)
     return part
 

@@ -3,7 +3,7 @@
 An item given is ``{"tree", "request", "grid" | "sample", "format"}``; ``request`` is the body of an evaluation, whose
 states are listed there, or described by a grid or a sample (:mod:`service.jobs.kinds.states`; coordinates that are not
 named there are 0). ``format``: npz, or arrow (:mod:`substructures.formats.arrow`). Its parts have a field ``range``,
-the first state and the one behind the last. Of states that were uploaded (:mod:`service.operations.uploads`) an item
+the first state and the one behind the last. Of uploaded states (:mod:`service.operations.jobs.uploads`) an item
 has its chunk: ``states`` is the digest of the npz file with the columns.
 """
 
@@ -20,8 +20,9 @@ import numpy as np
 from service.content.cache import Cache
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import summary_of
+from service.jobs.kinds.items import STATES, Evaluated
 from service.jobs.kinds.joint_limits import joint_limits
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_tree
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
 from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
 from service.jobs.kinds.trees import pinned, sources_of
@@ -32,13 +33,13 @@ from service.settings import Limits
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.compile.kernel import NO_PLACES, Places
-from substructures.documents import pointer_step
+from substructures.documents import pointer_step, read_model
 from substructures.documents.grouped import take
-from substructures.errors import Fault, InvalidDocument, meant
+from substructures.errors import Fault, InvalidDocument
 from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
-from substructures.quantities.evaluation import (
+from substructures.quantities.numbers.evaluation import (
     EvaluationOptions,
     evaluate,
     interpreted,
@@ -48,7 +49,6 @@ from substructures.quantities.evaluation import (
 from substructures.quantities.quantity import LABELS, needs_parts
 from substructures.tree.model import Model
 
-FORMATS = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
 #: what an answer says beside quantities and states
 ABOUT = ("coordinates", "digest", *LABELS, "warnings")
 #: From so many states an item is worth a compiled kernel, which the next item of the same tree finds.
@@ -63,12 +63,12 @@ _kernels: Cache[Kernel] = Cache(
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
-    check_fields(item, ("tree", "request"), ("grid", "sample", "format"))
+    read = read_model(Evaluated, item)
     tree = known_tree(item, library)
     summary = summary_of(tree.summary)
-    request = _request(item, without_formulas(summary))
+    request = _request(read, without_formulas(summary))
     chunk = states_per_item(request.quantities, len(summary["coordinates"]), len(summary["frames"]), limits)
-    described = _described(item, request, tree, summary, library)
+    described = _described(read, request, tree, summary, library)
     with inside("/request"):
         count = _count(summary, request, described)
     if count is not None and count > chunk * limits.job_items:
@@ -76,7 +76,7 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
         raise InvalidDocument.at("/" + next(iter(described or ("request",))), "too-many-states", message)
     common = {
         "tree": item["tree"],
-        "format": item.get("format", "npz"),
+        "format": read.format,
         "request": request.given(),
         "nodes": limits.job_nodes,
     }
@@ -93,40 +93,30 @@ def states_per_item(quantities: Sequence[str], dof: int, frames: int, limits: Li
     return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
-def _request(item: ItemDocument, model: Model) -> EvaluationRequest:
+def _request(item: Evaluated, model: Model) -> EvaluationRequest:
     """The request of an item, numbers in SI; ``model``: without formulas. Raises InvalidInput."""
-    request = item["request"]
-    if not isinstance(request, dict):
-        raise InvalidDocument.at("/request", "object-expected", "an object is needed")
-    described = [name for name in ("grid", "sample") if name in item]
-    if len(described) + ("q" in request) > 1 or (described and "qd" in request):
-        raise InvalidDocument.at("/request", "states", "states come from 'q' and 'qd', or a 'grid', or a 'sample'")
-    if item.get("format", "npz") not in tuple(FORMATS):
-        given = str(item["format"])
-        message = f"unknown format '{given[:40]}'; there are {', '.join(FORMATS)}{meant(given, FORMATS)}"
-        raise InvalidDocument.at("/format", "unknown-format", message)
-    if item.get("format") == "arrow" and find_spec("pyarrow") is None:
+    if item.format == "arrow" and find_spec("pyarrow") is None:
         how = "pip install 'substructures[arrow]' (in a clone: pip install -e '.[arrow]')"
         message = f"Arrow needs the extra 'arrow' on the server: {how}"
         raise InvalidDocument.at("/format", "not-installed", message)
     with inside("/request"):
-        read = EvaluationRequest.read(request)
+        read = EvaluationRequest.read(item.request)
         read_quantities(read.quantities)
         return read.in_si(model)
 
 
 def _described(
-    item: ItemDocument, request: EvaluationRequest, tree: StoredTree, summary: Mapping[str, Any], library: Library
+    item: Evaluated, request: EvaluationRequest, tree: StoredTree, summary: Mapping[str, Any], library: Library
 ) -> ItemDocument:
     """The grid or sample, complete; empty when the states are listed."""
     model = without_formulas(summary)
     known = model.units | model.state_units["q"] | {f"{c}'": unit for c, unit in model.state_units["qd"].items()}
-    if "grid" in item:
-        grid = read_grid(item["grid"], known)
+    if item.grid is not None:
+        grid = read_grid(item.grid, known)
         _check_once(request, "/grid", [name for name, _ in grid])
         return {"grid": grid}
-    if "sample" in item:
-        sample = read_sample(item["sample"], known, joint_limits(tree, library))
+    if item.sample is not None:
+        sample = read_sample(item.sample, known, joint_limits(tree, library))
         _check_once(request, "/sample/ranges", sample["ranges"])
         return {"sample": sample}
     return {}
@@ -200,7 +190,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     summary = {
         "tree": item["tree"],
         "range": item.get("range", [0, 1]),
-        "media_type": FORMATS[item["format"]],
+        "media_type": STATES[item["format"]],
         "bytes": len(data),
         "failures": len(answer["failures"]),
         "warnings": answer["warnings"][:MOST_WARNINGS],

@@ -1,6 +1,6 @@
 """export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name", "group"}``; its outcome is the
-text. Or ``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages"}``: what
-is got by ``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by ``GET
+text. Or ``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "stages",
+"standard"}``: what is got by ``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by ``GET
 /v1/substructures/.../export``.
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind``, ``options`` (lists of texts
@@ -18,26 +18,21 @@ from typing import Any
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import part_of, summary_of
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, inside, known_part, known_tree
+from service.jobs.kinds.items import Packed, Written, members
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, inside, known_part, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.messages.refusals import Refused
 from service.models.binding import DEFAULTS, bindings, unit_faults
 from service.models.exporting import (
-    ALL_TARGETS,
-    DEFAULT_OPTIONS,
-    FMI,
-    NAME,
-    PRECISIONS,
-    URDF,
+    WITH_PARTS,
     ZIP,
     Package,
-    misplaced,
     part_package,
     read_item,
     tree_package,
 )
-from service.models.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made
+from service.models.formulas import OPTIONS, QUANTITIES, WITH_DOCUMENT, made, makers
 from service.models.grouping import QUANTITIES as GROUPED
 from service.models.grouping import grouped_text
 from service.models.printing import (
@@ -55,14 +50,13 @@ from service.models.printing import (
 from service.models.source import Source
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import pointer_step
+from substructures.documents import pointer_step, read_model
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, among, meant
 from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
-from substructures.printers.render import FORMS
 from substructures.quantities.quantity import REGRESSOR, TABLE, askable
 
 PART = "substructure"
@@ -70,67 +64,13 @@ PART = "substructure"
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
     if "target" in item:
-        return [{**_spread_target(item), "nodes": limits.job_nodes}]
-    body = ("request",) if item.get("quantity") in tuple(WITH_DOCUMENT) else ()
-    check_fields(item, ("tree", "quantity", "format", *body), ("form", "bind", "options", "name", "group"))
-    given = {"form": FORMS[0], "bind": "", "options": {}, "name": NAME, "group": False, **item}
-    faults = [
-        Fault(f"/{name}", "string-expected", "a text is needed")
-        for name in ("quantity", "bind", "name")
-        if not isinstance(given[name], str)
-    ]
-    for name, known in (("format", FORMATS), ("form", FORMS)):
-        if given[name] not in tuple(known):
-            text = given[name]
-            what = f"unknown {name} '{text[:40]}'" if isinstance(text, str) else f"the {name} is no text"
-            there = f"there are {', '.join(known)}{meant(str(text), known)}"
-            faults.append(Fault(f"/{name}", f"unknown-{name}", f"{what}; {there}"))
-    if not isinstance(given["group"], bool):
-        faults.append(Fault("/group", "boolean-expected", "true or false is needed"))
-    if not _is_options(given["options"]):
-        faults.append(Fault("/options", "options-expected", "lists of texts by name are needed"))
-    if faults:
-        raise InvalidDocument(faults)
-    if body:
-        check, _ = WITH_DOCUMENT[given["quantity"]]
+        return [{**members(read_model(Packed, item)), "nodes": limits.job_nodes}]
+    read = read_model(Written, item)
+    if read.request is not None:
+        check, _ = WITH_DOCUMENT[read.quantity]
         with inside("/request"):
-            check(given["request"])
-    return [{**given, "nodes": limits.job_nodes}]
-
-
-def _spread_target(item: ItemDocument) -> ItemDocument:
-    of = PART if PART in item else "tree"
-    check_fields(item, (of, "target"), ("quantities", "name", "bind", "together", "packed", *DEFAULT_OPTIONS))
-    plain = {"quantities": [], "name": "", "bind": "", "together": False, "packed": False}
-    given = {**plain, **DEFAULT_OPTIONS, **item}
-    faults = [
-        Fault(f"/{name}", "string-expected", "a text is needed")
-        for name in ("name", "bind")
-        if not isinstance(given[name], str)
-    ]
-    if given["target"] not in ALL_TARGETS:
-        target = str(given["target"])
-        message = f"unknown target '{target[:40]}'; there are {', '.join(ALL_TARGETS)}{meant(target, ALL_TARGETS)}"
-        faults.append(Fault("/target", "unknown-target", message))
-    names = given["quantities"]
-    if not isinstance(names, list) or not all(isinstance(name, str) for name in names):
-        faults.append(Fault("/quantities", "list-expected", "a list of texts is needed"))
-    faults += [
-        Fault(f"/{name}", "boolean-expected", "true or false is needed")
-        for name in ("together", "packed", "stages")
-        if not isinstance(given[name], bool)
-    ]
-    faults += [
-        Fault(f"/{name}", "unknown-value", f"'{str(given[name])[:40]}' is none of {', '.join(known)}")
-        for name, known in (("fmi", FMI), ("precision", PRECISIONS))
-        if given[name] not in known
-    ]
-    field = None if faults else misplaced(given["target"], given)
-    if field is not None:
-        faults.append(Fault(f"/{field}", "not-of-target", f"target={given['target']} does not take '{field}'"))
-    if faults:
-        raise InvalidDocument(faults)
-    return given
+            check(read.request)
+    return [{**members(read), "nodes": limits.job_nodes}]
 
 
 def _quantity_faults(item: ItemDocument, summary: Mapping[str, Any]) -> Iterator[Fault]:
@@ -183,12 +123,6 @@ def _is_expression(text: Any) -> bool:
     return True
 
 
-def _is_options(given: object) -> bool:
-    """Whether these are lists of texts by name."""
-    lists = list(given.values()) if isinstance(given, dict) else [None]
-    return all(isinstance(texts, list) and all(isinstance(text, str) for text in texts) for texts in lists)
-
-
 def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     if PART in item:
         part = known_part(item, library)
@@ -198,7 +132,9 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     summary = summary_of(known_tree(item, library).summary)
     if "target" in item:
         item = {**item, "called": item["tree"].partition("@")[0]}
-        return pinned(item, library, item["nodes"], item["target"] == URDF or any(map(has_parts, item["quantities"])))
+        return pinned(
+            item, library, item["nodes"], item["target"] in WITH_PARTS or any(map(has_parts, item["quantities"]))
+        )
     faults = [*_quantity_faults(item, summary), *_bind_faults(item, summary)]
     if faults:
         raise InvalidDocument(faults)
@@ -249,6 +185,7 @@ def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
         request,
         item["nodes"],
         lambda: tree_parts(item["parts"], blobs),
+        makers(source),
     )
 
 

@@ -10,18 +10,28 @@ from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
 from substructures.part.topology import JointEntry, topology
-from substructures.quantities.states import default_number
+from substructures.quantities.numbers.states import default_number
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.plausibility import Plausibility
 
 
 def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, float] | None]:
     """By coordinate of the tree; -pi to pi for a revolute joint without limits, None where a range has to be given."""
     spec = TreeSpec.stored(read_json(tree.spec.encode()))
-    result = {}
+    definitions = {instance.name: _definition(instance, library) for instance in spec.instances}
+    ranges = Plausibility(spec, definitions)
+    result: dict[str, tuple[float, float] | None] = {}
     for instance in spec.instances:
-        definition = _definition(instance, library)
-        for joint in topology(definition).joints:
-            result[f"{instance.name}.{joint.coordinate}"] = _limits(definition, joint)
+        definition = definitions[instance.name]
+        layout = topology(definition)
+        for i, a in enumerate(layout.movers):
+            name = f"{instance.name}.{layout.joints[a].coordinate}"
+            result[name] = _limits(definition, layout.joints[a])
+            others = [k for k, of in enumerate(layout.moved_by) if of == i and k != a]
+            if any(definition.bodies[layout.joints[k].body].joint.limits is not None for k in others):
+                # what moves with the coordinate bounds it, too
+                found = ranges.limits_at_defaults.get(name)
+                result[name] = None if found is None else (float(found[0]), float(found[1]))
     return result
 
 

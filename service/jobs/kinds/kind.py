@@ -13,8 +13,8 @@ from service.messages.refusals import LongWork
 from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import pointer_step, read_json
-from substructures.errors import Fault, InvalidDocument, InvalidInput, among
+from substructures.documents import read_json
+from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
 
 Blobs = Mapping[str, bytes]
@@ -44,18 +44,6 @@ def inside(place: str) -> Iterator[None]:
         yield
     except InvalidInput as error:
         raise error.below(place) from None
-
-
-def check_fields(item: ItemDocument, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> None:
-    """Raise InvalidDocument for fields that are missing or unknown."""
-    known = (*required, *optional)
-    faults = [
-        Fault(pointer_step(key), "unknown-field", f"unknown field '{key[:80]}'{among(key, known, k)}")
-        for k, key in enumerate(key for key in item if key not in known)
-    ]
-    faults += [Fault(pointer_step(key), "missing", f"'{key}' is needed") for key in required if key not in item]
-    if faults:
-        raise InvalidDocument(faults)
 
 
 def parted(document: ItemDocument, of: type[Entry] = Entry) -> tuple[ItemDocument, ItemDocument]:
@@ -93,18 +81,16 @@ def recipe_member(version: StoredVersion) -> ItemDocument:
 
 def known_tree(item: ItemDocument, library: Library) -> StoredTree:
     """The tree that an item refers to. Raises InvalidDocument."""
-    reference = item["tree"]
-    tree = library.tree(reference) if isinstance(reference, str) else None
+    tree = library.tree(item["tree"])
     if tree is None:
-        raise InvalidDocument.at("/tree", "unknown-tree", library.absent("tree", str(reference)))
+        raise InvalidDocument.at("/tree", "unknown-tree", library.absent("tree", item["tree"]))
     return tree
 
 
 def known_part(item: ItemDocument, library: Library) -> StoredVersion:
     """The version of a part that an item refers to. Raises InvalidDocument."""
-    reference = item["substructure"]
-    version = library.version(reference) if isinstance(reference, str) else None
+    version = library.version(item["substructure"])
     if version is None:
-        message = library.absent("substructure", str(reference))
+        message = library.absent("substructure", item["substructure"])
         raise InvalidDocument.at("/substructure", "unknown-substructure", message)
     return version

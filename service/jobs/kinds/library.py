@@ -50,6 +50,9 @@ class Library(Protocol):
     def catalogue(self) -> Sequence[str]:
         """References ``name@3`` to all versions that are not yanked."""
 
+    def search(self, query: Mapping[str, Any]) -> Sequence[str]:
+        """References ``name@3`` to the latest versions that a search finds: ``q``, ``tag``, ``dof``, ``joints``."""
+
     def trees(self) -> Sequence[str]:
         """References ``name@3`` to all revisions of trees."""
 

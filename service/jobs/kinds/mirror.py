@@ -9,12 +9,14 @@ from __future__ import annotations
 import secrets
 
 from service.jobs.engines.engine import Outcome
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields
+from service.jobs.kinds.items import Mirrored
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
 from service.jobs.kinds.library import Library
 from service.messages.refusals import Refused
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from service.sources import SCHEMES, SETTING, read_source
+from substructures.documents import read_model
 from substructures.errors import InvalidDocument
 
 MIRROR_KIND = "mirror"
@@ -22,10 +24,8 @@ MIRROR_KIND = "mirror"
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
     """The item with the address as it is listed; another run is another item, since there may be new parts."""
-    check_fields(item, ("source",))
-    text = item["source"]
     try:
-        source = read_source(text if isinstance(text, str) else "")
+        source = read_source(read_model(Mirrored, item).source)
     except ValueError:
         message = f"the address of an instance is needed ({' or '.join(SCHEMES)}://host), without a path"
         raise InvalidDocument.at("/source", "bad-source", message) from None

@@ -11,7 +11,9 @@ from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, admitted
+from service.jobs.kinds.previewed import preview_of
 from service.jobs.kinds.reported import difference_of, report_of
+from service.jobs.kinds.shown import entry_of, origins_of, program_of
 from service.models.printing import Style, names_of_steps, text_of, with_numbers
 from service.schemas.jobs import ItemDocument
 from service.schemas.publishing import PublishRequest
@@ -24,8 +26,8 @@ from substructures.interchange.importing import import_file
 from substructures.part.outputs import with_own_inertia
 from substructures.part.parameters import described_inputs
 from substructures.tree.glossary import part_glossary
-from substructures.tree.published import Publication, published
-from substructures.tree.published_formulas import published_part
+from substructures.tree.publishing.published import Publication, published
+from substructures.tree.publishing.published_formulas import published_part
 
 BODY = "body"  # file of an outcome that is an answer
 
@@ -70,8 +72,12 @@ def _print_part(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 REQUESTED: Mapping[str, Callable[[ItemDocument, Blobs], Outcome]] = {
     "import": _read_file,
+    "preview": preview_of,
     "publish": _publish,
     "print-part": _print_part,
     "report": report_of,
     "difference": difference_of,
+    "program": program_of,
+    "origins": origins_of,
+    "entry": entry_of,
 }

@@ -23,10 +23,8 @@ NamedAxis = tuple[str, list[float]]
 DRAWS = 4
 
 
-def read_grid(given: Any, known: Mapping[str, str]) -> list[NamedAxis]:
+def read_grid(given: Mapping[str, Any], known: Mapping[str, str]) -> list[NamedAxis]:
     """Name and values in SI of every axis of a :class:`Grid`; ``known``: SI units by name. Raises InvalidInput."""
-    if not isinstance(given, Mapping) or not given:
-        raise InvalidDocument.at("/grid", "object-expected", "an object of axes by name is needed")
     _check_names("/grid", given, known)
     with inside("/grid"):
         return read_model(Grid, si_values(given, axis_units(given, known), "")).axes()
@@ -62,15 +60,13 @@ def grid_states(axes: Sequence[NamedAxis], start: int, stop: int) -> dict[str, A
 
 
 def read_sample(
-    given: Any, known: Mapping[str, str], limits: Mapping[str, tuple[float, float] | None]
+    given: Mapping[str, Any], known: Mapping[str, str], limits: Mapping[str, tuple[float, float] | None]
 ) -> dict[str, Any]:
     """A :class:`Sample` as plain data, with a range for every coordinate: the one given, or its joint limits.
 
     ``known``: SI units by name; ``limits``: by coordinate; None where the joint has none that are numbers. Raises
     InvalidInput.
     """
-    if not isinstance(given, Mapping):
-        raise InvalidDocument.at("/sample", "sample", "a sample has 'count', 'seed' and 'ranges'")
     with inside("/sample"):
         sample = read_model(Sample, {"count": None, **si_values(given, {"ranges": known}, "")})
     _check_names("/sample/ranges", sample.ranges, known)

@@ -15,11 +15,12 @@ from service.content.summaries import part_content, tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
-from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, check_fields, known_part, known_tree, recipe_member
+from service.jobs.kinds.items import Stored, members
+from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, known_part, known_tree, recipe_member
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import read_json
+from substructures.documents import read_json, read_model
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.tree.model import couple
@@ -28,9 +29,8 @@ ALL = "*"
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
-    kind = "tree" if "tree" in item else "substructure"
-    check_fields(item, (kind,))
-    references = library.own(kind) if item[kind] == ALL else [item[kind]]
+    ((kind, reference),) = members(read_model(Stored, item)).items()
+    references = library.own(kind) if reference == ALL else [reference]
     return [{kind: reference, "nodes": limits.job_nodes} for reference in references]
 
 

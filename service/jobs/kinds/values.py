@@ -11,9 +11,9 @@ from service.models.requests import arguments
 from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
-from substructures.quantities.evaluation import read_quantities
+from substructures.quantities.numbers.evaluation import read_quantities
+from substructures.quantities.numbers.states import States, given_values, read_states
 from substructures.quantities.quantity import REGRESSOR, TABLE
-from substructures.quantities.states import States, given_values, read_states
 from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
 

@@ -5,18 +5,18 @@ It is proven by deriving: what is stored has to be what today's software makes o
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from service.content.derivation import derived_part
 from service.content.integrity import reading
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
+from service.jobs.kinds.items import Stored, members
 from service.jobs.kinds.kind import (
     Blobs,
     ItemProgress,
     Kind,
-    check_fields,
     known_part,
     known_tree,
     recipe_member,
@@ -24,7 +24,7 @@ from service.jobs.kinds.kind import (
 from service.jobs.kinds.library import Library
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import read_json, write_json
+from substructures.documents import read_json, read_model, write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.tree.model import couple
@@ -35,11 +35,10 @@ SUMMARY = ("coordinates", "joints", "frames", "closures", "limited", "parameters
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
-    kind = "tree" if "tree" in item else "substructure"
-    check_fields(item, (kind,))
-    references = [item[kind]]
-    if item[kind] == ALL:
-        references = [*(library.trees() if kind == "tree" else library.catalogue())]
+    ((kind, reference),) = members(read_model(Stored, item)).items()
+    references: Sequence[str] = [reference]
+    if reference == ALL:
+        references = library.trees() if kind == "tree" else library.catalogue()
     return [{kind: reference, "nodes": limits.job_nodes} for reference in references]
 
 

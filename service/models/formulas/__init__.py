@@ -6,6 +6,7 @@ Options are texts by name, as in a query: ``{"controls": ("tau.arm.q1",), "runni
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from service.content.cache import Cache
@@ -22,6 +23,7 @@ OPTIONS = {
     "inputs": "inputs that may have any value (first_integrals; those with a default that is not 0 always have), "
     "columns of B and D (state_space; default all)",
     "zero": "parameters that are 0 (first_integrals)",
+    "degree": "1 or 2: of integrals in the momenta that are searched (first_integrals; default 2 where it is small)",
     "cyclic": "cyclic coordinates that are removed (routhian; default all)",
     "outputs": "expressions y in coordinates, velocities, inputs, parameters and t (state_space)",
     "parameters": "by which is differentiated (parameter_sensitivity; default all), also those of the cost (adjoint)",
@@ -49,6 +51,15 @@ def made(source: Source, name: str, options: Options) -> Made:
     if not quantity.outputs:
         return found
     return Made(found.program.select(list(quantity.outputs)), found.members, found.value)
+
+
+def makers(source: Source) -> dict[str, Callable[[], Program]]:
+    """By name what makes the formulas of QUANTITIES, with the default of every option."""
+    return {name: partial(_program, source, name) for name in QUANTITIES}
+
+
+def _program(source: Source, name: str) -> Program:
+    return made(source, name, {}).program
 
 
 def check_options(name: str, given: Iterable[str], known: Sequence[str] = ()) -> None:

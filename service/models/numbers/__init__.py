@@ -12,8 +12,13 @@ if TYPE_CHECKING:  # what an analysis needs is imported when it is first asked f
 _MODULES = {
     "abbreviations": "abbreviations",
     "simulations": "motions",
+    "ensembles": "ensembles",
     "sensitivities": "motions",
+    "periodic-orbits": "orbits",
+    "lyapunov-exponents": "orbits",
     "linearisations": "stability",
+    "frequency-responses": "stability",
+    "regulators": "stability",
     "equilibria": "stability",
     "steady-motions": "stability",
     "root-loci": "stability",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from service.models.abbreviations import abbreviated
 from service.models.numbers.analysis import Analysis
 from service.models.results import JSON
-from service.schemas.abbreviations import AbbreviationRequest
+from service.schemas.analyses.abbreviations import AbbreviationRequest
 
 ANALYSES = {
     "abbreviations": Analysis(

@@ -8,7 +8,7 @@ from service.models.numbers.analysis import Analysis
 from service.models.requests import arguments
 from service.models.results import TRAJECTORY
 from service.models.source import Source
-from service.schemas.control import GradientRequest, OptimalControlRequest
+from service.schemas.analyses.control import GradientRequest, OptimalControlRequest
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.optimal_control import optimal_control

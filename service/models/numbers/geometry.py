@@ -11,7 +11,7 @@ from service.models.source import Source
 from service.schemas.measurements import CurvatureRequest
 from substructures.analysis.equations.curvature import curvature_values
 from substructures.analysis.motion.integrators.progress import ProgressReport
-from substructures.quantities.states import read_states
+from substructures.quantities.numbers.states import read_states
 
 
 def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any:

@@ -7,7 +7,7 @@ from typing import Any
 from service.models.numbers.analysis import Analysis, without
 from service.models.requests import arguments
 from service.models.source import Source
-from service.schemas.motions import LoopRequest
+from service.schemas.analyses.motions import LoopRequest
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.motion.integrators.progress import ProgressReport
 

@@ -8,7 +8,7 @@ from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
 from service.models.results import TRAJECTORY
 from service.models.source import Source
-from service.schemas.motions import (
+from service.schemas.analyses.motions import (
     AnySimulationRequest,
     SensitivityRequest,
     SimulationRequest,

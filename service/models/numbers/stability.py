@@ -8,18 +8,22 @@ from service.models.numbers.analysis import Analysis, check_size
 from service.models.requests import arguments
 from service.models.results import DRAWN
 from service.models.source import Source
-from service.schemas.stability import (
+from service.schemas.analyses.stability import (
     EquilibriaRequest,
+    FrequencyResponseRequest,
     LinearisationRequest,
+    RegulatorRequest,
     RootLocusRequest,
     SteadyMotionsRequest,
 )
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.frequency_response import COUNT, frequency_response
 from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.regulator import regulator
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
-from substructures.quantities.states import read_states
+from substructures.quantities.numbers.states import read_states
 
 
 def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport) -> Any:
@@ -31,12 +35,29 @@ def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport
     return linearise(source.model, **arguments(read))
 
 
+def _response(source: Source, read: FrequencyResponseRequest, _: ProgressReport) -> Any:
+    model = source.model
+    outputs = len(read.outputs) or model.dof
+    check_size(source, len(read.frequencies or ()) or COUNT, 4 * outputs * len(model.input_names))
+    return frequency_response(model, **arguments(read))
+
+
 ANALYSES = {
     "linearisations": Analysis(
         LinearisationRequest,
         _linearisation,
         "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
         "of closed loops in independent coordinates, about one state",
+    ),
+    "frequency-responses": Analysis(
+        FrequencyResponseRequest,
+        _response,
+        "What outputs do where inputs oscillate: G(i w) of a tree linearised about a state, with its poles",
+    ),
+    "regulators": Analysis(
+        RegulatorRequest,
+        lambda source, read, _: regulator(source.model, **arguments(read)),
+        "Linear quadratic regulator about an equilibrium, with what inputs reach and weights see",
     ),
     "equilibria": Analysis(
         EquilibriaRequest,

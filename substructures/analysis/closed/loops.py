@@ -20,7 +20,7 @@ from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.mechanics.closure_rows import RANK, rank_of, ranks
-from substructures.quantities.reaction_numbers import least_norm
+from substructures.quantities.numbers.reaction_numbers import least_norm
 from substructures.tree.model import Model
 
 #: size of the tangent step that tells a singular position from a redundant closure [rad, m]

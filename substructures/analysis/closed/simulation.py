@@ -30,7 +30,7 @@ from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.quantities.limits import reached
+from substructures.quantities.numbers.limits import reached
 from substructures.tree.model import Model
 
 #: largest residuals of positions and velocities [per s] along a right motion, over the width of their rows

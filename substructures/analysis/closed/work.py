@@ -10,7 +10,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model
 
 POWER = "lost_power"

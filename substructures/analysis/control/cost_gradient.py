@@ -23,7 +23,7 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
-from substructures.quantities.states import input_defaults
+from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import Model
 
 FAILED = (

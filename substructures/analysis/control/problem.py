@@ -25,7 +25,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.loads.scope import Scope
 from substructures.quantities.measured import numeric
-from substructures.quantities.states import read_states
+from substructures.quantities.numbers.states import read_states
 from substructures.tree.model import Model, require_open
 
 MAX_INTERVALS = 10_000

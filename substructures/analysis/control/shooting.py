@@ -34,7 +34,7 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import MissingValue
 from substructures.mechanics.accelerations import cholesky_solve
-from substructures.quantities.states import read_states, symbol_values, with_input_defaults
+from substructures.quantities.numbers.states import read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
 #: c_i = a_(i, i-1) and b_i of the scheme

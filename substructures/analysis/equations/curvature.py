@@ -33,9 +33,9 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.part.part import MAX_NODES
 from substructures.quantities.certificate import certified
-from substructures.quantities.evaluation import Evaluator, interpreted
-from substructures.quantities.states import read_states, symbol_values
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.evaluation import Evaluator, interpreted
+from substructures.quantities.numbers.states import read_states, symbol_values
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model, require_open
 
 OUTPUTS = ("riemann", "ricci", "scalar_curvature", "inverse_metric", "christoffel_second")

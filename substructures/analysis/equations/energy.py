@@ -103,16 +103,23 @@ def judged_energy(
     """The rule of the energy and the reason; None where an input that varies is part of V."""
     if depends_on([f.scalar("potential_energy")], given):
         return None
-    power, rates = f.power, {str(v.value): v for v in f.rates}
     idle = f"; {closures_of(f.model)} do no work" if f.model.closures else ""
+    rule = rule_of(f, f.power, vanishes)
+    if rule == "constant":
+        return rule, f"all forces have a potential that does not depend on time: Q_a q'^a + V' = 0{idle}"
+    if rule == "falling":
+        return rule, f"forces without potential are linear in the velocities: it falls where they damp{idle}"
+    return rule, f"it changes by the power of {_culprits(f, vanishes)}{idle}"
+
+
+def rule_of(f: ModelFormulas, power: Expr, vanishes: Callable[[Expr], bool]) -> EnergyRule:
+    """What becomes of an energy that changes by a power."""
     # P = Q_a q'^a + V' is the zero formula
     if vanishes(power):
-        return "constant", f"all forces have a potential that does not depend on time: Q_a q'^a + V' = 0{idle}"
+        return "constant"
     # P(q, s q') = s^2 P(q, q'), by Euler: dP/dq'^a q'^a = 2 P
-    twice = directional([power], rates)[0]
-    if vanishes(twice - 2 * power) and not depends_on([power], {"t"}):
-        return "falling", f"forces without potential are linear in the velocities: it falls where they damp{idle}"
-    return "balance", f"it changes by the power of {_culprits(f, vanishes)}{idle}"
+    twice = directional([power], {str(v.value): v for v in f.rates})[0]
+    return "falling" if vanishes(twice - 2 * power) and not depends_on([power], {"t"}) else "balance"
 
 
 def _culprits(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> str:

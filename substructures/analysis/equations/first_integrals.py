@@ -12,74 +12,52 @@ What is zero is decided by the graph, where equal formulas are one node, and by
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from functools import lru_cache
-from typing import Any, Literal
+from itertools import chain
+from typing import Literal
 
-from substructures.analysis.equations.energy import EnergyRule, closures_of, depends_on, judged_energy
+from substructures.analysis.equations.energy import closures_of, depends_on, judged_energy
 from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
+from substructures.analysis.equations.free_motion import FreeMotion
+from substructures.analysis.equations.generators import Generators
+from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
+from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.kernels import Known, known_model
+from substructures.analysis.equations.subsystems import subsystems
 from substructures.analysis.equations.symmetries import Direction, directions
 from substructures.certificate.derived.integrals import constant
-from substructures.errors import Fault, InvalidArgument, among, listed
-from substructures.expr.calculus.corners import VanishingOnAllSides
+from substructures.errors import Fault, InvalidArgument, among
+from substructures.expr.calculus.corners import VanishingOnAllSides, corners
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
-from substructures.expr.program import Entries, Formulas, Program, array, program
+from substructures.expr.program import Entries, Formulas, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
-from substructures.quantities.states import input_defaults
+from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import Model
 
-IntegralKind = Literal["energy", "cyclic", "symmetry", "linear_momentum", "angular_momentum"]
 AXES = "xyz"
 UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
 
 
-@dataclass(frozen=True)
-class Integral:
-    """A quantity of the motion. ``name``: its output in the program.
-
-    ``rule``: ``constant``; ``falling`` (energy with dampers); ``balance`` (energy changes by the power fed in).
-    ``direction``: of a symmetry, c^a by coordinate, texts in the parameters: the integral is c^a p_a.
-    """
-
-    name: str
-    kind: IntegralKind
-    rule: EnergyRule
-    unit: str
-    reason: str
-    direction: Mapping[str, str] = field(default_factory=dict, hash=False)
-
-
-@dataclass(frozen=True)
-class FirstIntegrals:
-    """``program``: an output without axes for every integral, and ``power``: H' [W]. ``cyclic``: coordinates."""
-
-    program: Program
-    integrals: tuple[Integral, ...]
-    cyclic: tuple[str, ...]
-
-    def __repr__(self) -> str:
-        names = listed(f"{integral.name} ({integral.rule})" for integral in self.integrals)
-        cyclic = listed(self.cyclic) or "none"
-        return f"FirstIntegrals: {names or 'none'}\ncyclic: {cyclic}; {len(self.program)} operations"
-
-    def summary(self) -> dict[str, Any]:
-        """Names, units and reasons as plain data; the formulas are in the program."""
-        return {"integrals": [vars(i) for i in self.integrals], "cyclic": list(self.cyclic)}
-
-
-def first_integrals(model: Model, inputs: Iterable[str] | None = None, zero: Iterable[str] = ()) -> FirstIntegrals:
-    """Everything constant that follows from symmetry, with the energy (also where it is not constant).
+def first_integrals(
+    model: Model, inputs: Iterable[str] | None = None, zero: Iterable[str] = (), degree: Literal[1, 2] = 2
+) -> FirstIntegrals:
+    """Everything constant that follows from symmetry, with the energy (also where it is not constant), and what exact
+    search finds among integrals of this ``degree`` in the momenta at most, in models that are small enough for it
+    (``searched`` tells).
 
     ``inputs``: inputs that may have any value (default: those whose own default is not 0); all others are 0.
     ``zero``: parameters that are 0.
     What the reactions of closures could change, whatever they are, is not constant.
     Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
+    if degree not in (1, 2):
+        message = f"integrals of degree {str(degree)[:80]} in the momenta are not looked for: give 1 or 2"
+        raise InvalidArgument([Fault("/degree", "unknown-degree", message)])
     known = model.input_names
     inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
     faults = [
@@ -90,7 +68,7 @@ def first_integrals(model: Model, inputs: Iterable[str] | None = None, zero: Ite
     ]
     if faults:
         raise InvalidArgument(faults)
-    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero))
+    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero), degree)
 
 
 def acting_inputs(model: Model) -> list[str]:
@@ -99,7 +77,7 @@ def acting_inputs(model: Model) -> list[str]:
 
 
 @lru_cache(maxsize=32)
-def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) -> FirstIntegrals:
+def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str], degree: int) -> FirstIntegrals:
     model: Model = known.source
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
     f = ModelFormulas(model, unused | zero)
@@ -107,6 +85,8 @@ def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) 
     search.energy(given)
     search.momenta()
     search.cyclic()
+    search.further(given)
+    searched = search.beyond(degree)
     outputs = {i.name: Formulas((), {(): x}) for i, x in search.found}
     outputs["power"] = Formulas((), {(): f.power})
     integrals = tuple(i for i, _ in search.found)
@@ -115,7 +95,7 @@ def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str]) 
     kinds = dict.fromkeys(rows, "input")
     needs = (*DYNAMICS, "linear_momentum", "angular_momentum", "rotation", "U", "Omega")
     result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
-    return FirstIntegrals(result, integrals, tuple(search.cyclic_names))
+    return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
 
 
 class _Search:
@@ -125,12 +105,38 @@ class _Search:
         self.f, self.zero, self.vanishes = f, f.graph.zero, VanishingOnAllSides(f.graph)
         self.found: list[tuple[Integral, Expr]] = []
         self.cyclic_names: list[str] = []
+        self.generators = Generators(f)
 
     def energy(self, given: frozenset[str]) -> None:
         """H = T + V, unless a varying input is part of V."""
         judged = judged_energy(self.f, self.vanishes, given)
         if judged is not None:
             self.found.append((Integral("energy", "energy", judged[0], "J", judged[1]), self.f.energy))
+
+    def further(self, given: frozenset[str]) -> None:
+        """Those beside the momenta that are no combinations of them and of their products."""
+        for integral, value in self.found:
+            if integral.rule == "constant" and integral.kind != "energy":
+                self.generators.add(value)
+        for integral, value in chain(self.freely.spin(), subsystems(self.f, self.vanishes, given)):
+            self._note_new(integral, value)
+
+    def beyond(self, degree: int) -> tuple[int, str]:
+        """Those that are found among terms of a degree; the degree that was searched, and what among."""
+        why = not_searched(self.f)
+        if why is not None:
+            return 1, f"symmetries, momenta and subsystems only: {why}"
+        for integral, value in self.found:
+            if integral.kind == "energy" and integral.rule == "constant":
+                self.generators.add(value)
+        search = IntegralSearch(self.f, self.generators, self.vanishes)
+        self.found += search.found(degree)
+        return degree, search.told
+
+    def _note_new(self, integral: Integral, value: Expr) -> None:
+        if integral.rule != "constant" or self.generators.is_new(value):
+            self.found.append((integral, value))
+            self.generators.add(value)
 
     def cyclic(self) -> None:
         """p_c for every coordinate c that neither metric nor forces depend on."""
@@ -181,7 +187,8 @@ class _Search:
         # p = sum_a p_a q'^a, L = sum_a L_a q'^a and their derivatives along the equations of motion
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self.f.rate([*linear, *angular])
-        pull = [self._constant(x) or self.zero for x in rates[:3]]
+        constant = [self._constant(x) for x in rates[:3]]
+        pull = [x or self.zero for x in constant]
         kinds: list[IntegralKind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
         for kind, axis, value, rate in zip(kinds, AXES + AXES, [*linear, *angular], rates, strict=True):
             if self.vanishes(rate):
@@ -190,6 +197,9 @@ class _Search:
         self._about(angular, pull)
         if not all(self.vanishes(rate) for rate in rates):
             self._along_axes(linear, angular)
+        self.freely = FreeMotion(self.f, linear, angular, constant, self._constant, self.vanishes)
+        for integral, value in self.freely.with_time():
+            self._note(integral, value)
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
@@ -214,6 +224,9 @@ class _Search:
         states = {s.name for s in self.f.symbols.values() if s.kind != "parameter"}
         if not depends_on([expr], states):
             return expr
+        # a jump has no derivative that tells of it
+        if corners([expr]):
+            return None
         # dx = 0 for all changes of the state
         seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}
         if not self.vanishes(directional([expr], seeds)[0]):

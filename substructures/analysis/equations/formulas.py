@@ -10,7 +10,7 @@ from substructures.errors import InvalidDocument
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model, require_open
 
 #: what takes closures

@@ -7,7 +7,7 @@ from pathlib import Path
 
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
-from substructures.quantities.memo import Known, known_model
+from substructures.quantities.numbers.memo import Known, known_model
 
 __all__ = ["Known", "known_model", "program_kernel"]
 

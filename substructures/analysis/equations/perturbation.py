@@ -28,7 +28,7 @@ from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
-from substructures.quantities.workspace import ID
+from substructures.quantities.numbers.workspace import ID
 from substructures.tree.model import Model, require_open
 
 #: operations without a derivative at a zero of their argument

@@ -15,7 +15,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
 from substructures.printers.render import write
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 
 MatrixRows = list[list[Expr]]
 #: positions in which a determinant is looked at

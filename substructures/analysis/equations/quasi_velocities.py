@@ -45,7 +45,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS
 

@@ -18,8 +18,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.analysis.equations.elimination import MetricElimination
-from substructures.analysis.equations.first_integrals import FirstIntegrals, acting_inputs, first_integrals
+from substructures.analysis.equations.first_integrals import acting_inputs, first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.integral import FirstIntegrals
 from substructures.certificate.derived.integrals import reduced
 from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr

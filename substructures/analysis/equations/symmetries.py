@@ -78,7 +78,7 @@ def directions(
         return []
     with suppress(TooLarge, ArithmeticError):
         found = dependencies(search.functions())
-        candidates = [_direction(j, coefficients) for j, coefficients in found.others.items() if coefficients]
+        candidates = [direction_of(j, coefficients) for j, coefficients in found.others.items() if coefficients]
         # c^e F_e = 0 in all rows proves it
         return [c for c in candidates if all(vanishes(c.of(row, f.graph)) for row in rows)]
     return []
@@ -98,25 +98,25 @@ def _rows(f: ModelFormulas, slopes: Mapping[tuple[int, int, int], Expr]) -> list
     return list(rows.values())
 
 
-def _direction(j: int, coefficients: Mapping[int, Expr]) -> Direction:
+def direction_of(j: int, coefficients: Mapping[int, Expr], most: int = READABLE) -> Direction:
     """F_j = sum c_b F_b: one unit along j and -c_b along every b, times what the c_b divide by.
 
-    A parameter that is zero must not make the direction infinite.
+    A parameter that is zero must not make the direction infinite. ``most``: terms of a canonical form.
     """
     graph = Graph()
-    simple = {b: _readable(c, graph) for b, c in sorted(coefficients.items())}
+    simple = {b: _readable(c, graph, most) for b, c in sorted(coefficients.items())}
     divisor = graph.one
     for c in simple.values():
         # of c = n/d in lowest terms, with what other components divide by already put in
-        divisor = divisor * _denominator(c * divisor)
+        divisor = divisor * _denominator(c * divisor, most)
     components = {b: -c for b, c in simple.items()} | {j: graph.one}
     own = Graph()
-    return Direction({a: _readable(c * divisor, own) for a, c in components.items()})
+    return Direction({a: _readable(c * divisor, own, most) for a, c in components.items()})
 
 
-def _denominator(x: Expr) -> Expr:
+def _denominator(x: Expr, most: int) -> Expr:
     """What the canonical form of a formula divides by; 1 where that is too large."""
-    form = _form(x)
+    form = _form(x, most)
     if form is None:
         return x.graph.one
     powers: dict[Expr, int] = {}
@@ -129,16 +129,16 @@ def _denominator(x: Expr) -> Expr:
     return result
 
 
-def _readable(x: Expr, graph: Graph) -> Expr:
+def _readable(x: Expr, graph: Graph, most: int) -> Expr:
     """The canonical form where it is small, in another graph (in its own it would be the node it came from)."""
-    form = _form(x)
+    form = _form(x, most)
     return transfer([x], graph, {})[0] if form is None else form.to_expr(graph)
 
 
-def _form(x: Expr) -> Expanded | None:
+def _form(x: Expr, most: int) -> Expanded | None:
     """The canonical form, without cosines and sines that numerator and denominator share; None if it is too large."""
     try:
-        form = expand(x, READABLE)
+        form = expand(x, most)
         for trig, angle in {(t.trig, t.angle) for t in form.denominator if t.trig}:
             # n = c d with c free of the angle: c is the ratio of what multiplies the same cosine or sine
             over, under = (
@@ -149,7 +149,7 @@ def _form(x: Expr) -> Expanded | None:
             ratio = over.to_expr(graph) / under.to_expr(graph)
             # fingerprints of all graphs are values at one point
             if ratio.fp == x.fp:
-                return expand(ratio, READABLE)
+                return expand(ratio, most)
     except TooLarge:
         return None
     return form

@@ -29,7 +29,7 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
 from substructures.part.frames import axis_rotation
-from substructures.quantities.workspace import Workspace
+from substructures.quantities.numbers.workspace import Workspace
 
 SHAPES = ("disc", "sphere")
 

@@ -29,9 +29,9 @@ from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.evaluation import evaluate
 from substructures.quantities.measured import numeric
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: a scaled regressor of a larger condition number is badly excited

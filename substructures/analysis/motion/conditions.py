@@ -21,8 +21,8 @@ from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.reactions import OUTPUTS as REACTIONS
-from substructures.quantities.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: names of series and arrays that trajectories have by themselves

@@ -27,7 +27,7 @@ from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
-from substructures.quantities.states import require
+from substructures.quantities.numbers.states import require
 from substructures.tree.model import Model
 
 #: of the rate v_0 of the smooth law: what counts as rest

@@ -2,28 +2,40 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from math import prod
 
 import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
-from substructures.analysis.equations.first_integrals import FirstIntegrals, Integral
+from substructures.analysis.equations.integral import FirstIntegrals, Integral
+from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.expr.program import Program
 from substructures.tree.model import Model
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
 ROUNDING = 3e-14
 #: results next to a singular position are known to so many times the limit, or they are not right
 DOUBTED = 100
+#: kinds that are compared with the size of another quantity of the whole
+SIZED = {
+    "impulse": "linear_momentum",
+    "galilei": "linear_momentum",
+    "spin": "angular_momentum",
+    "subsystem": "energy",
+}
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
 @dataclass(frozen=True)
 class MotionStates:
-    """A motion to be judged: times (K,), q, qd (K, n), values of all other symbols, work W (K,), None if unknown."""
+    """A motion to be judged, or many, with an axis of them before the others: times (..., K), q, qd (..., K, n), values
+    of all other symbols, numbers or (..., K), work W (..., K), None if unknown.
+    """
 
     t: Array
     q: Array
@@ -32,51 +44,91 @@ class MotionStates:
     work: Array | None
 
     def symbols(self, model: Model) -> dict[str, float | Array]:
-        """Values of all symbols, (K,) each where they vary."""
-        values = dict(self.values) | {"t": self.t}
-        values |= {name: self.q[:, a] for a, name in enumerate(model.coordinates)}
-        return values | {f"{name}'": self.qd[:, a] for a, name in enumerate(model.coordinates)}
+        """Values of all symbols, one after the other where they vary."""
+        values = {name: np.ravel(x) if np.ndim(x) else x for name, x in self.values.items()} | {"t": np.ravel(self.t)}
+        values |= {name: np.ravel(self.q[..., a]) for a, name in enumerate(model.coordinates)}
+        return values | {f"{name}'": np.ravel(self.qd[..., a]) for a, name in enumerate(model.coordinates)}
+
+    def found(self, model: Model, source: Program, names: Sequence[str]) -> dict[str, Array]:
+        """Outputs of a program along the motions, (..., K) and their own axes."""
+        values, count = self.symbols(model), self.t.size
+        if self.t.ndim == 1:
+            flat = interpret_in_blocks(source, values, list(names), count)
+        else:
+            flat = program_kernel(source.select(list(names))).evaluate(values, names)
+        axes = {name: source.outputs[name].shape for name in names}
+        return {
+            n: np.broadcast_to(x, (count, *axes[n])).reshape(*self.t.shape, *axes[n]).copy() for n, x in flat.items()
+        }
 
 
 def integral_series(model: Model, integrals: FirstIntegrals, states: MotionStates) -> dict[str, Array]:
-    """All integrals, and the power where there is any, (K,)."""
+    """All integrals, and the power where there is any, (..., K)."""
     source = integrals.program
-    found = interpret_in_blocks(source, states.symbols(model), list(source.outputs), len(states.t))
-    series = {name: np.broadcast_to(x, states.t.shape).copy() for name, x in found.items()}
+    series = states.found(model, source, list(source.outputs))
     if not source.outputs["power"].entries or "energy" not in series:
         del series["power"]
     return series
 
 
-def judge(
-    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array], limit: float
-) -> tuple[Check, ...]:
-    """Checks of all integrals; ``series``: see integral_series; ``limit``: of the violation over the scale."""
+@dataclass(frozen=True)
+class Condition:
+    """What must hold along motions: ``violation`` (..., K), allowed up to limit * ``scale`` (...) + ``noise`` (...);
+    ``applies`` (...): whether it has to.
+    """
+
+    about: tuple[str, Rule, str, str]
+    violation: Array
+    scale: Array
+    noise: Array
+    applies: Array
+
+
+def conditions(
+    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array]
+) -> Iterator[Condition | Check]:
+    """What all integrals demand, a Check where it is left out; ``series``: see integral_series."""
     scales = _Scales(model, states)
-    checks = []
+    everywhere = np.ones(states.t.shape[:-1], dtype=bool)
     for integral in integrals.integrals:
-        value, scale = series[integral.name], scales.of(integral)
-        noise = ROUNDING * float(np.abs(value).max(initial=0))
+        value = series[integral.name]
+        scale = scales.of(integral, value)
+        noise = ROUNDING * np.abs(value).max(axis=-1, initial=0)
         if integral.rule == "constant":
-            checks.append(Check.of(_about(integral, "constant"), spread(value), states.t, scale, limit, noise))
+            yield Condition(_about(integral, "constant"), _spread(value), scale, noise, everywhere)
+            continue
+        if integral.kind == "subsystem":
+            # the work is known of the whole alone
             continue
         if states.work is None:
             why = "the work of the forces without potential was not integrated"
-            checks.append(Check.left_out("energy-balance", "constant", why))
+            yield Check.left_out("energy-balance", "constant", why)
             continue
         # H - W with W' = Q_a q'^a + V' is constant for every model
         balanced = value - states.work
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
-        scale = max(scale, float(np.abs(states.work).max(initial=0)))
-        checks.append(Check.of(_about(entry, "constant"), spread(balanced), states.t, scale, limit, noise))
+        scale = np.maximum(scale, np.abs(states.work).max(axis=-1, initial=0))
+        yield Condition(_about(entry, "constant"), _spread(balanced), scale, noise, everywhere)
         power = series["power"]
-        if power.max(initial=0) <= 1e-12 * np.abs(power).max(initial=0):
+        is_lost = power.max(axis=-1, initial=0) <= 1e-12 * np.abs(power).max(axis=-1, initial=0)
+        if is_lost.any():
             # H(t) less the least H before t
-            rise = value - np.minimum.accumulate(value)
+            rise = value - np.minimum.accumulate(value, axis=-1)
             entry = replace(integral, reason="the power of all forces without potential is nowhere positive")
-            checks.append(Check.of(_about(entry, "falling"), rise, states.t, scale, limit, noise))
-    return tuple(checks)
+            yield Condition(_about(entry, "falling"), rise, scale, noise, is_lost)
+
+
+def judge(
+    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array], limit: float
+) -> tuple[Check, ...]:
+    """Checks of all integrals of a motion; ``limit``: of the violation over the scale."""
+    return tuple(
+        found
+        if isinstance(found, Check)
+        else Check.of(found.about, found.violation, states.t, float(found.scale), limit, float(found.noise))
+        for found in conditions(model, integrals, states, series)
+    )
 
 
 def _about(integral: Integral, rule: Rule) -> tuple[str, Rule, str, str]:
@@ -113,38 +165,68 @@ def unbalanced(names: Sequence[str]) -> Check:
 
 def spread(values: Array) -> Array:
     """The largest difference of two values up to each, along the first axis: drift whatever it is counted from."""
-    return np.asarray(np.maximum.accumulate(values) - np.minimum.accumulate(values))
+    return _spread(values.T).T
+
+
+def _spread(values: Array) -> Array:
+    """The same along the last axis."""
+    return np.asarray(np.maximum.accumulate(values, axis=-1) - np.minimum.accumulate(values, axis=-1))
 
 
 class _Scales:
-    """Sizes that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
+    """Sizes (...) that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
 
     def __init__(self, model: Model, states: MotionStates) -> None:
-        found = interpret_in_blocks(model.program, states.symbols(model), list(SCALES), len(states.t))
+        found = states.found(model, model.program, SCALES)
+        self.states, self.duration = states, np.abs(states.t).max(axis=-1, initial=0)
         self.model, self.parameters, speed = model, states.values, np.abs(states.qd)
+        self.rates = speed.max(axis=-2, initial=0)
         # max over time of |g_ab| |q'^b|
-        self.momenta = np.einsum("kab,kb->ka", np.abs(found["metric"]), speed).max(axis=0, initial=0)
+        self.momenta = np.einsum("...kab,...kb->...ka", np.abs(found["metric"]), speed).max(axis=-2, initial=0)
         # T = g_ab q'^a q'^b / 2
-        kinetic = 0.5 * np.einsum("kab,ka,kb->k", found["metric"], states.qd, states.qd)
+        kinetic = 0.5 * np.einsum("...kab,...ka,...kb->...k", found["metric"], states.qd, states.qd)
         potential = found["potential_energy"]
-        change = float(np.ptp(potential)) if len(potential) else 0.0
+        change = np.ptp(potential, axis=-1) if potential.shape[-1] else np.zeros(potential.shape[:-1])
         self.whole = {
-            "energy": max(float(kinetic.max(initial=0)), change),
+            # m s is the sum of P_a q^a where P does not change
+            "mass_moment": self._whole(found["linear_momentum"], np.abs(states.q)),
+            "energy": np.maximum(kinetic.max(axis=-1, initial=0), change),
             **{k: self._whole(found[k], speed) for k in ("linear_momentum", "angular_momentum")},
         }
 
     @staticmethod
-    def _whole(columns: Array, speed: Array) -> float:
-        return float(np.einsum("kai,ka->k", np.abs(columns), speed).max(initial=0))
+    def _whole(columns: Array, speed: Array) -> Array:
+        return np.asarray(np.einsum("...kai,...ka->...k", np.abs(columns), speed).max(axis=-1, initial=0))
 
-    def of(self, integral: Integral) -> float:
-        """The size of one integral."""
+    def of(self, integral: Integral, value: Array) -> Array:
+        """The size of one integral with these values."""
         if integral.kind == "cyclic":
-            return float(self.momenta[self.model.coordinates.index(integral.name.removeprefix("momentum."))])
+            place = self.model.coordinates.index(integral.name.removeprefix("momentum."))
+            return np.asarray(self.momenta[..., place])
         if integral.kind == "symmetry":
             # sum of |c^a| max |g_ab| |q'^b|
             c = read_expressions(self.model, {"c": [(x, "/direction") for x in integral.direction.values()]})
-            sizes = np.abs(interpret(c, dict(self.parameters), ["c"])["c"])
+            first = {name: np.asarray(x)[..., 0] if np.ndim(x) else x for name, x in self.parameters.items()}
+            sizes = np.abs(interpret(c, first, ["c"])["c"])
             places = [self.model.coordinates.index(name) for name in integral.direction]
-            return float(sizes @ self.momenta[places])
-        return self.whole[integral.kind]
+            return np.asarray((sizes * self.momenta[..., places]).sum(axis=-1))
+        if integral.terms:
+            return self._of_terms(integral)
+        size = self.whole[SIZED.get(integral.kind, integral.kind)]
+        if integral.kind in ("impulse", "galilei"):
+            # P - F t, s - P t + F t^2 / 2
+            longest = self.duration if integral.kind == "galilei" else 1.0
+            size = size * longest + np.abs(value).max(axis=-1, initial=0)
+        if integral.kind == "galilei":
+            size = size + self.whole["mass_moment"]
+        return np.asarray(size)
+
+    def _of_terms(self, integral: Integral) -> Array:
+        """Of a sum of coefficients times momenta or velocities."""
+        names = self.model.coordinates
+        size = {f"p.{name}": self.momenta[..., a] for a, name in enumerate(names)}
+        size |= {f"{name}'": self.rates[..., a] for a, name in enumerate(names)}
+        c = read_expressions(self.model, {"c": [(text, "/terms") for text, _ in integral.terms]})
+        largest = np.abs(self.states.found(self.model, c, ["c"])["c"]).max(axis=-2, initial=0)
+        each = [largest[..., k] * prod(size[w] for w in some) for k, (_, some) in enumerate(integral.terms)]
+        return np.asarray(sum(each))

@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.quantities.limits import joint_limits, reached
+from substructures.quantities.numbers.limits import joint_limits, reached
 from substructures.tree.model import Model
 
 

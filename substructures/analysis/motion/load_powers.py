@@ -27,8 +27,8 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import kept
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.quantities.powers import PowerModel
-from substructures.quantities.workspace import Workspace
 from substructures.tree.model import Model
 
 RATE = "kinetic_energy_rate"

@@ -30,8 +30,8 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.formulas import DYNAMICS
+from substructures.quantities.numbers.states import require
 from substructures.quantities.reactions import ReactionModel
-from substructures.quantities.states import require
 from substructures.tree.model import Model
 
 FORCE = "reaction_force"
@@ -116,6 +116,9 @@ class LoadedRightHandSide(RightHandSide):
         columns += [] if self.inputs is None else self.inputs.columns
         require(self.reactions, [FORCE], dict.fromkeys([*known, *(name for names, _ in columns for name in names)]))
         self._look = program_kernel(self.reactions, folder).bind({FORCE: self._R}, known, columns=columns)
+
+    def compiled(self) -> None:
+        """Not: friction and reactions are found together."""
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power). Raises ArithmeticError where friction and reactions do not agree."""

@@ -146,12 +146,12 @@ def sensitivities(
         integrator=integrator,
     )
     conditions = tree_conditions(problem)
-    _require_plain(conditions, integrator)
-    variation = _Variation(conditions, by, outputs.of_start, integrator.folder)
+    require_plain(conditions, integrator)
+    variation = Variation(conditions, by, outputs.of_start, integrator.folder)
     return _varied(problem, variation, by, integrator.progress)
 
 
-def _require_plain(conditions: Conditions, integrator: Integrator) -> None:
+def require_plain(conditions: Conditions, integrator: Integrator) -> None:
     """Raises InvalidArgument for what has no place in the variational equations."""
     faults = []
     if integrator.method == TAYLOR or integrator.fixed_step is not None:
@@ -164,7 +164,7 @@ def _require_plain(conditions: Conditions, integrator: Integrator) -> None:
         raise InvalidArgument(faults)
 
 
-def _varied(problem: MotionProblem, f: _Variation, by: Sequence[str], progress: ProgressReport | None) -> Trajectory:
+def _varied(problem: MotionProblem, f: Variation, by: Sequence[str], progress: ProgressReport | None) -> Trajectory:
     begun, ending = halves(progress)
     motion = _integrated(f, problem.span, problem.times.grid(), problem.integrator, begun)
     runs = second_run(motion, problem.integrator, partial(_integrated, f, progress=ending))
@@ -191,7 +191,7 @@ def _varied(problem: MotionProblem, f: _Variation, by: Sequence[str], progress: 
 
 
 def _integrated(
-    f: _Variation,
+    f: Variation,
     span: tuple[float, float],
     times: Array,
     choice: Integrator,
@@ -209,7 +209,7 @@ def _integrated(
     )
 
 
-def _groups(f: _Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, slice]]:
+def _groups(f: Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, slice]]:
     """What the second run is compared in: coordinates and velocities of the motion and of every derivative."""
     n, groups = f.n, {}
     rows = [("", "rad, m", "rad/s, m/s"), *((f" of d.{name}", "", "") for name in by)]
@@ -223,7 +223,7 @@ def _groups(f: _Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, sli
     return groups
 
 
-def _integrals(problem: MotionProblem, f: _Variation, motion: IntegratedMotion) -> tuple[Check, ...]:
+def _integrals(problem: MotionProblem, f: Variation, motion: IntegratedMotion) -> tuple[Check, ...]:
     """The first integrals of the motion itself; its derivatives have none that are known."""
     model, conditions, n = problem.model, f.conditions, f.n
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
@@ -234,8 +234,11 @@ def _integrals(problem: MotionProblem, f: _Variation, motion: IntegratedMotion) 
     return judge(model, integrals, states, integral_series(model, integrals, states), problem.drift_limit)
 
 
-class _Variation:
-    """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel."""
+class Variation:
+    """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel.
+
+    ``columns`` = k: those of the parameters, and with ``of_start`` 2n that are 1 at the start.
+    """
 
     def __init__(self, conditions: Conditions, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
         model, n = conditions.model, conditions.model.dof
@@ -263,6 +266,7 @@ class _Variation:
         return rows.ravel()
 
     def __call__(self, t: float, flat: Array) -> Array:
+        """x', S_1', ..., S_k' at t, as they stand in ``flat``."""
         rows = flat.reshape(self.columns + 1, 2 * self.n)
         n = self.n
         self.t[0], self.x[0] = t, rows[0]

@@ -21,6 +21,8 @@ from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.certificate.derived.model_formulas import simulated
 from substructures.compile import Kernel, compile_program
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
@@ -74,7 +76,8 @@ class RightHandSide:
         conditions: Conditions | None = None,
         folder: Path | None = None,
     ) -> None:
-        self.n = n = model.dof
+        self.n, self._folder = model.dof, folder
+        n = model.dof
         self._names = state_names(model)
         self.kernel = forward_kernel(model, zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
@@ -116,6 +119,17 @@ class RightHandSide:
         """Any time again."""
         if self.inputs is not None:
             self.inputs.leave()
+
+    def compiled(self) -> CompiledRates | None:
+        """The function as calls of kernels, as its force laws are taken now; None where it is more than these."""
+        if self.inputs is not None and self.inputs.has_tables:
+            return None
+        runs = [*(() if self.inputs is None else (laws.run for laws in self.inputs.laws)), self._laws.run]
+        calls = tuple(run for run in runs if isinstance(run, BoundCall))
+        if len(calls) < len(runs):
+            return None
+        second, _, power = self._out
+        return CompiledRates(calls, self._t, self._x, second, power if self.has_power else None, self._folder)
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""

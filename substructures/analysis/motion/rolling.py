@@ -29,8 +29,8 @@ from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret, interpret_in_blocks
-from substructures.quantities.limits import reached
 from substructures.quantities.measured import numeric
+from substructures.quantities.numbers.limits import reached
 
 NEEDS = ("metric", "forces", "potential_energy")
 #: largest constrained velocity [m/s] and change of a gap [m] along a right motion

@@ -32,8 +32,8 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument, InvalidInput
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
-from substructures.quantities.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
-from substructures.quantities.limits import reached
+from substructures.quantities.numbers.conditioning import LEAST, MOST, OVERFLOW, RANGE, is_usable
+from substructures.quantities.numbers.limits import reached
 
 #: laws of friction that neither steps of a fixed size nor Taylor series take
 WHY_NOT = {

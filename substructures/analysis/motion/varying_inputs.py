@@ -31,6 +31,11 @@ class VaryingInputs:
             source = conditions.expressions.select(["inputs"])
             self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, columns),)
 
+    @property
+    def has_tables(self) -> bool:
+        """Whether any input is a table."""
+        return bool(self._curves)
+
     def fill(self) -> None:
         """Evaluate at the present state and time."""
         # u_k = s_k(t) of tables, then u = u(q, q', t) of expressions, in place

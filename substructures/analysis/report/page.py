@@ -21,21 +21,25 @@ from substructures.printers.mathml import MathML, named
 from substructures.printers.names import latex_names, latex_of
 from substructures.printers.render import LIMIT
 
+#: what scrolls sideways by itself where the screen is narrow, with the keyboard, too
+WIDE = '<div class="wide" tabindex="0" role="group">'
 MATH = "http://www.w3.org/1998/Math/MathML"
 _PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml" lang="en"><head><title>{title}</title>
-<meta name="viewport" content="width=device-width, initial-scale=1"/><style>
+<meta name="viewport" content="width=device-width, initial-scale=1"/>
+<meta name="color-scheme" content="light dark"/><style>
 body {{ max-width: 60em; margin: 2em auto; padding: 0 1em; font-family: sans-serif; line-height: 1.5; color: #1c2228; }}
 h1, h2, h3 {{ line-height: 1.2; }} h2 {{ margin-top: 2em; border-bottom: 1px solid #ccd; }}
 svg {{ max-width: 28em; display: block; margin: auto; }} table {{ border-collapse: collapse; }}
 th {{ text-align: left; border-bottom: 1px solid #889; }} td, th {{ padding: 0.1em 1.2em 0.1em 0; }}
-p {{ overflow-wrap: anywhere; }} math {{ font-size: 1.08em; }} .formulas p {{ line-height: 2; }}
+p, li {{ overflow-wrap: anywhere; }} math {{ font-size: 1.08em; }} .formulas p {{ line-height: 2; }}
 .formulas p {{ padding-left: 2em; text-indent: -2em; }} .formulas h2 {{ display: none; }}
 .share {{ white-space: nowrap; font-variant-numeric: tabular-nums; }}
-.small {{ color: #667; }}
-</style></head><body>
+.small {{ color: #667; }} @media (prefers-color-scheme: dark) {{ body {{ color: #e3e6e9; background: #14171a; }}
+.small {{ color: #9aa5af; }} }} .wide {{ overflow-x: auto; overflow-y: hidden; }}
+</style></head><body><main>
 {body}
-</body></html>
+</main></body></html>
 """
 
 
@@ -49,11 +53,11 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
     lines += ["<h2>Coordinates</h2>", *_coordinates(found), "<h2>Symbols</h2>", *_symbols(found)]
     lines.append("<h2>Derivation</h2>")
     for words, _, equation in DERIVATION:
-        lines += [f"<p>{_named(words)}</p>", f'<p><math xmlns="{MATH}" display="block">{equation}</math></p>']
+        lines += [f"<p>{_named(words)}</p>", f'{WIDE}<math xmlns="{MATH}" display="block">{equation}</math></div>']
     printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
         lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *(f"<p>{_e(x)}.</p>" for x in each.said)]
-        lines += ['<div class="formulas">', *_formulas(each), "</div>", *_statements(found, name)]
+        lines += [f'{WIDE}<div class="formulas">', *_formulas(each), "</div></div>", *_statements(found, name)]
     lines += _statements(found, "symmetries")
     lines += _sizes(found, printed["metric"])
     lines += ["<h2>Sources</h2><ul>"]
@@ -86,7 +90,8 @@ def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
     """A table of cells that are markup."""
     found = ["".join(f"<td>{cell}</td>" for cell in row) for row in rows]
     top = "".join(f"<th>{_e(each)}</th>" for each in head)
-    return [f"<table><thead><tr>{top}</tr></thead><tbody>", *(f"<tr>{row}</tr>" for row in found), "</tbody></table>"]
+    body = [f"<tr>{row}</tr>" for row in found]
+    return [f"{WIDE}<table><thead><tr>{top}</tr></thead><tbody>", *body, "</tbody></table></div>"]
 
 
 def _coordinates(found: Report) -> list[str]:

@@ -26,8 +26,8 @@ from substructures.printers.names import short_names
 from substructures.printers.render import LIMIT, readable, renamed
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
-from substructures.quantities.limits import joint_limits
-from substructures.quantities.states import default_numbers
+from substructures.quantities.numbers.limits import joint_limits
+from substructures.quantities.numbers.states import default_numbers
 from substructures.tree.model import Model
 
 #: what is printed, and what it is called

@@ -132,9 +132,9 @@ def christoffel_statements(model: Model, names: Names) -> Iterator[Statement]:
         yield Statement("christoffel", "not-stored", text)
         return
     output = model.program.outputs["christoffel"]
-    every = n * (n * n - 1) // 3
+    every = n * n * (n + 1) // 2 if output.symmetry == "connection" else n * (n * n - 1) // 3
     index = tuple(output.index)
-    text = f"{len(index)} of {every} independent Christoffel symbols are not zero; {_rule()}."
+    text = f"{len(index)} of {every} independent Christoffel symbols are not zero; {_rule(output.symmetry)}."
     yield Statement("christoffel", "independent", text, index)
     acting: dict[int, set[Index]] = {a: set() for a in range(n)}
     for (a, b, c), _, _ in output.expanded():
@@ -223,9 +223,9 @@ def _elements(letter: str, index: Iterable[Index]) -> str:
     return listed((f"{MARK}{letter}[{','.join(str(i + 1) for i in one)}]{MARK}" for one in index), 16)
 
 
-def _rule() -> str:
+def _rule(symmetry: str) -> str:
     """That of Christoffel symbols."""
-    return re.sub(r"Gamma\[[^\]]*\]", lambda m: MARK + m.group() + MARK, symmetry_rule("christoffel", "Gamma"))
+    return re.sub(r"Gamma\[[^\]]*\]", lambda m: MARK + m.group() + MARK, symmetry_rule(symmetry, "Gamma"))
 
 
 def _do(index: Sequence[Index]) -> str:

@@ -10,6 +10,9 @@ linearise_closed        the same for closed loops, in independent coordinates
 linearisation_result    ``Linearisation`` and ``ClosedLinearisation``: what linearise gives
 operating_point         what linearise is given, and what both of its ways share
 vibrations              modes of M x'' + D x' + K x = 0, and what they say about stability
+linear_system           the first-order system about one state: which modes inputs reach and outputs see
+frequency_response      ``frequency_response``: G(i w), with the poles
+regulator               ``regulator``: the linear quadratic regulator about an equilibrium
 root_locus              ``root_locus``: eigenvalues of an equilibrium over a parameter
 meetings                derivatives where pieces of smooth laws meet, from both sides
 nearly_cyclic           coordinates that are cyclic but for the rounding of decimals

@@ -73,7 +73,11 @@ def _derivatives(known: Known, zero: frozenset[str]) -> tuple[tuple[str, ...], P
     """Names of the constant integrals, and their first (k, 2n) and second (k, 2n, 2n) derivatives by (q, q')."""
     model: Model = known.source
     found = first_integrals(model, (), zero)
-    names = tuple(i.name for i in found.integrals if i.rule == "constant")
+    # energies of subsystems are parts of the one that is minimised
+    lasting = [i.name for i in found.integrals if i.rule == "constant" and i.kind != "subsystem"]
+    # a bound in the time is none
+    timed = {name for name in lasting if any(s.kind == "time" for s in found.program.select([name]).symbols)}
+    names = tuple(name for name in lasting if name not in timed)
     graph = Graph()
     outputs = replay(found.program, graph, dict.fromkeys(zero, graph.zero), names)
     integrals: list[Expr] = [graph.lift(outputs[name].entries.get((), 0)) for name in names]

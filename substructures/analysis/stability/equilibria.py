@@ -17,7 +17,7 @@ from substructures.analysis.stability.linearisation_result import ClosedLinearis
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.quantities.states import with_input_defaults
+from substructures.quantities.numbers.states import with_input_defaults
 from substructures.tree.model import Model
 
 #: singular values of K below this share of the largest leave a direction undetermined

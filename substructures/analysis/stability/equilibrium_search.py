@@ -20,7 +20,7 @@ from substructures.analysis.stability.meetings import with_sides
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: two places closer than this are one [rad, m]

@@ -20,7 +20,7 @@ from substructures.analysis.stability.vibrations import first_order, input_matri
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import cholesky_solve
-from substructures.quantities.states import States, read_states, symbol_values, with_input_defaults
+from substructures.quantities.numbers.states import States, read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces")

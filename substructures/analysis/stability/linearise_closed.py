@@ -35,7 +35,7 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import condition
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.numbers.states import read_states, symbol_values
 
 NEEDS = ("metric", "bias", "forces", "closure.residual", "closure.jacobian", "closure.acceleration")
 ALONG = ("closure.jacobian", "closure.jacobian_rate", "closure.jacobian_second")

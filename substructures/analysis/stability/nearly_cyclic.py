@@ -11,7 +11,7 @@ import numpy as np
 from substructures.analysis.stability.equilibrium_search import RestConditions
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: what rounding of decimals is of the size of what it is in; states that are looked at

@@ -16,7 +16,7 @@ from substructures.analysis.stability.equilibria import equilibria
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
-from substructures.quantities.states import read_states
+from substructures.quantities.numbers.states import read_states
 from substructures.tree.model import Model
 
 #: of a parameter

@@ -36,7 +36,7 @@ from substructures.analysis.stability.vibrations import Mode, Stability, modes, 
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument
-from substructures.quantities.states import with_input_defaults
+from substructures.quantities.numbers.states import with_input_defaults
 from substructures.tree.model import Model
 
 Held = Literal["momenta", "rates"]

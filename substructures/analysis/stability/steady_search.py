@@ -26,8 +26,8 @@ from substructures.analysis.stability.equilibrium_search import (
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
-from substructures.quantities.reaction_numbers import least_norm
-from substructures.quantities.states import read_states, symbol_values
+from substructures.quantities.numbers.reaction_numbers import least_norm
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces")

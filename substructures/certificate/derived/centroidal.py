@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from flint import arb
 
 from substructures.certificate.bodies import GROUND, massless
+from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.dynamics import carried_by_joints, motions
 from substructures.certificate.linear import Ball, cross, zeros
 from substructures.certificate.numbers import Plain
@@ -21,8 +22,7 @@ def centroidal_outputs(
     int u_a dm and int (x - r) x u_a dm of all that joint a carries.
     """
     bodies = built(tree, definitions, values)[1]
-    rates = [values[f"{joint.coordinate}'"] for joint in bodies.joints]
-    moving, total, momentum = motions(bodies, rates), massless(), zeros(3, 1)
+    moving, total, momentum = motions(bodies, rates(bodies, values, "'")), massless(), zeros(3, 1)
     for carrier, mass in bodies.own.items():
         if carrier != GROUND:
             motion = moving[carrier]
@@ -36,4 +36,4 @@ def centroidal_outputs(
         # int (x - r) x u dm = int x x u dm - r x int u dm
         column = [*each.f.entries(), *(each.n - cross(r, each.f)).entries()]
         result.array("centroidal_momentum_matrix", (6, n)).update({(i, a): x for i, x in enumerate(column)})
-    return result
+    return of_coordinates(result, bodies)

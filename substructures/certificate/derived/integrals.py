@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from math import prod
 from typing import Any
 
 from flint import arb, arb_mat
@@ -21,6 +22,8 @@ from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed
 
 AXES = "xyz"
+#: kinds with the mass centre, which a model does not store: s' = P is what the vanishing derivative of both says
+WITH_CENTRE = ("galilei", "spin")
 
 
 def constant(program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str]) -> Expectation:
@@ -41,6 +44,15 @@ def _constant(
         name, kind = each["name"], each["kind"]
         if kind == "energy":
             value = m.kinetic_energy() + m.scalar("potential_energy")
+        elif kind == "subsystem":
+            value = _energy_of(m, each["coordinates"])
+        elif kind == "impulse":
+            i = AXES.index(name.removeprefix("impulse."))
+            value = found["linear_momentum"][i] - _rate_of_momentum(m)[i] * m.values.get("t", arb(0))
+        elif each["terms"]:
+            value = _sum_of_terms(m, each["terms"])
+        elif kind in WITH_CENTRE:
+            value = _own(program, name, m)
         elif kind == "cyclic":
             value = m.momenta()[m.coordinates.index(name.removeprefix("momentum."))]
         elif kind == "symmetry":
@@ -53,6 +65,32 @@ def _constant(
     result.scalar("power", power(m))
     _require_constant(program, [each for each in integrals if each["rule"] == "constant"], multipliers, m)
     return result
+
+
+def _energy_of(m: ModelAt, names: Sequence[str]) -> Ball:
+    """p_a q'^a / 2 of some coordinates, and V where all others are zero. Raises VerificationFailed for a closure that
+    does work on them, as it moves others, too."""
+    rows = m.elements("closure.jacobian") if "closure.jacobian" in m.program.outputs else {}
+    own, others = ({k for k, a in rows if (m.coordinates[a] in names) is within} for within in (True, False))
+    if own & others:
+        raise VerificationFailed(f"a closure joins {', '.join(names)} with other coordinates")
+    alone = m.at({name: arb(0) for name in m.coordinates if name not in names})
+    twice = total(p * v for name, p, v in zip(m.coordinates, m.momenta(), m.rates, strict=True) if name in names)
+    return twice / 2 + alone.scalar("potential_energy")
+
+
+def _sum_of_terms(m: ModelAt, terms: Sequence[tuple[str, Sequence[str]]]) -> Ball:
+    """Coefficients, texts, times momenta ``p.arm.q1`` or velocities ``arm.q1'``."""
+    factors = dict(zip((f"{name}'" for name in m.coordinates), m.rates, strict=True))
+    factors |= dict(zip((f"p.{name}" for name in m.coordinates), m.momenta(), strict=True))
+    weights = Numbers({"t": arb(0), **m.values})
+    return total(prod((factors[w] for w in some), start=weights.read(text)) for text, some in terms)
+
+
+def _own(program: Stored, name: str, m: ModelAt) -> Ball:
+    """The value of an output itself."""
+    found = operations_in_balls(program, m.values)
+    return total(found[entry] for entry in program.outputs[name].entries)
 
 
 def _component(m: ModelAt, found: Mapping[str, list[Ball]], kind: str, label: str) -> Ball:
@@ -106,7 +144,7 @@ def _require_constant(
         beside = (arb_mat(1, len(multipliers), [k + 1 for k in range(len(multipliers))]) * G).entries()
         held = tangents(program, found, m.motion(m.accelerations(beside)))
     for each in integrals:
-        change = free if each["kind"] == "energy" else held
+        change = free if each["kind"] in ("energy", "subsystem") else held
         if any(not change.get(entry, arb(0)).contains(0) for entry in program.outputs[each["name"]].entries):
             raise VerificationFailed(f"{each['name']} changes along the motion")
 

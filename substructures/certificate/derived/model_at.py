@@ -7,6 +7,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from flint import arb, arb_mat
 
 from substructures.certificate.linear import Ball, Matrix
+from substructures.certificate.outputs import images_of
 from substructures.certificate.slopes import tangents
 from substructures.certificate.stored import Stored, operations_in_balls
 
@@ -55,7 +56,7 @@ class ModelAt:
         """All elements of an output that are not zero by structure."""
         output, result = self.program.outputs[name], dict[Index, Ball]()
         for index, entry in zip(output.index, output.entries, strict=True):
-            for image, sign in _images(index, output.symmetry):
+            for image, sign in images_of(index, output.symmetry):
                 result[image] = self.found[entry] * sign
         return result
 
@@ -109,19 +110,6 @@ class ModelAt:
         by_state = moved.needed(second)
         by_rate = times(self.matrix("metric"), [direction.get(f"{name}''", arb(0)) for name in self.coordinates])
         return [x + y for x, y in zip(by_state, by_rate, strict=True)]
-
-
-def _images(index: Index, symmetry: str) -> list[tuple[Index, int]]:
-    """The elements that one determines, with their signs: g_ab = g_ba; Gamma_abc = Gamma_acb, and for b <= a, c, where
-    u_a and u_c move with what joint b turns, Gamma_abc = -Gamma_cba.
-    """
-    if symmetry == "symmetric":
-        return [(index, 1), (index[::-1], 1)]
-    if symmetry != "christoffel":
-        return [(index, 1)]
-    a, b, c = index
-    turned = [((c, b, a), -1), ((c, a, b), -1)] if b <= a and b <= c else []
-    return [(index, 1), ((a, c, b), 1), *turned]
 
 
 def total(terms: Iterable[Ball]) -> Ball:

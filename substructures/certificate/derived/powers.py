@@ -7,11 +7,13 @@ from collections.abc import Iterator, Mapping, Sequence
 from flint import arb
 
 from substructures.certificate.bodies import NONE, Bodies, laws_of
+from substructures.certificate.by_coordinate import along, rates
 from substructures.certificate.dynamics import carried_by_joints
 from substructures.certificate.linear import Ball, dot
 from substructures.certificate.loads import LOADS, Forces, joint_law
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.relations import written
 from substructures.certificate.tree_outputs import beside, built
 from substructures.errors import VerificationFailed
 
@@ -28,9 +30,9 @@ def power_outputs(
     found = list(_rows(tree, definitions, bodies, numbers, loads, values))
     if [name for name, _ in found] != list(rows):
         raise VerificationFailed(f"the rows are not those of the documents: {', '.join(rows)}")
-    rates = [values[f"{joint.coordinate}'"] for joint in bodies.joints]
+    moving = rates(bodies, values, "'")
     result = Outputs()
-    watts = (sum((Q * rates[a] for a, Q in forces.items()), arb(0)) for _, forces in found)
+    watts = (sum((Q * moving[a] for a, Q in forces.items()), arb(0)) for _, forces in found)
     result.array(OUTPUT, (len(found),)).update({(k,): x for k, x in enumerate(watts)})
     return result
 
@@ -45,15 +47,15 @@ def _rows(
 ) -> Iterator[Row]:
     gravity = numbers.vector(tree.get("gravity", NONE))
     yield "gravity", {a: dot(gravity, each.f) for a, each in enumerate(carried_by_joints(bodies, bodies.own))}
-    efforts = {a: values[f"tau.{joint.coordinate}"] for a, joint in enumerate(bodies.joints)}
+    efforts = {a: values[f"tau.{bodies.joints[a].coordinate}"] for a in along(bodies)}
     for name, inside, joints in loads:
         for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
-            alone = Forces(bodies, definitions[name], inside, joints, f"{name}.")
+            alone = Forces(bodies, written(definitions[name]), inside, joints, f"{name}.")
             joint_law(alone, a, joint, step)
-            yield f"joint {bodies.joints[a].coordinate}", {a: alone.applied[a] - efforts[a]}
+            yield f"joint {bodies.joints[a].coordinate}", {a: alone.applied[a] - efforts.get(a, arb(0))}
     yield from ((f"tau.{bodies.joints[a].coordinate}", {a: effort}) for a, effort in efforts.items())
     for name, inside, joints in loads:
-        for i, load in enumerate(definitions[name].get("loads", ())):
+        for i, load in enumerate(written(definitions[name]).get("loads", ())):
             alone = Forces(bodies, definitions[name], inside, joints, f"{name}.")
             LOADS[load["type"]](alone, load)
             both = (alone.applied, alone.wrenches)

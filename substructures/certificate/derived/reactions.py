@@ -12,6 +12,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from flint import arb
 
 from substructures.certificate.bodies import NONE, Bodies, Frame, coordinates_of, in_order
+from substructures.certificate.by_coordinate import rates
 from substructures.certificate.closures import ROWS, closure_outputs
 from substructures.certificate.dynamics import motions, required
 from substructures.certificate.linear import Ball, Matrix, cross, dot, vector
@@ -39,15 +40,15 @@ def reaction_outputs(
     for forces in (*(x for f in acting for x in (f.applied, f.wrenches)), beside(tree, free, bodies, numbers).applied):
         for a, x in forces.items():
             Q[a] = Q.get(a, arb(0)) + x
-    rates, second = ([at_rest[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    speeds, second = (rates(bodies, at_rest, mark) for mark in ("'", "''"))
     if tree.get("closures"):
         found = Outputs()
-        closure_outputs(found, bodies, tree["closures"], numbers, rates)
+        closure_outputs(found, bodies, tree["closures"], numbers, speeds)
         names = [f"lambda.{c['name']}.{row}" for c in tree["closures"] for row in ROWS[c["type"]]]
         for (k, a), x in found["closure.jacobian"].entries.items():
             # a row of no effect has no symbol in any formula
             Q[a] = Q.get(a, arb(0)) + x * values.get(names[k], arb(0))
-    needed = _required(bodies, rates, second, numbers.vector(tree.get("gravity", NONE)) * -1)
+    needed = _required(bodies, speeds, second, numbers.vector(tree.get("gravity", NONE)) * -1)
     exerted = {j.coordinate: needed[a] - Q.get(a, arb(0)) for a, j in enumerate(bodies.joints)}
     places = list(_places(tree, definitions, bodies))
     if [name for name, *_ in places] != list(rows):

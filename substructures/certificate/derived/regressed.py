@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from flint import arb
 
 from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame, Moments, in_order, mass_of, massless, theta_of
+from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.derived.model_at import total
 from substructures.certificate.derived.model_formulas import columns_of, vector_of
 from substructures.certificate.dynamics import motions, required
@@ -41,9 +42,9 @@ def regressor_outputs(
         links += _links(bodies, definitions[instance], inside, joints, f"{instance}.")
     if [name for name in names if name.endswith(".m")] != [f"{link.name}.m" for link in links]:
         raise VerificationFailed(f"the links are not those of the documents: {', '.join(x.name for x in links)}")
-    rates, second = ([values[f"{j.coordinate}{mark}"] for j in bodies.joints] for mark in ("'", "''"))
+    speeds, second = (rates(bodies, values, mark) for mark in ("'", "''"))
     # the world is accelerated against gravity
-    moving = motions(bodies, rates, second, numbers.vector(tree.get("gravity", NONE)) * -1)
+    moving = motions(bodies, speeds, second, numbers.vector(tree.get("gravity", NONE)) * -1)
     columns: list[list[Ball]] = []
     pi: list[Ball] = []
     theta: dict[tuple[int, ...], Ball] = {}
@@ -61,7 +62,7 @@ def regressor_outputs(
     columns_of(result, "regressor", len(bodies.joints), columns)
     vector_of(result, "inertial_parameters", pi)
     result.array("moments_of_inertia", (len(links), 3, 3)).update(theta)
-    return result
+    return of_coordinates(result, bodies)
 
 
 def _one(i: int) -> Moments:

@@ -38,6 +38,11 @@ class Algebra(Code):
         found = self.values(listing)
         return found[0] if len(found) == 1 else f"{self.ends[0]}{', '.join(found)}{self.ends[1]}"
 
+    @classmethod
+    def alike(cls, name: str) -> str:
+        """Names in camel case have neither capitals of their own nor _."""
+        return name.lower().replace("_", "")
+
     @abstractmethod
     def define(self, listing: Listing) -> list[str]:
         """The lines of the function."""

@@ -1,20 +1,22 @@
 """C99: ``void name_metric(const double *q, const double *p, double *metric)``, complete arrays in row-major order.
 
 No globals, no allocation. Long functions are split into pieces that compile in linear time (:mod:`.pieces`); the stack
-that they need is stated.
+that they need is stated. On request C89: comments ``/* */``, and declarations before statements.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from fractions import Fraction
 from math import isfinite, isnan, prod
 from typing import ClassVar
 
-from substructures.export.exported import Exported, Function, identifier_of
+from substructures.export.exported import Exported, Function
 from substructures.export.interface import ORDER, WORK
+from substructures.export.languages.c_selftest import selftest
 from substructures.export.languages.code import Code, head, indented
+from substructures.export.languages.named import constants
 from substructures.export.languages.pieces import Pieces, split
 from substructures.export.reference import Reference
 from substructures.export.rounding import STATED, bounds
@@ -24,6 +26,7 @@ from substructures.printers.names import comment
 
 #: elements of arrays whose dependent ones are copied by loops
 TABLES = 200
+_CALL = re.compile(r"\w\(", re.ASCII)
 #: what the source needs before its functions; unused ones are left out
 _HELPERS = {
     "sign_of": ("static REAL sign_of(REAL v)", "{", "    return v > 0 ? 1 : v < 0 ? -1 : v;", "}", ""),
@@ -38,6 +41,7 @@ class C(Code):
     suffix = ".c"
     infinity = "HUGE_VAL"
     executed = "gcc and clang"
+    has_names = True
     functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
 
     @property
@@ -78,12 +82,19 @@ class C(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """Declarations and definitions in one file."""
-        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "", *declarations(exported), ""]
-        return "\n".join([*lines, *source(exported, functions)]) + "\n"
+        given = list(functions)
+        lines = [
+            *cls.commented(head(exported, cls.first, software, cls.executed)),
+            "",
+            *declarations(exported, given),
+            "",
+        ]
+        return "\n".join([*lines, *source(exported, given)]) + "\n"
 
     def define(self, listing: Listing) -> list[str]:
-        """A function, of several pieces where it is long."""
-        unused = [f"(void){v};" for v in self.function.arguments]
+        """A comment that states operations and stack, and a function, of several pieces where it is long."""
+        empty = [self.variables[name] for name, array in self.program.outputs.items() if not prod(array.shape)]
+        unused = [f"(void){v};" for v in (*self.function.arguments, *empty)]
         zeros: list[str] = []
         copies: list[str] = []
         assigned: list[tuple[str, str]] = []
@@ -91,28 +102,59 @@ class C(Code):
             pairs = self.pairs(output, listing)
             v, size = self.variables[output], prod(array.shape)
             if len(pairs) < size:
-                zeros.append(f"for (size_t i = 0; i < {size}; ++i) {v}[i] = 0;")
-            own, copied = _apart(v, pairs)
+                zeros += self._loop(size, f"{v}[i] = 0;")
+            own, copied = self._apart(v, pairs)
             assigned += own
             copies += copied
         pieces = split(listing.temporaries, assigned)
-        opening = [signature(self.function, self.called, self.variables, self.real), "{", *indented(unused + zeros)]
+        head_ = [signature(self.function, self.called, self.variables, self.real), "{"]
         if len(pieces.bodies) == 1:
-            return [*opening, *indented([*self._statements(pieces, 0), *copies]), "}"]
-        return [*self._pieces(pieces), *opening, *indented([*self._calls(pieces), *copies]), "}"]
+            declared, stated = self._statements(pieces, 0)
+            before = []
+        else:
+            declared, stated = self._calls(pieces)
+            before = self._pieces(pieces)
+        inner = [*declared, *unused, *zeros, *stated] if self.is_old else [*unused, *zeros, *declared, *stated]
+        return [self._stated(pieces), *before, *head_, *indented([*inner, *copies]), "}"]
+
+    @property
+    def is_old(self) -> bool:
+        """Whether declarations stand before statements, as in C89."""
+        return self.exported.standard == "c89"
+
+    def _loop(self, size: int, statement: str) -> list[str]:
+        if self.is_old:
+            return ["{", "    size_t i;", f"    for (i = 0; i < {size}; ++i) {statement}", "}"]
+        return [f"for (size_t i = 0; i < {size}; ++i) {statement}"]
+
+    def _stated(self, pieces: Pieces) -> str:
+        """Operations, and the most that a compiler needs on the stack: all that has a name, each operand that waits
+        for a call, and what calls save."""
+        count = self.program.count()["total"]
+        waiting = [sum(len(_CALL.findall(text)) for _, text, _ in body.statements) for body in pieces.bodies]
+        named = [len(self.named(text for _, text, _ in body.statements)) for body in pieces.bodies]
+        numbers = pieces.stack + max(map(sum, zip(waiting, named, strict=True)))
+        pointers = 2 * (len(self.function.arguments) + len(self.variables) + 1)
+        return f"// {count} operations, at most {(4 if self.f else 8) * numbers + 8 * pointers + 256} bytes of stack"
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
         """A program that ends with 1 where a value is not the reference's."""
-        return {f"{exported.name}_selftest.c": "\n".join(selftest(exported, list(reference)))}
+        return {f"{exported.name}_selftest.c": "\n".join(selftest(exported, f"{exported.name}.h", list(reference)))}
 
-    def _statements(self, pieces: Pieces, k: int) -> list[str]:
+    def _statements(self, pieces: Pieces, k: int) -> tuple[list[str], list[str]]:
+        """Declarations that begin a piece, and what follows: in C89 all declarations, and the rest."""
         body = pieces.bodies[k]
-        lines = [f"const {self.real} t{n} = work[{slot}];" for n, slot in body.taken]
-        lines += [
-            f"const {self.real} {n} = {text};" if is_new else f"{n} = {text};" for n, text, is_new in body.statements
+        texts = [text for _, text, _ in body.statements]
+        declared = [f"const {self.real} {name} = {element};" for name, element in self.named(texts)]
+        declared += [f"const {self.real} t{n} = work[{slot}];" for n, slot in body.taken]
+        new = [f"const {self.real} {n} = {text};" for n, text, is_new in body.statements if is_new and self.is_old]
+        stated = [
+            f"const {self.real} {n} = {text};" if is_new else f"{n} = {text};"
+            for n, text, is_new in body.statements
+            if not (is_new and self.is_old)
         ]
-        return lines + [f"work[{slot}] = t{n};" for n, slot in body.given]
+        return declared + new, stated + [f"work[{slot}] = t{n};" for n, slot in body.given]
 
     def _pieces(self, pieces: Pieces) -> list[str]:
         lines = []
@@ -120,33 +162,32 @@ class C(Code):
             arguments = [argument(v, self.real) for v in self.function.arguments]
             arguments += [f"{self.real} *{v}" for v in self.variables.values()] + [f"{self.real} *work"]
             lines += [f"static void {self.called}_{k + 1}({', '.join(arguments)})", "{"]
-            names = [*self.function.arguments, *self.variables.values(), "work"]
-            lines += [*indented([*(f"(void){v};" for v in names), *self._statements(pieces, k)]), "}", ""]
+            unused = [f"(void){v};" for v in (*self.function.arguments, *self.variables.values(), "work")]
+            declared, stated = self._statements(pieces, k)
+            inner = [*declared, *unused, *stated] if self.is_old else [*unused, *declared, *stated]
+            lines += [*indented(inner), "}", ""]
         return lines
 
-    def _calls(self, pieces: Pieces) -> list[str]:
+    def _calls(self, pieces: Pieces) -> tuple[list[str], list[str]]:
         names = ", ".join([*self.function.arguments, *self.variables.values(), "work"])
         calls = [f"{self.called}_{k + 1}({names});" for k in range(len(pieces.bodies))]
-        size = (4 if self.f else 8) * pieces.stack
-        return [f"{self.real} work[{max(1, pieces.slots)}]; // the stack: {size} bytes at most", *calls]
+        return [f"{self.real} work[{max(1, pieces.slots)}];"], calls
 
-
-def _apart(v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], list[str]]:
-    """Elements to be computed, and loops over tables that copy the others of a large array from these."""
-    if len(pairs) < TABLES:
-        return pairs, []
-    copy = re.compile(rf"(-?){v}\[(\d+)\]")
-    matches = [(element, copy.fullmatch(text)) for element, text in pairs]
-    own = [pair for pair, (_, match) in zip(pairs, matches, strict=True) if match is None]
-    lines: list[str] = []
-    for sign in ("", "-"):
-        some = [(element[len(v) + 1 : -1], m[2]) for element, m in matches if m is not None and m[1] == sign]
-        if some:
-            table = ", ".join(f"{{{to}, {source}}}" for to, source in some)
-            lines += ["{", f"    static const unsigned int copies[][2] = {{{table}}};"]
-            lines += [f"    for (size_t i = 0; i < {len(some)}; ++i)"]
-            lines += [f"        {v}[copies[i][0]] = {sign}{v}[copies[i][1]];", "}"]
-    return own, lines
+    def _apart(self, v: str, pairs: list[tuple[str, str]]) -> tuple[list[tuple[str, str]], list[str]]:
+        """Elements to be computed, and loops over tables that copy the others of a large array from these."""
+        if len(pairs) < TABLES:
+            return pairs, []
+        copy = re.compile(rf"(-?){v}\[(\d+)\]")
+        matches = [(element, copy.fullmatch(text)) for element, text in pairs]
+        own = [pair for pair, (_, match) in zip(pairs, matches, strict=True) if match is None]
+        lines: list[str] = []
+        for sign in ("", "-"):
+            some = [(element[len(v) + 1 : -1], m[2]) for element, m in matches if m is not None and m[1] == sign]
+            if some:
+                table = ", ".join(f"{{{to}, {source}}}" for to, source in some)
+                lines += ["{", f"    static const unsigned int copies[][2] = {{{table}}};"]
+                lines += [*indented(self._loop(len(some), f"{v}[copies[i][0]] = {sign}{v}[copies[i][1]];")), "}"]
+        return own, lines
 
 
 def argument(symbol: str, real: str = "double") -> str:
@@ -160,24 +201,28 @@ def signature(function: Function, called: str, variables: Mapping[str, str], rea
     return f"void {called}({', '.join([*arguments, *(f'{real} *{v}' for v in variables.values())])})"
 
 
-def declarations(exported: Exported) -> list[str]:
-    """Sizes and indices as constants, and the functions."""
-    name, constants = exported.name, [f"{exported.name}_FUNCTIONS = {len(exported.functions)}"]
-    for symbol in (*ORDER, WORK):
-        if symbol not in exported.interface.vectors or symbol in ("t", "x"):
-            continue
-        vector = exported.interface.vectors[symbol]
-        constants.append(f"{name}_N{symbol.upper()} = {len(vector)}")
-        if symbol in ("q", "u", "p"):
-            constants += _indices(name, symbol, vector.names)
-    lines = ["enum {", *(f"    {constant}," for constant in constants[:-1]), f"    {constants[-1]}", "};", ""]
-    lines += [
+def indices(exported: Exported) -> list[str]:
+    """Lengths of arguments, and places of their elements by name, with units and defaults."""
+    name, vectors = exported.name, exported.interface.vectors
+    lengths = [symbol for symbol in (*ORDER, WORK) if symbol in vectors and symbol not in ("t", "x")]
+    lines = [
+        f"    {name}_{each.vector.upper()}_{each.name} = {each.place}, // {each.told}" for each in constants(exported)
+    ]
+    lines += [f"    {name}_N{symbol.upper()} = {len(vectors[symbol])}," for symbol in lengths]
+    return ["enum {", *lines, f"    {name}_FUNCTIONS = {len(exported.functions)}", "};", ""]
+
+
+def declarations(exported: Exported, functions: Iterable[list[str]]) -> list[str]:
+    """Sizes and indices as constants, and the functions with what their definitions state."""
+    name = exported.name
+    lines = [
+        *indices(exported),
         "// the default values of the parameters, NaN where there are none",
         f"void {name}_defaults({exported.real} *p);",
     ]
-    for each in exported.functions:
+    for each, defined in zip(exported.functions, functions, strict=True):
         code = C(each, exported)
-        lines.append(f"// {each.program.count()['total']} operations")
+        lines.append(defined[0])
         lines += _errors(each) if code.f else []
         lines.append(f"{signature(each, code.called, code.variables, exported.real)};")
     inputs = "&t, q, qd, qdd, u, x, p" + (f", {WORK}" if WORK in exported.interface.vectors else "")
@@ -195,20 +240,6 @@ def _errors(function: Function) -> list[str]:
     return [*lines, f"// for {STATED}"]
 
 
-def _indices(prefix: str, symbol: str, names: Iterable[str]) -> list[str]:
-    """``prefix_Q_arm_q1 = 0`` for names that make different identifiers."""
-    found: dict[str, int] = {}
-    seen: set[str] = set()
-    for i, name in enumerate(names):
-        plain = identifier_of(name)
-        if plain and plain not in seen:
-            found[plain] = i
-        else:
-            found.pop(plain, None)
-        seen.add(plain)
-    return [f"{prefix}_{symbol.upper()}_{plain} = {i}" for plain, i in found.items()]
-
-
 def source(exported: Exported, functions: Iterable[list[str]]) -> list[str]:
     """The definitions."""
     body = [line for each in functions for line in (*each, "")]
@@ -220,7 +251,8 @@ def source(exported: Exported, functions: Iterable[list[str]]) -> list[str]:
     values = enumerate(exported.interface.vectors["p"].defaults)
     real, f = exported.real, "f" if exported.precision == "single" else ""
     lines += [f"void {exported.name}_defaults({real} *p)", "{", "    (void)p;"]
-    lines += [f"    p[{i}] = {'NAN' if isnan(x) else repr(x) + f};" for i, x in values]
+    nan = "HUGE_VAL - HUGE_VAL" if exported.standard == "c89" else "NAN"
+    lines += [f"    p[{i}] = {nan if isnan(x) else repr(x) + f};" for i, x in values]
     return [*lines, "}", "", *body, *_call(exported)]
 
 
@@ -250,61 +282,10 @@ def _call(exported: Exported) -> list[str]:
     ]
 
 
-def selftest(exported: Exported, reference: Sequence[Reference]) -> list[str]:
-    """A program that ends with 1 where a value is not the reference's."""
-    real, f, wider = exported.real, "", 1.0
-    if exported.precision == "single":
-        f, wider = "f", 1e5
-    lines = [
-        f'#include "{exported.name}.h"',
-        "",
-        "#include <math.h>",
-        "#include <stddef.h>",
-        "#include <stdio.h>",
-        "",
-        *(line.replace("REAL", real) for line in _CHECK),
-    ]
-    for each in reference:
-        lines += ["", f"static int test_{each.number}(void)", "{", "    int wrong = 0;"]
-        names = []
-        for symbol, values in each.arguments.items():
-            plain = ", ".join(f"{x!r}{f}" for x in values) or "0"
-            one = (
-                f"const {real} t = {values[0]!r}{f};"
-                if symbol == "t"
-                else f"static const {real} {symbol}[] = {{{plain}}};"
-            )
-            lines.append(f"    {one}")
-            names.append(symbol)
-        for k, shape in enumerate(each.shapes):
-            lines.append(f"    static {real} y{k}[{max(1, prod(shape))}];")
-            names.append(f"y{k}")
-        lines.append(f"    {each.called}({', '.join(names)});")
-        for check in each.checks:
-            y, size = f"y{check.output}", prod(each.shapes[check.output])
-            found = f"sum({y}, {size})" if check.is_sum else f"{y}[{flat(check.index, each.shapes[check.output])}]"
-            lines.append(f'    wrong |= differs({found}, {check.value!r}, {wider * check.limit!r}, "{each.called}");')
-        lines += ["    return wrong;", "}"]
-    lines += ["", "int main(void)", "{", "    int wrong = 0;"]
-    lines += [f"    wrong |= test_{each.number}();" for each in reference]
-    return [*lines, '    if (!wrong) puts("ok");', "    return wrong;", "}", ""]
-
-
-_CHECK = (
-    "static int differs(double found, double expected, double limit, const char *what)",
-    "{",
-    "    if (fabs(found - expected) <= limit) return 0;",
-    '    printf("%s: %.17g for %.17g\\n", what, found, expected);',
-    "    return 1;",
-    "}",
-    "",
-    "static double sum(const REAL *values, size_t count)",
-    "{",
-    "    double total = 0.0;",
-    "    for (size_t i = 0; i < count; ++i) total += values[i];",
-    "    return total;",
-    "}",
-)
+def as_standard(exported: Exported, lines: Iterable[str]) -> str:
+    """The text of a file, whose comments are those of the standard."""
+    text = "\n".join(lines)
+    return re.sub("//(.*)$", r"/*\1 */", text, flags=re.MULTILINE) if exported.standard == "c89" else text
 
 
 def head_of(exported: Exported, software: str) -> list[str]:

@@ -2,58 +2,60 @@
 
 from __future__ import annotations
 
+import re
 from abc import abstractmethod
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
-from math import isnan
 from typing import ClassVar
 
 from substructures.export.exported import Exported, Function, identifier_of
 from substructures.export.interface import MEANINGS, Vector
+from substructures.export.languages.named import constants, described
+from substructures.export.languages.words import IN_HEADERS, RESERVED
 from substructures.export.packed import table
 from substructures.export.reference import Reference
 from substructures.expr.interpret import constant
 from substructures.expr.program import Output
 from substructures.printers.language import NEGATION, Language, Listing, Piece
+from substructures.printers.meanings import Label
 from substructures.printers.names import comment, identifier
 from substructures.printers.symmetry import assignments, elements_rule
 
-_WORDS = (
-    "t q qd qdd u x p w work pi i j e d np math model sign auto break case char const continue default do double else",
-    "enum extern float for goto if inline int long register restrict return short signed sizeof static struct",
-    "switch typedef union unsigned void volatile while and as assert async await class def del elif except false",
-    "finally from global import in is lambda none nonlocal not or pass raise true try with yield match type",
-    "function end otherwise parfor persistent spmd classdef catch let local macro module quote using baremodule",
-    "begin export abstract mutable primitive where outer nan inf zeros ones sin cos tan asin acos atan atan2 exp",
-    "log sqrt abs fabs pow batch inputs outputs sign_of integer rational symbol mutabledensendimarray",
-    "immutabledensendimarray main list len dict isinstance valueerror size_t real result program subroutine",
-    "contains implicit intent use fn mut pub impl crate self super loop move ref trait unsafe dyn box final",
-    "override typeof virtual block part output input array matrix vector table first last rest length nil numel",
-    "error nargin limit limits",
-)
-_RESERVED = frozenset(word for line in _WORDS for word in line.split())
 #: conditions under which functions are real, in terms of x
 REAL = {"sqrt": "x >= 0", "log": "x >= 0", "asin": "abs(x) <= 1", "acos": "abs(x) <= 1"}
+#: characters of a name that every compiler takes
+LONGEST = 63
+_TEMPORARY = re.compile(r"t\d+|work", re.ASCII)
+_NUMBERED = re.compile(r"\bt\d+\b", re.ASCII)
+_WORD = re.compile(r"[A-Za-z]\w*", re.ASCII)
 NOT_EXECUTED = "Not executed: the tests of the generator have no interpreter or compiler of this language."
 YOURS = "This file is the output of a program and belongs to whoever had it made; it may be used for anything."
 
 
 class Code(Language):
-    """Writes one function; ``mark`` begins a comment line, ``suffix`` ends the name of a file, ``executed``: with what
-    the tests run its files, empty where they do not."""
+    """Writes one function; ``mark`` begins a comment line, NAME and ``stem`` and ``suffix`` are the name of a file,
+    ``executed``: with what the tests run its files, empty where they do not."""
 
     width = 100
     powers = False
     mark = "#"
-    suffix = ""
+    suffix, stem = "", ""
     infinity = "inf"
     executed: ClassVar[str] = ""
     brackets: ClassVar[tuple[str, str]] = ("[", "]")
+    #: whether formulas have the names of symbols, ``arm_m2``, which are declared as elements of the arguments
+    has_names = False
+    #: whether intermediate values that are quantities of mechanics may have their names, such as Theta_1zz
+    has_steps = True
 
     def __init__(self, function: Function, exported: Exported) -> None:
         super().__init__(function.program)
         self.function, self.exported, self.called = function, exported, exported.called(function)
         self.variables = _variables(list(function.program.outputs))
+        self.names = _names(function, self.variables) if self.has_names else {}
+        taken = {*RESERVED, *IN_HEADERS, *(name.lower() for name in (*self.variables.values(), *self.names.values()))}
+        self.steps = _steps(function.steps, taken) if self.has_steps else {}
+        self._made: dict[int, int] = {}
 
     @abstractmethod
     def define(self, listing: Listing) -> list[str]:
@@ -62,10 +64,34 @@ class Code(Language):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A file with functions; the head says what it was made from."""
-        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), ""]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "", *cls.constants(exported)]
         for each in functions:
             lines += [*each, ""]
         return "\n".join(lines)
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:  # noqa: ARG003 -- for languages that have them
+        """A constant that is the place of an element in its argument; none by default."""
+        return ""
+
+    @classmethod
+    def opening(cls, exported: Exported) -> str:
+        """What names of constants begin with: nothing where a file is a namespace."""
+        return f"{exported.name}_"
+
+    @classmethod
+    def alike(cls, name: str) -> str:
+        """What is equal for names that the language does not tell apart."""
+        return name
+
+    @classmethod
+    def constants(cls, exported: Exported) -> list[str]:
+        """Places of coordinates, inputs and parameters by name, with units and defaults."""
+        lines = []
+        for each in constants(exported, cls.alike):
+            text = cls.constant(f"{cls.opening(exported)}{each.vector.upper()}_{each.name}", each.place + cls.first)
+            lines += [f"{text} {cls.commented([each.told])[0]}"] if text else []
+        return [*lines, ""] if lines else []
 
     @classmethod
     def commented(cls, lines: Iterable[str]) -> list[str]:
@@ -77,13 +103,38 @@ class Code(Language):
         """Files of a program that compares with reference values, prints ``ok`` or what differs; none by default."""
         return {}
 
+    def call_temporary(self, n: int, operation: int) -> Piece:
+        """Temporary n by its number; its name comes last."""
+        self._made[n] = operation
+        return self.temporary(n)
+
+    def with_steps(self, lines: Iterable[str]) -> list[str]:
+        """Lines with the names of mechanics in place of ``t17`` where a value has one."""
+        names = {f"t{n}": self.steps[i] for n, i in self._made.items() if i in self.steps}
+        return (
+            [_NUMBERED.sub(lambda found: names.get(found[0], found[0]), line) for line in lines] if names else [*lines]
+        )
+
     def render(self, listing: Listing, name: str) -> str:  # noqa: ARG002 -- the function has its name already
         """The function alone."""
         return "\n".join(self.define(listing))
 
     def symbol(self, n: int) -> Piece:
-        """The element of an argument that symbol n of the program is."""
-        return Piece(self.element(*self.function.places[n]))
+        """Symbol n of the program by its name, or as the element of an argument that it is."""
+        return Piece(self.names.get(n) or self.element(*self.function.places[n]))
+
+    def named(self, texts: Iterable[str]) -> list[tuple[str, str]]:
+        """(name, element of an argument) of the symbols that are named in texts, in their order there."""
+        found = {word for text in texts for word in _WORD.findall(text)}
+        places = {name: self.function.places[n] for n, name in self.names.items() if name in found}
+        order = {v.symbol: k for k, v in enumerate(self.vectors())}
+        names = sorted(places, key=lambda name: (order[places[name][0]], places[name][1]))
+        return [(name, self.element(*places[name])) for name in names]
+
+    def texts(self, listing: Listing) -> Iterator[str]:
+        """All formulas of the function."""
+        yield from (text for _, text in listing.temporaries)
+        yield from (text for some in listing.entries.values() for text in some)
 
     def element(self, vector: str, n: int) -> str:
         """Element n, from 0, of an argument; the time is a number."""
@@ -130,13 +181,48 @@ def _variables(outputs: list[str]) -> dict[str, str]:
     for k, name in enumerate(outputs):
         # capitals are macros, a letter with digits is a temporary or a Bessel function
         plain = identifier_of(name) if len(name) == 1 or not (name.isupper() or name[1:].isdigit()) else ""
-        given = identifier(plain, _RESERVED | taken, "") or identifier(f"{plain}_out" if plain else "", taken, f"y{k}")
+        given = identifier(plain, RESERVED | taken, "") or identifier(f"{plain}_out" if plain else "", taken, f"y{k}")
         found[name] = given
         taken.add(given.lower())
     return found
 
 
-def head(exported: Exported, first: int, software: str, executed: str = "here") -> list[str]:
+def _names(function: Function, variables: dict[str, str]) -> dict[int, str]:
+    """Names of the symbols of a program by their numbers, where these are harmless and differ in more than capitals.
+
+    ``arm.q1'`` is ``arm_q1_dot``; capitals are macros, and a letter with digits is a temporary or a Bessel function.
+    """
+    taken = {*RESERVED, *IN_HEADERS, *(each.lower() for each in variables.values())}
+    found: dict[int, str] = {}
+    for n, (symbol, (vector, _)) in enumerate(zip(function.program.symbols, function.places, strict=True)):
+        primes = len(symbol.name) - len(symbol.name.rstrip("'"))
+        plain = identifier_of(symbol.name.rstrip("'"))
+        name = plain + ("", "_dot", "_ddot")[primes] if plain and primes < 3 else ""
+        if vector == "t" or not name or len(name) > LONGEST or name.isupper() or _TEMPORARY.fullmatch(name):
+            continue
+        if name.lower() not in taken:
+            found[n] = name
+            taken.add(name.lower())
+    return found
+
+
+def _steps(given: Mapping[int, Label], taken: set[str]) -> dict[int, str]:
+    """Names of operations that differ from all others in more than capitals."""
+    found: dict[int, str] = {}
+    for i, label in given.items():
+        if label.text.lower() not in taken:
+            found[i] = label.text
+            taken.add(label.text.lower())
+    return found
+
+
+def head(
+    exported: Exported,
+    first: int,
+    software: str,
+    executed: str = "here",
+    called: Callable[[Exported, Function], str] = Exported.called,
+) -> list[str]:
     """What a file says of itself: what it was made from, functions, and what stands where in their arguments."""
     interface = exported.interface
     lines = [f"{exported.name}: functions of a mechanism, made from formulas by {comment(software)}."]
@@ -150,13 +236,14 @@ def head(exported: Exported, first: int, software: str, executed: str = "here") 
     lines.append("Functions:")
     for each in exported.functions:
         arguments = ", ".join(each.arguments)
-        lines.append(f"  {exported.called(each)}({arguments}): {each.program.count()['total']} operations")
+        lines.append(f"  {called(exported, each)}({arguments}): {each.program.count()['total']} operations")
         lines += [f"    {line}" for line in _outputs(each, first)]
     lines.append(f"Arguments, indices from {first}:")
     for symbol in exported.symbols:
         lines += _elements(interface.vectors[symbol], first)
+    lines += [f"  {line}" if k else line for k, line in enumerate(exported.legend)]
     for each in exported.functions:
-        lines += _elements(each.further, first, f" of {exported.called(each)}")
+        lines += _elements(each.further, first, f" of {called(exported, each)}")
     return lines
 
 
@@ -178,11 +265,7 @@ def _elements(vector: Vector, first: int, of: str = "") -> Iterator[str]:
         return
     length = "" if vector.symbol == "t" else f", {len(vector)}"
     yield f"  {vector.symbol}{of}: {MEANINGS[vector.symbol]}{length}"
-    for i, (name, unit) in enumerate(zip(vector.names, vector.units, strict=True)):
-        value = ""
-        if vector.defaults:
-            value = ", no default" if isnan(vector.defaults[i]) else f", default {vector.defaults[i]!r}"
-        yield f"    {i + first}  {comment(name)} [{comment(unit)}]{value}"
+    yield from (f"    {i + first}  {described(vector, i)}" for i in range(len(vector)))
 
 
 def nested(array: Output, texts: Sequence[str], ends: tuple[str, str], zero: str) -> str:

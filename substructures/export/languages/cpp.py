@@ -1,4 +1,4 @@
-"""C++17, a header: ``auto metric = name_metric(q, p)``, over ``double`` or any scalar with these functions.
+"""C++17, a header: ``auto metric = name::metric(q, p)``, over ``double`` or any scalar with these functions.
 
 Lengths are part of the types; ``p`` has its defaults. Arrays are ``std::array``, row-major.
 """
@@ -9,7 +9,7 @@ from collections.abc import Iterable, Mapping
 from math import isnan, prod
 from typing import ClassVar
 
-from substructures.export.exported import Exported
+from substructures.export.exported import KEYWORDS, Exported, Function
 from substructures.export.languages.c import C
 from substructures.export.languages.code import head, indented
 from substructures.export.reference import Reference
@@ -27,6 +27,20 @@ class Cpp(C):
     executed = "g++"
     functions: ClassVar[Mapping[str, str]] = {"sign": "sign_of"}
 
+    def __init__(self, function: Function, exported: Exported) -> None:
+        super().__init__(function, exported)
+        self.called = _in_namespace(exported, function)
+
+    @classmethod
+    def opening(cls, exported: Exported) -> str:  # noqa: ARG003 -- of the base
+        """Nothing."""
+        return ""
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A constant of the namespace."""
+        return f"inline constexpr std::size_t {name} = {place};"
+
     def power(self, a: Piece, n: int) -> Piece:
         """An integer power."""
         return Piece(f"pow({a.text}, {n})")
@@ -41,21 +55,21 @@ class Cpp(C):
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A header."""
         name, p = exported.name, exported.interface.vectors["p"]
-        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "#pragma once", ""]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed, called)), "#pragma once", ""]
         lines += ["#include <array>", "#include <cmath>", "#include <cstddef>", "#include <limits>", ""]
+        lines += [f"namespace {name} {{", "", *cls.constants(exported)]
         values = ("std::numeric_limits<double>::quiet_NaN()" if isnan(x) else repr(x) for x in p.defaults)
         lines += ["// the default values of the parameters", "template <class T = double>"]
         lines += [
-            f"std::array<T, {len(p)}> {name}_defaults() {{",
+            f"std::array<T, {len(p)}> defaults() {{",
             f"    return {{{', '.join(f'T({x})' for x in values)}}};",
         ]
         lines += ["}", ""]
         body = [line for each in functions for line in (*each, "")]
         sign = "    return v > T(0) ? T(1) : v < T(0) ? T(-1) : v;"
         if any("sign_of(" in line for line in body):
-            body = [line.replace("sign_of(", f"{name}_sign_of(") for line in body]
-            lines += ["template <class T>", f"T {name}_sign_of(const T& v) {{", sign, "}", ""]
-        return "\n".join([*lines, *body])
+            lines += ["template <class T>", "T sign_of(const T& v) {", sign, "}", ""]
+        return "\n".join([*lines, *body, "}", ""])
 
     def define(self, listing: Listing) -> list[str]:
         """A function template, with a structure for several outputs."""
@@ -71,10 +85,11 @@ class Cpp(C):
             for v in self.vectors()
         ]
         if self.function.arguments[-1] == "p":
-            arguments[-1] += f" = {self.exported.name}_defaults<T>()"
+            arguments[-1] += " = defaults<T>()"
         body = [f"using std::{f};" for f in _USING] + [f"(void){v};" for v in self.function.arguments]
         body.append(f"{result} result{{}};")
         body += [f"[[maybe_unused]] auto& {v} = result{f'.{v}' if many else ''};" for v, _ in arrays]
+        body += [f"const T& {name} = {element};" for name, element in self.named(self.texts(listing))]
         body += [f"const T t{n} = {text};" for n, text in listing.temporaries]
         for output in self.program.outputs:
             body += [f"{element} = {text};" for element, text in self.pairs(output, listing)]
@@ -98,12 +113,11 @@ class Cpp(C):
             "    bool wrong = false;",
         ]
         for each in reference:
-            body = []
+            body, function = list[str](), exported.functions[each.number]
             for symbol, values in each.arguments.items():
                 list_ = f"std::array<double, {len(values)}> {symbol}{{{', '.join(map(repr, values))}}}"
                 body.append(f"const double t = {values[0]!r};" if symbol == "t" else f"const {list_};")
-            body.append(f"const auto y = {each.called}({', '.join(each.arguments)});")
-            function = exported.functions[each.number]
+            body.append(f"const auto y = {called(exported, function)}({', '.join(each.arguments)});")
             variables = list(cls(function, exported).variables.values())
             for check in each.checks:
                 shape = each.shapes[check.output]
@@ -113,6 +127,16 @@ class Cpp(C):
             lines += ["    {", *indented(body, " " * 8), "    }"]
         lines += ['    if (!wrong) std::puts("ok");', "    return wrong;", "}", ""]
         return {f"{exported.name}_selftest.cpp": "\n".join(lines)}
+
+
+def _in_namespace(exported: Exported, function: Function) -> str:
+    name = exported.called(function).removeprefix(f"{exported.name}_")
+    return f"{name}_" if name in KEYWORDS else name
+
+
+def called(exported: Exported, function: Function) -> str:
+    """Of a function, with its namespace."""
+    return f"{exported.name}::{_in_namespace(exported, function)}"
 
 
 _CHECK = (

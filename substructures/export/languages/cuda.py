@@ -13,7 +13,7 @@ from math import isnan, prod
 from typing import ClassVar
 
 from substructures.export.exported import Exported
-from substructures.export.languages.c import C, argument
+from substructures.export.languages.c import C, argument, indices
 from substructures.export.languages.code import head, indented
 from substructures.export.languages.pieces import LENGTH, Pieces, split
 from substructures.export.reference import Reference
@@ -79,6 +79,7 @@ class Cuda(C):
         """One file."""
         told = [*head(exported, cls.first, software, cls.executed), *_USE]
         lines = [*cls.commented(told), *_OPENING.splitlines(), ""]
+        lines += indices(exported)
         values = enumerate(exported.interface.vectors["p"].defaults)
         defaults = [f"p[{i}] = {'(0.0 / 0.0)' if isnan(x) else repr(x)};" for i, x in values]
         lines += [f"SUBSTRUCTURES_ONE void {exported.name}_defaults(double *p)", "{"]
@@ -113,6 +114,8 @@ class Cuda(C):
         lines = []
         for k, body in enumerate(pieces.bodies):
             statements = [*unused, *(zeros if k == 0 else ())]
+            named = self.named(text for _, text, _ in body.statements)
+            statements += [f"const double {name} = {element};" for name, element in named]
             statements += [f"const double t{n} = w[{_at(slot, 'stride')}];" for n, slot in body.taken]
             statements += [f"{'const double ' * is_new}{name} = {text};" for name, text, is_new in body.statements]
             statements += [f"w[{_at(slot, 'stride')}] = t{n};" for n, slot in body.given]

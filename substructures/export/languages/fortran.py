@@ -1,4 +1,4 @@
-"""Fortran 2008: a module of subroutines ``call name_metric(q, p, metric)``; arrays have the axes of the formulas.
+"""Fortran 2018: a module of pure subroutines ``call name_metric(q, p, metric)``; arrays have the axes of the formulas.
 
 Lengths of arguments are checked at run time (``error stop``).
 """
@@ -11,7 +11,7 @@ from math import isnan
 from typing import ClassVar
 
 from substructures.export.exported import Exported
-from substructures.export.languages.code import Code, head, indented
+from substructures.export.languages.code import LONGEST, Code, head, indented
 from substructures.export.reference import Reference
 from substructures.printers.language import Listing, Piece
 
@@ -39,8 +39,19 @@ class Fortran(Code):
     brackets = ("(", ")")
     infinity = "ieee_value(1.0_dp, ieee_positive_inf)"
     executed = "gfortran"
+    has_names = True
     power_sign = "**"
     functions: ClassVar[Mapping[str, str]] = {"sign": "sign_of"}
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A public constant; none where the name is too long."""
+        return f"integer, parameter, public :: {name} = {place}" if len(name) <= LONGEST else ""
+
+    @classmethod
+    def alike(cls, name: str) -> str:
+        """Capitals do not count."""
+        return name.lower()
 
     def number(self, value: Fraction) -> Piece:
         """A double."""
@@ -57,9 +68,15 @@ class Fortran(Code):
         name, p = exported.name, exported.interface.vectors["p"]
         lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), f"module {name}"]
         lines += ["    use, intrinsic :: ieee_arithmetic", "    implicit none", "    private"]
-        lines += ["    integer, parameter, public :: dp = kind(1.0d0)", f"    public :: {name}_defaults"]
+        lines += ["    integer, parameter :: dp = kind(1.0d0)", f"    public :: {name}_defaults"]
         lines += [f"    public :: {exported.called(each)}" for each in exported.functions]
-        lines += ["contains", "", f"subroutine {name}_defaults(p)", f"    real(dp), intent(out) :: p({len(p)})"]
+        lines += [
+            *indented(cls.constants(exported)),
+            "contains",
+            "",
+            f"pure subroutine {name}_defaults(p)",
+            f"    real(dp), intent(out) :: p({len(p)})",
+        ]
         for i, x in enumerate(p.defaults):
             value = "ieee_value(1.0_dp, ieee_quiet_nan)" if isnan(x) else f"{x!r}_dp"
             lines.append(f"    p({i + 1}) = {value}")
@@ -84,18 +101,22 @@ class Fortran(Code):
             shape = f"({', '.join(map(str, array.shape))})" if array.shape else ""
             declared.append(f"real(dp), intent(out) :: {v}{shape}")
             body.append(f"{v} = 0.0_dp")
+        named = self.named(self.texts(listing))
+        declared += [f"real(dp) :: {name}" for name, _ in named]
+        body += [f"{name} = {element}" for name, element in named]
         declared += [f"real(dp) :: t{n}" for n, _ in listing.temporaries]
         body += [f"t{n} = {text}" for n, text in listing.temporaries]
         for output in self.program.outputs:
             body += [f"{element} = {text}" for element, text in self.pairs(output, listing)]
-        opening = f"subroutine {self.called}({', '.join(names)})"
+        opening = f"pure subroutine {self.called}({', '.join(names)})"
         return [opening, *indented([*declared, *checks, *body]), "end subroutine"]
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
         """A program that stops with an error where a value is not the reference's."""
         reference = list(reference)
-        lines = ["program selftest", f"    use {exported.name}", "    implicit none", "    logical :: failed = .false."]
+        lines = ["program selftest", f"    use {exported.name}", "    implicit none"]
+        lines += ["    integer, parameter :: dp = kind(1.0d0)", "    logical :: failed = .false."]
         lines += [f"    call test_{each.number}()" for each in reference]
         lines += ["    if (failed) error stop 1", "    print '(a)', 'ok'", "contains"]
         for each in reference:

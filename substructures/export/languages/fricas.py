@@ -17,9 +17,15 @@ class Fricas(Algebra):
 
     media = "text/x-fricas; charset=utf-8"
     mark = "--"
+    has_steps = False
     suffix = ".input"
     executed = "FriCAS"
     brackets = ("(", ")")
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A variable."""
+        return f"{camel(name)} := {place}"
 
     def pi(self) -> Piece:
         """The constant pi."""

@@ -23,7 +23,7 @@ def _vector(name, value, length):
 class Jax(Python):
     """JAX; one state for each call. Doubles need ``jax.config.update("jax_enable_x64", True)``."""
 
-    suffix = ".py"
+    suffix, stem = ".py", "_jax"
     infinity = "jnp.inf"
     executed = "JAX"
     imported, reader, nan = "import jax.numpy as jnp", _READ, 'float("nan")'
@@ -44,6 +44,7 @@ class Jax(Python):
         for vector in self.vectors():
             v = vector.symbol
             body.append("t = jnp.asarray(t)" if v == "t" else f"{v} = _vector({v!r}, {v}, {len(vector)})")
+        body += [f"{name} = {element}" for name, element in self.named(self.texts(listing))]
         body += [f"t{n} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             body += self._output(output, array.shape, listing)
@@ -53,18 +54,26 @@ class Jax(Python):
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
         """A script that exits with 1 where a value is not the reference's."""
         lines = ["import sys", "", "import jax", "import jax.numpy as jnp", ""]
-        lines += ['jax.config.update("jax_enable_x64", True)', f"import {exported.name}", "", "wrong = False", *CHECK]
+        lines += [
+            'jax.config.update("jax_enable_x64", True)',
+            f"import {exported.name}_jax",
+            "",
+            "wrong = False",
+            *CHECK,
+        ]
         for each in reference:
             given = [
                 repr(values[0]) if s == "t" else f"jnp.array({list(values)!r})" for s, values in each.arguments.items()
             ]
-            lines += ["", f"y = jax.jit({exported.name}.{each.called})({', '.join(given)})"]
+            lines += ["", f"y = jax.jit({exported.name}_jax.{each.called})({', '.join(given)})"]
             names = list(exported.functions[each.number].program.outputs)
             for check in each.checks:
                 y = f"y[{names[check.output]!a}]" if len(names) > 1 else "y"
                 found = f"jnp.sum({y})" if check.is_sum else f"{y}[{check.index!r}]"
                 lines.append(f"wrong |= differs({found}, {check.value!r}, {check.limit!r}, {each.called!r})")
-        return {f"{exported.name}_selftest.py": "\n".join([*lines, "", 'sys.exit(1 if wrong else print("ok"))', ""])}
+        return {
+            f"{exported.name}_jax_selftest.py": "\n".join([*lines, "", 'sys.exit(1 if wrong else print("ok"))', ""])
+        }
 
     def _output(self, output: str, shape: tuple[int, ...], listing: Listing) -> list[str]:
         """The elements that are not zero, each a variable, and the array of all."""

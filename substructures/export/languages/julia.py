@@ -25,7 +25,13 @@ class Julia(Code):
     suffix = ".jl"
     first = 1
     infinity = "Inf"
+    has_names = True
     functions: ClassVar[Mapping[str, str]] = {"atan2": "atan"}
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A constant."""
+        return f"const {name} = {place}"
 
     @classmethod
     def selftest(cls, exported: Exported, reference: Iterable[Reference]) -> dict[str, str]:
@@ -53,6 +59,7 @@ class Julia(Code):
             message = f'"{v} has $(length({v})) elements, {len(vector)} are needed"'
             if v != "t":
                 body.append(f"length({v}) == {len(vector)} || throw(DimensionMismatch({message}))")
+        body += [f"{name} = {element}" for name, element in self.named(self.texts(listing))]
         body += [f"t{n} = {text}" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             v = self.variables[output]

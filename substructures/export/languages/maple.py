@@ -24,6 +24,11 @@ class Maple(Algebra):
         "sign": "signum",
     }
 
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A variable."""
+        return f"{name} := {place}:"
+
     def pi(self) -> Piece:
         """The constant pi."""
         return Piece("Pi")

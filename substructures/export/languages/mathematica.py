@@ -14,6 +14,7 @@ class Mathematica(Algebra):
     """A package file for ``Get``."""
 
     media = "text/x-mathematica; charset=utf-8"
+    has_steps = False
     suffix = ".wl"
     ends = ("{", "}")
     brackets = ("[[", "]]")
@@ -30,6 +31,11 @@ class Mathematica(Algebra):
         "abs": "Abs",
         "sign": "Sign",
     }
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A variable."""
+        return f"{camel(name)} = {place};"
 
     def pi(self) -> Piece:
         """The constant pi."""

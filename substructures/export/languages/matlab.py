@@ -9,7 +9,9 @@ from collections.abc import Iterable
 from math import isnan
 
 from substructures.export.exported import Exported
+from substructures.export.interface import Vector
 from substructures.export.languages.code import REAL, Code, head, indented
+from substructures.export.languages.named import STRUCTURES, Named, members
 from substructures.export.reference import Reference
 from substructures.expr.program import Output
 from substructures.printers.language import Listing, Piece
@@ -27,6 +29,13 @@ _CHECK = (
 )
 
 
+_LISTED = (
+    "break case catch classdef continue else elseif end for function global if otherwise parfor persistent return spmd",
+    "switch try while do until endif endfor endwhile endfunction endswitch unwind_protect end_try_catch",
+)
+_WORDS = frozenset(word for line in _LISTED for word in line.split())
+
+
 class Matlab(Code):
     """Function files. Vectors are columns; any vector with the right number of elements is taken."""
 
@@ -37,6 +46,7 @@ class Matlab(Code):
     first = 1
     brackets = ("(", ")")
     executed = "Octave"
+    has_names = True
 
     def call(self, op: str, args: list[Piece]) -> Piece:
         """A function; by its real branch where the argument is no constant."""
@@ -55,6 +65,7 @@ class Matlab(Code):
         """A function with its checks, and what it calls."""
         results = ", ".join(self.variables.values())
         body = self._checks()
+        body += [f"{name} = {element};" for name, element in self.named(self.texts(listing))]
         body += [f"t{n} = {text};" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             body += self._fill(self.variables[output], array, listing, output)
@@ -108,3 +119,36 @@ class Matlab(Code):
         dimensions = ", ".join(map(str, (*array.shape, *(1,) * (2 - len(array.shape)))))
         lines = [f"{v} = zeros({dimensions});"]
         return lines + [f"{element} = {text};" for element, text in self.pairs(output, listing)]
+
+
+def structures(exported: Exported) -> dict[str, str]:
+    """Functions that make structures of coordinates, inputs and parameters, and columns of these."""
+    found = {}
+    for symbol, called in STRUCTURES.items():
+        name = f"{exported.name}_{called.lower()}"
+        named = fields(exported.interface.vectors[symbol])
+        values = ("NaN" if isnan(each.value) else repr(each.value) for each in named)
+        lines = [
+            f"function y = {name}(s)",
+            f"% {name}() is a structure of the {called.lower()}; {name}(s) is the column of a structure.",
+            "if nargin == 0",
+            "    y = struct();",
+            *(line for each, value in zip(named, values, strict=True) for line in _member(each, value)),
+            "else",
+            f"    y = zeros({len(named)}, 1);",
+            *(f"    y({each.place + 1}) = s.{each.name};" for each in named),
+            "end",
+            "end",
+            "",
+        ]
+        found[f"{name}.m"] = "\n".join(lines)
+    return found
+
+
+def _member(each: Named, value: str) -> list[str]:
+    return [f"    % {each.told}", f"    y.{each.name} = {value};"]
+
+
+def fields(vector: Vector) -> list[Named]:
+    """Of the structure of a vector."""
+    return members(vector, _WORDS.__contains__, Matlab.first)

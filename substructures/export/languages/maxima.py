@@ -25,6 +25,11 @@ class Maxima(Algebra):
         return Piece("%pi")
 
     @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A variable."""
+        return f"{name}: {place}$"
+
+    @classmethod
     def commented(cls, lines: Iterable[str]) -> list[str]:
         """Lines as comments."""
         return [f"/* {line} */" for line in lines]
@@ -34,7 +39,7 @@ class Maxima(Algebra):
         """A batch file, with the defaults of the parameters as ``name_p``."""
         lines = cls.commented(head(exported, cls.first, software, cls.executed))
         values = ", ".join("und" if x != x else repr(x) for x in exported.interface.vectors["p"].defaults)
-        lines += [f"{exported.name}_p: [{values}]$", ""]
+        lines += [f"{exported.name}_p: [{values}]$", *cls.constants(exported), ""]
         return "\n".join([*lines, *(line for each in functions for line in (*each, ""))])
 
     def value(self, array: Output, texts: tuple[str, ...]) -> str:

@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable
 from math import isnan
 from typing import ClassVar
 
 from substructures.errors import InvalidArgument
-from substructures.export.exported import Exported
+from substructures.export.exported import KEYWORDS, Exported
 from substructures.export.languages.code import Code, head, indented
+from substructures.export.languages.named import members
 from substructures.printers.language import Listing, Piece
+from substructures.printers.names import comment
+
+#: names of the model Mechanism
+_TAKEN = frozenset(["der", "time", "loads", "q", "qd", "u", "p", "Modelica", "Mechanism"])
 
 
 class Modelica(Code):
@@ -21,6 +27,17 @@ class Modelica(Code):
     first = 1
     infinity = "Modelica.Constants.inf"
     executed: ClassVar[str] = ""
+    has_names = True
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A constant of the package."""
+        return f"constant Integer {name} = {place};"
+
+    @classmethod
+    def opening(cls, exported: Exported) -> str:  # noqa: ARG003 -- of the base
+        """Nothing."""
+        return ""
 
     def pi(self) -> Piece:
         """pi as a double."""
@@ -31,7 +48,9 @@ class Modelica(Code):
         """A package. Raises InvalidArgument for a parameter without a default, which a model needs."""
         body = [line for each in functions for line in (*each, "")]
         lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), f"package {exported.name}"]
-        return "\n".join([*lines, *indented([*body, *_model(exported)]), f"end {exported.name};", ""])
+        return "\n".join(
+            [*lines, *indented([*cls.constants(exported), *body, *_model(exported)]), f"end {exported.name};", ""]
+        )
 
     def define(self, listing: Listing) -> list[str]:
         """A function."""
@@ -40,13 +59,22 @@ class Modelica(Code):
         for output, array in self.program.outputs.items():
             shape = f"[{', '.join(map(str, array.shape))}]" if array.shape else ""
             lines.append(f"    output Real {self.variables[output]}{shape};")
-        lines += ["protected", *(f"    Real t{n};" for n, _ in listing.temporaries), "algorithm"]
-        body = [f"t{n} := {text};" for n, text in listing.temporaries]
+        named = self.named(self.texts(listing))
+        lines += ["protected", *(f"    Real {name};" for name, _ in named)]
+        lines += [*(f"    Real t{n};" for n, _ in listing.temporaries), "algorithm"]
+        body = [f"{name} := {element};" for name, element in named]
+        body += [f"t{n} := {text};" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             name = self.variables[output]
             zeros = f"zeros({', '.join(map(str, array.shape))})" if array.shape else "0.0"
             body += [f"{name} := {zeros};", *(f"{element} := {text};" for element, text in self.pairs(output, listing))]
         return [*lines, *indented(body), f"end {self.called};"]
+
+
+def _unit(unit: str) -> str:
+    """A unit as Modelica writes it: points for products; empty where it cannot."""
+    plain = unit.replace(" ", ".").replace("*", ".").replace("^", "")
+    return plain if re.fullmatch(r"[A-Za-z0-9./-]*", plain, re.ASCII) and plain.count("/") < 2 else ""
 
 
 def _model(exported: Exported) -> list[str]:
@@ -58,7 +86,14 @@ def _model(exported: Exported) -> list[str]:
     if missing:
         message = f"the parameter '{missing[0][:80]}' has no default: bind it to a number"
         raise InvalidArgument.at("/bind", "missing", message)
-    lines = ["model Mechanism", f"    parameter Real p[{len(p)}] = {{{', '.join(map(repr, p.defaults))}}};"]
+    named = members(p, lambda name: name in KEYWORDS or name in _TAKEN, 1)
+    lines = ["model Mechanism"]
+    lines += [
+        f'    parameter Real {each.name}(unit="{_unit(unit)}") = {each.value!r} "{comment(name)}";'
+        for each, name, unit in zip(named, p.names, p.units, strict=True)
+    ]
+    values = f"{{{', '.join(each.name for each in named)}}}" if named else "fill(0.0, 0)"
+    lines += ["protected", f"    parameter Real p[{len(p)}] = {values};", "public"]
     lines += [f"    Real q[{len(q)}];", f"    Real qd[{len(q)}];", f"    Real u[{len(u)}];"]
     loads = len(u) - len(q)
     if loads:

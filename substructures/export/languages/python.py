@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import keyword
 from collections.abc import Iterable
 from math import isnan
 
 from substructures.export.exported import Exported
+from substructures.export.interface import MEANINGS, Vector
 from substructures.export.languages.code import Code, head, indented
+from substructures.export.languages.named import STRUCTURES, Named, members
 from substructures.export.reference import Reference
 from substructures.printers.language import Listing, Piece
 
@@ -38,6 +41,7 @@ class Python(Code):
     infinity = "np.inf"
     power_sign = "**"
     executed = "CPython and NumPy"
+    has_names = True
     #: what a module is told to import, what it says beside, its function that reads arguments, and what is no number
     imported, reader, nan = "import numpy as np", _READ, "np.nan"
     notes: tuple[str, ...] = ()
@@ -54,17 +58,32 @@ class Python(Code):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A module; ``P`` are the defaults of the parameters."""
-        lines = ['"""', *head(exported, cls.first, software, cls.executed), *cls.notes, '"""', "", cls.imported, ""]
+        lines = ['"""', *head(exported, cls.first, software, cls.executed), *cls.notes, '"""', ""]
+        lines += ["from typing import NamedTuple", "", cls.imported, ""]
         for symbol in exported.symbols:
             vector = exported.interface.vectors[symbol]
             if symbol != "t":
                 lines += [f"{symbol.upper()}_NAMES = (", *(f"    {name!a}," for name in vector.names), ")"]
-        defaults = exported.interface.vectors["p"].defaults
-        values = (cls.nan if isnan(x) else repr(x) for x in defaults)
-        lines += ["P = (", *(f"    {x}," for x in values), ")", "", *cls.reader.split("\n")]
+        for symbol, called in STRUCTURES.items():
+            lines += cls._structure(called, exported.interface.vectors[symbol])
+        lines += ["", "", "P = Parameters()", "", *cls.reader.split("\n")]
         for each in functions:
             lines += ["", *each, ""]
         return "\n".join(lines)
+
+    @classmethod
+    def _structure(cls, called: str, vector: Vector) -> list[str]:
+        """A tuple with a name for every element, which is an argument as it is."""
+        body = [
+            f"{each.name}: float = {cls.nan if isnan(each.value) else repr(each.value)}  # {each.told}"
+            for each in fields(vector)
+        ]
+        return [
+            "",
+            "",
+            f"class {called}(NamedTuple):",
+            *indented([f'"""{MEANINGS[vector.symbol].capitalize()}."""', *body]),
+        ]
 
     def define(self, listing: Listing) -> list[str]:
         """A function; one output is an array, several are a dictionary."""
@@ -75,6 +94,7 @@ class Python(Code):
             body.append("t = np.asarray(t, dtype=float)" if v == "t" else f"{v} = _columns({v!r}, {v}, {len(vector)})")
         shapes = ", ".join("t.shape" if v == "t" else f"{v}.shape[1:]" for v in self.function.arguments)
         body.append(f"batch = np.broadcast_shapes({shapes})")
+        body += [f"{name} = {element}" for name, element in self.named(self.texts(listing))]
         inner = [f"t{n} = {text}" for n, text in listing.temporaries]
         for output in self.program.outputs:
             inner += self._fill(output, listing)
@@ -109,3 +129,8 @@ class Python(Code):
     def place(self, variable: str, array: object, index: tuple[int, ...]) -> str:  # noqa: ARG002 - of the interface
         """An element, behind the axes of the batch."""
         return f"{variable}[{', '.join(['...', *map(str, index)])}]"
+
+
+def fields(vector: Vector) -> list[Named]:
+    """Of the structure of a vector."""
+    return members(vector, keyword.iskeyword, 0)

@@ -16,9 +16,15 @@ class Reduce(Algebra):
 
     media = "text/x-reduce; charset=utf-8"
     mark = "%"
+    has_steps = False
     suffix = ".red"
     ends = ("{", "}")
     functions: ClassVar[Mapping[str, str]] = {}
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A variable."""
+        return f"{name.replace('_', '!_')} := {place};"
 
     def element(self, vector: str, n: int) -> str:
         """An element of a list."""
@@ -27,7 +33,7 @@ class Reduce(Algebra):
     @classmethod
     def file(cls, exported: Exported, functions: Iterable[list[str]], software: str) -> str:
         """A file of procedures."""
-        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), ""]
+        lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "", *cls.constants(exported)]
         return "\n".join([*lines, *(line for each in functions for line in (*each, "")), "end;", ""])
 
     def define(self, listing: Listing) -> list[str]:

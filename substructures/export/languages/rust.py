@@ -33,7 +33,23 @@ class Rust(Code):
     suffix = ".rs"
     infinity = "f64::INFINITY"
     executed = "rustc"
+    has_names = True
     functions: ClassVar[Mapping[str, str]] = {"abs": "fabs", "sign": "sign_of"}
+
+    @classmethod
+    def opening(cls, exported: Exported) -> str:  # noqa: ARG003 -- of the base
+        """Nothing."""
+        return ""
+
+    @classmethod
+    def constant(cls, name: str, place: int) -> str:
+        """A constant of the module ``at``."""
+        return f"pub const {name.upper()}: usize = {place};"
+
+    @classmethod
+    def alike(cls, name: str) -> str:
+        """Constants are in capitals."""
+        return name.upper()
 
     def pi(self) -> Piece:
         """pi as a double."""
@@ -52,6 +68,8 @@ class Rust(Code):
         """A module."""
         lines = [*cls.commented(head(exported, cls.first, software, cls.executed)), "", *_mathematics()]
         p = exported.interface.vectors["p"]
+        lines += ["/// Places of elements in arguments, with units and defaults."]
+        lines += ["#[allow(dead_code)]", "pub mod at {", *indented(cls.constants(exported)), "}", ""]
         values = ["f64::NAN" if isnan(x) else repr(x) for x in p.defaults]
         lines += ["#[allow(dead_code)]", f"pub const P: [f64; {len(p)}] = [", *(f"    {x}," for x in values), "];", ""]
         body = [line for each in functions for line in (*each, "")]
@@ -60,11 +78,12 @@ class Rust(Code):
     def define(self, listing: Listing) -> list[str]:
         """A function."""
         arguments = [f"{v.symbol}: " + ("f64" if v.symbol == "t" else f"&[f64; {len(v)}]") for v in self.vectors()]
-        body = [f"let t{n}: f64 = {text};" for n, text in listing.temporaries]
+        body = [f"let {name} = {element};" for name, element in self.named(self.texts(listing))]
+        body += [f"let t{n}: f64 = {text};" for n, text in listing.temporaries]
         for output, array in self.program.outputs.items():
             v = self.variables[output]
             arguments.append(f"{v}: &mut {_type(array.shape)}")
-            body.append(f"*{v} = {_zeros(array.shape)};")
+            body.append(f"*{v} = {zeros(array.shape)};")
             # copies of elements are read through the reference
             body += [f"{element} = {text};" for element, text in self.pairs(output, listing)]
         return [_ALLOW, f"pub fn {self.called}({', '.join(arguments)}) {{", *indented(body), "}"]
@@ -89,7 +108,7 @@ class Rust(Code):
                 body.append(one.replace("= []", "= [0.0_f64; 0]"))
             given = [symbol if symbol == "t" else f"&{symbol}" for symbol in each.arguments]
             for k, shape in enumerate(each.shapes):
-                body.append(f"let mut y{k} = {_zeros(shape)};")
+                body.append(f"let mut y{k} = {zeros(shape)};")
                 given.append(f"&mut y{k}")
             body.append(f"{each.called}({', '.join(given)});")
             for check in each.checks:
@@ -121,7 +140,7 @@ def _flattened(y: str, axes: int) -> str:
 
 def _mathematics() -> list[str]:
     names = ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "fabs", "atan2", "pow")
-    lines = ["mod libm {", '    #[link(name = "m")]', '    extern "C" {']
+    lines = ["mod libm {", '    #[link(name = "m")]', '    unsafe extern "C" {']
     for name in names:
         arguments = "x: f64, y: f64" if name in _BINARY else "x: f64"
         lines.append(f"        pub fn {name}({arguments}) -> f64;")
@@ -140,7 +159,8 @@ def _type(shape: tuple[int, ...]) -> str:
     return result
 
 
-def _zeros(shape: tuple[int, ...]) -> str:
+def zeros(shape: tuple[int, ...]) -> str:
+    """An array of zeros."""
     result = "0.0_f64"
     for size in reversed(shape):
         result = f"[{result}; {size}]"

@@ -12,6 +12,7 @@ from typing import ClassVar
 
 from substructures.export.exported import Exported
 from substructures.export.languages.code import REAL, Code, head, indented
+from substructures.export.languages.named import described
 from substructures.printers.language import NEGATION, Language, Listing, Piece
 
 _CLASSES = "Abs, ImmutableDenseNDimArray, Integer, MutableDenseNDimArray, Piecewise, Rational, Symbol"
@@ -27,7 +28,7 @@ class SymPy(Code):
     """SymPy; a function gives a scalar or an immutable array, of several outputs a dictionary."""
 
     media = "text/x-python; charset=utf-8"
-    suffix = ".py"
+    suffix, stem = ".py", "_sympy"
     powers = True
     power_sign = "**"
     executed = "SymPy"
@@ -59,11 +60,14 @@ class SymPy(Code):
             lines += [f"def real_{f}(x):", f"    return Piecewise(({f}(x), {REAL[f]}), (nan, True))", ""]
         lines += _LENGTH.split("\n")
         for symbol in exported.symbols:
-            names = exported.interface.vectors[symbol].names
+            vector = exported.interface.vectors[symbol]
             if symbol == "t":
                 lines.append("t = Symbol('t', real=True)")
             else:
-                lines += [f"{symbol} = [", *(f"    Symbol({name!a}, real=True)," for name in names), "]"]
+                told = (
+                    f"    Symbol({name!a}, real=True),  # {described(vector, i)}" for i, name in enumerate(vector.names)
+                )
+                lines += [f"{symbol} = [", *told, "]"]
         for each in functions:
             lines += ["", *each, ""]
         return "\n".join(lines)

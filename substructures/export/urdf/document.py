@@ -141,6 +141,9 @@ def _joint(link: RigidLink, parent: str) -> Tree.Element:
     if drive.is_slide or drive.limits:
         limits |= {"lower": _number(low), "upper": _number(high)}
     Tree.SubElement(element, "limit", limits)
+    if drive.mimic is not None:
+        of, multiplier, offset = drive.mimic
+        Tree.SubElement(element, "mimic", joint=of, multiplier=_number(multiplier), offset=_number(offset))
     return element
 
 

@@ -6,8 +6,8 @@ axis through its own origin. Compound joints (universal, spherical, ..., free) a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -20,7 +20,8 @@ from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Definition
 from substructures.part.mechanism import Mechanism, mechanism
-from substructures.part.topology import BASE, JointEntry
+from substructures.part.relations import read_relations
+from substructures.part.topology import BASE, JointEntry, topology
 
 #: x_parent = R x + r
 Pose = tuple[Array, Array]
@@ -40,6 +41,7 @@ class Drive:
     axis: Array
     limits: tuple[float, float] | None
     damping: float
+    mimic: tuple[str, float, float] | None = None  #: the coordinate that moves it, multiplier and offset
 
 
 @dataclass(frozen=True)
@@ -68,14 +70,19 @@ def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
 
     Raises InvalidArgument for numbers that are not finite, MissingValue for parameters without one.
     """
-    m = mechanism(definition)
+    # joints stand where their own positions are zero: relations come beside them
+    m = mechanism(definition.model_copy(update={"relations": ()}))
     laws = {k: law.damping for k, law in enumerate(m.laws) if _is_constant(m, law.damping)}
-    numbers = values(program(m.graph, _outputs(m, laws), m.scope.symbols))
+    outputs = _outputs(m, laws)
+    layout, names = topology(definition), m.topology.coordinates
+    relations = read_relations(definition.relations, layout.before, names, m.scope)
+    outputs["relations"] = array((len(names), 2), lambda k, i: relations[k][1 + i])
+    numbers = values(program(m.graph, outputs, m.scope.symbols))
     for name, x in numbers.items():
         if not np.isfinite(x).all():
             message = f"'{name}' of '{definition.name}' is not finite with these parameters: give others by bind"
             raise InvalidArgument.at("/bind", "not-finite", message)
-    reader = _Reader(m, numbers, prefix)
+    reader = _Reader(m, numbers, prefix, [of for of, _, _ in relations])
     return Links(tuple(reader.links()), tuple(reader.left_out(laws)))
 
 
@@ -141,8 +148,8 @@ def _limits(m: Mechanism) -> Iterator[tuple[int, tuple[Expr, Expr]]]:
 class _Reader:
     """Numbers to links."""
 
-    def __init__(self, m: Mechanism, numbers: Mapping[str, Array], prefix: str) -> None:
-        self.m, self.numbers, self.prefix = m, numbers, prefix
+    def __init__(self, m: Mechanism, numbers: Mapping[str, Array], prefix: str, movers: Sequence[int]) -> None:
+        self.m, self.numbers, self.prefix, self.movers = m, numbers, prefix, movers
         self.limits = dict(zip((k for k, _ in _limits(m)), numbers["limits"].tolist(), strict=True))
         names = [*m.bodies, *m.ports]
         self.frame = {name: f for f, name in enumerate(names)}
@@ -199,7 +206,11 @@ class _Reader:
         low_high = self.limits.get(k)
         limits = None if low_high is None else (low_high[0], low_high[1])
         damping = float(self.numbers["damping"][k])
-        return Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, damping)
+        drive, mover = Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, damping), self.movers[k]
+        if mover == k:
+            return drive
+        factor, offset = self.numbers["relations"][k].tolist()
+        return replace(drive, mimic=(self.prefix + self.m.topology.coordinates[mover], factor, offset))
 
     def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
         """Springs, rotors, end stops, friction and loads."""

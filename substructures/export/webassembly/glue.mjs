@@ -1,5 +1,5 @@
-// Generated code. Vectors are arrays of numbers in the order of `description.vectors`; arrays come back dense and
-// row-major, as Float64Array.
+// Generated code. Vectors are arrays of numbers in the order of `description.vectors`, or objects by their names, from
+// which what has a default may be left out; arrays come back dense and row-major, as Float64Array.
 
 /** What was exported: names, order, units, shapes and defaults of everything. */
 export const description = "@description@";
@@ -58,6 +58,7 @@ function read(name, symbol, vector, value) {
         if (typeof value === "number") return value;
         throw new TypeError(`${name}: t is a number, not ${String(value).slice(0, 40)}`);
     }
+    if (isNamed(value)) return fromNames(name, symbol, vector, value);
     if (typeof value !== "object" || value === null || value.length !== vector.length) {
         throw new RangeError(
             `${name}: ${symbol} has ${vector.length} numbers (${vector.names.slice(0, 8).join(", ")}` +
@@ -67,6 +68,21 @@ function read(name, symbol, vector, value) {
     const wrong = Array.prototype.findIndex.call(value, (x) => typeof x !== "number");
     if (wrong >= 0) throw new TypeError(`${name}: ${symbol}[${wrong}] (${vector.names[wrong]}) is no number`);
     return value;
+}
+
+function isNamed(value) {
+    return typeof value === "object" && value !== null && !ArrayBuffer.isView(value) && !(Symbol.iterator in value);
+}
+
+function fromNames(name, symbol, vector, given) {
+    const unknown = Object.keys(given).find((each) => !vector.names.includes(each));
+    if (unknown !== undefined) {
+        throw new RangeError(`${name}: ${symbol} has no '${unknown}' (${vector.names.slice(0, 8).join(", ")})`);
+    }
+    const values = vector.names.map((each, i) => (Object.hasOwn(given, each) ? given[each] : vector.defaults?.[i]));
+    const missing = values.findIndex((x) => typeof x !== "number");
+    if (missing >= 0) throw new TypeError(`${name}: ${symbol} needs a number for '${vector.names[missing]}'`);
+    return values;
 }
 
 function defaults(name, symbol, vector) {

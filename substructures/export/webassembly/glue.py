@@ -7,8 +7,12 @@ from collections.abc import Mapping
 from importlib.resources import files
 from typing import Any
 
+from substructures.printers.names import comment
+
+_NAMED = {"q": "Coordinates", "qd": "Velocities", "qdd": "Accelerations", "u": "Inputs", "p": "Parameters"}
 _TYPES = """/** What was exported: names, order, units, shapes and defaults of everything. */
 export declare const description: Record<string, unknown>;
+%s
 export interface Functions {
 %s
 }
@@ -29,13 +33,29 @@ def javascript(name: str, description: Mapping[str, Any], heap: int) -> str:
 
 def types(description: Mapping[str, Any]) -> str:
     """The declarations of TypeScript, ``NAME.d.mts``."""
-    return _TYPES % "\n".join(_declared(each, description["vectors"]) for each in description["functions"])
+    vectors = description["vectors"]
+    named = [line for symbol, called in _NAMED.items() for line in _interface(called, vectors[symbol])]
+    functions = (_declared(each, vectors) for each in description["functions"])
+    return _TYPES % ("\n".join(named), "\n".join(functions))
+
+
+def _interface(called: str, vector: Mapping[str, Any]) -> list[str]:
+    """An object with a number for every element."""
+    values = vector.get("defaults") or [None] * vector["length"]
+    lines = [f"export interface {called} {{"]
+    for name, unit, value in zip(vector["names"], vector["units"], values, strict=True):
+        told = f"{comment(name)} [{comment(unit)}]" + ("" if value is None else f", default {value!r}")
+        lines += [f"    /** {told} */", f"    {json.dumps(name)}{'' if value is None else '?'}: number;"]
+    return [*lines, "}"]
+
+
+def _type(symbol: str) -> str:
+    return "number" if symbol == "t" else " | ".join(["ArrayLike<number>", *filter(None, [_NAMED.get(symbol)])])
 
 
 def _declared(function: Mapping[str, Any], vectors: Mapping[str, Any]) -> str:
     arguments = ", ".join(
-        f"{symbol}{'?' if symbol == 'p' and _complete(vectors['p']) else ''}: "
-        f"{'number' if symbol == 't' else 'ArrayLike<number>'}"
+        f"{symbol}{'?' if symbol == 'p' and _complete(vectors['p']) else ''}: {_type(symbol)}"
         for symbol in function["arguments"]
     )
     outputs = function["outputs"]

@@ -10,7 +10,7 @@ from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import read_unit
 
 #: fields that no formula depends on
-WORDS = frozenset(("name", "title", "description", "tags", "license", "source", "left_out"))
+WORDS = frozenset(("name", "title", "description", "tags", "license", "source", "poses", "left_out"))
 #: fields whose members have values and units
 DECLARED = ("parameters", "inputs")
 #: units of numbers of a definition, in words about a change

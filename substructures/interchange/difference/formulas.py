@@ -150,7 +150,11 @@ def _placed(formulas: Formulas, labels: tuple[tuple[str, ...] | None, ...], is_a
 def _size(formulas: Formulas, is_alike: bool) -> int:
     """How many independent elements there are."""
     n = formulas.shape[0] if formulas.shape else 1
-    independent = {"symmetric": n * (n + 1) // 2, "christoffel": n * (n * n - 1) // 3}
+    independent = {
+        "symmetric": n * (n + 1) // 2,
+        "christoffel": n * (n * n - 1) // 3,
+        "connection": n * n * (n + 1) // 2,
+    }
     return independent[formulas.symmetry] if is_alike and formulas.symmetry in independent else prod(formulas.shape)
 
 

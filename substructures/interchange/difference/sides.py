@@ -12,7 +12,7 @@ from substructures.expr.operations import Symbol
 from substructures.expr.replay import replay
 from substructures.interchange.difference.formulas import FormulaSet
 from substructures.part.outputs import OWN_INERTIA, inertia_bindings, over_formulas
-from substructures.part.part import INTERNAL, LEADING, Part
+from substructures.part.part import INTERNAL, Part
 from substructures.quantities.quantity import COORDINATES, FRAMES, OUTPUTS
 from substructures.tree.model import Model
 
@@ -30,7 +30,7 @@ def of_part(graph: Graph, part: Part) -> FormulaSet:
 
     def labels(name: str) -> tuple[tuple[str, ...] | None, ...]:
         """Of the leading axes."""
-        known = tuple(axes.get(axis) or part.labels(axis) or None for axis in LEADING.get(name, ()))
+        known = tuple(axes.get(axis) or part.labels(axis) or None for axis in part.axes_of(name))
         return known + (None,) * (len(part.program.outputs[name].shape) - len(known)) if name in names else ()
 
     symbols = {symbol.name: symbol for symbol in part.program.symbols}

@@ -11,8 +11,10 @@ from typing import Literal
 import numpy as np
 
 from substructures.analysis.arguments import one_of, positive
+from substructures.analysis.motion.integrators.compiled_steps import rates_of
 from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion, TimeReport
 from substructures.array import Array
+from substructures.compile.motion import CompiledRates, CompiledRun, Tableau
 
 StepMethod = Callable[[Function, float, Array, float], Array]
 EVALUATIONS = {"semi-implicit-euler": 1, "rk4": 4}
@@ -56,6 +58,36 @@ def rk4(f: Function, t: float, x: Array, h: float) -> Array:
     return x + h / 6 * (k1 + 2 * (k2 + k3) + k4)
 
 
+#: the same as coefficients, without an estimate of the error
+RK4 = Tableau(
+    ((0.0,) * 4, (1 / 2, 0.0, 0.0, 0.0), (0.0, 1 / 2, 0.0, 0.0), (0.0, 0.0, 1.0, 0.0)),
+    (1 / 6, 1 / 3, 1 / 3, 1 / 6),
+    (0.0, 1 / 2, 1 / 2, 1.0),
+    (0.0,) * 5,
+    (0.0,) * 5,
+    -1.0,
+)
+
+
+def compiled_rk4(rates: CompiledRates) -> StepMethod:
+    """:func:`rk4` in machine code around kernels; four evaluations where a step begins at the end of the last one."""
+    run, reached = CompiledRun(RK4, rates, (0.0, 1.0)), np.zeros(0)
+
+    def step(_: Function, t: float, x: Array, h: float) -> Array:
+        """One step."""
+        nonlocal reached
+        if x is reached:
+            run.go_on(t, t + h, h)
+        else:
+            run.begin(t, x, t + h, h)
+        made = run.advance()
+        # a step that is no number is none
+        reached = run.state if len(made) else np.full(len(x), np.nan)
+        return reached
+
+    return step
+
+
 def semi_implicit_euler(n: int) -> StepMethod:
     """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
 
@@ -67,6 +99,11 @@ def semi_implicit_euler(n: int) -> StepMethod:
         return new
 
     return step
+
+
+def rk4_of(rates: CompiledRates | None) -> StepMethod:
+    """In machine code where the function consists of kernels."""
+    return rk4 if rates is None else compiled_rk4(rates)
 
 
 def march(
@@ -83,7 +120,7 @@ def march(
 
     Outputs within a step are the ends of shorter steps from its start.
     """
-    step = rk4 if fixed.method == "rk4" else semi_implicit_euler(n)
+    step = semi_implicit_euler(n) if fixed.method != "rk4" else rk4_of(rates_of(f))
     motion, wanted = IntegratedMotion(step_t=[span[0]], step_x=[x]), outputs.tolist()
     count = max(1, math.ceil((span[1] - span[0]) / fixed.step * (1 - 1e-12)))
     longest, t, k, begin = 0.0, span[0], 0, perf_counter()

@@ -1,4 +1,4 @@
-"""Integration over a span by SciPy's steppers: outputs, events, breaks, limits; what goes wrong is a value.
+"""Integration over a span by steppers like SciPy's: outputs, events, breaks, limits; what goes wrong is a value.
 
 E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I (DOP853); II (Radau IIA, BDF).
 """

@@ -23,6 +23,8 @@ Stepper = Callable[..., Any]
 
 METHODS = ("DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA")
 ONE_STEP = ("DOP853", "RK45", "RK23", "Radau")
+#: relative, of a step
+LEAST_TOLERANCE = 1e-13
 #: so many states of a step are found one by one, further ones by a polynomial
 FEW = 8
 #: Chebyshev's points of the second kind in [0, 1] and their barycentric weights
@@ -31,9 +33,9 @@ WEIGHTS = np.where(np.arange(10) % 9, 1.0, 0.5) * (-1.0) ** np.arange(10)
 
 
 def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
-    """One of METHODS with its tolerances; relative ones below 1e-13 are out of reach of doubles."""
+    """One of METHODS with its tolerances; smaller relative ones are out of reach of doubles."""
     most = np.inf if max_step is None else max_step
-    return partial(getattr(scipy.integrate, method), rtol=max(rtol, 1e-13), atol=atol, max_step=most)
+    return partial(getattr(scipy.integrate, method), rtol=max(rtol, LEAST_TOLERANCE), atol=atol, max_step=most)
 
 
 def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[float], Array]:

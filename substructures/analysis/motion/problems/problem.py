@@ -8,14 +8,15 @@ from pathlib import Path
 from typing import Any
 
 from substructures.analysis.arguments import NumberOrExpression, Numbers, in_range, one_of, positive, whole
+from substructures.analysis.motion.integrators.compiled_steps import compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.integrators.progress import ProgressReport
-from substructures.analysis.motion.integrators.steppers import METHODS, Stepper, scipy_stepper
+from substructures.analysis.motion.integrators.steppers import METHODS, Stepper
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
-from substructures.quantities.states import with_input_defaults
+from substructures.quantities.numbers.states import with_input_defaults
 from substructures.tree.model import Model
 
 TAYLOR = "Taylor"
@@ -80,8 +81,9 @@ class Integrator:
         return self.method if isinstance(self.method, FixedStep) else None
 
     def stepper(self) -> Stepper:
-        """SciPy's, for all methods but Taylor's."""
-        return scipy_stepper(str(self.method), self.relative_tolerance, self.absolute_tolerance, self.max_step)
+        """SciPy's, for all methods but Taylor's; steps of explicit ones are machine code where the function is."""
+        tolerances = self.relative_tolerance, self.absolute_tolerance
+        return compiled_stepper(str(self.method), *tolerances, self.max_step)
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,0 +1,43 @@
+"""Many motions of one tree at once."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.models.numbers.analysis import Analysis, check_size
+from service.models.source import Source
+from service.schemas.analyses.ensembles import EnsembleRequest
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.problem import Integrator
+from substructures.ensembles.ensemble import Ensemble, simulate_ensemble
+from substructures.ensembles.sampled import with_samples
+from substructures.quantities.numbers.states import longest
+
+
+def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) -> Ensemble:
+    model = source.model
+    given = with_samples(model, request.samples, request.members())
+    states = not request.columns if request.states is None else request.states
+    times = len(OutputTimes(request.span, request.grid()).grid())
+    check_size(source, longest(given), len(request.columns) + 1 + 2 * model.dof * times * states)
+    integrator = Integrator(
+        request.method,
+        request.relative_tolerance,
+        request.absolute_tolerance,
+        request.max_step,
+        request.max_steps,
+        request.drift_limit,
+        report,
+        source.folder,
+    )
+    q = given.pop("q")
+    how: dict[str, Any] = {"columns": request.columns, "grid": request.grid(), "states": states}
+    return simulate_ensemble(source.sources, q, request.span, integrator=integrator, **how, **given)
+
+
+ANALYSES = {
+    "ensembles": Analysis(
+        EnsembleRequest, _ensemble, "Motions from many starts and with many parameters, each with its verdict"
+    ),
+}

@@ -1,0 +1,59 @@
+"""Orbits that come back, and how fast neighbours part."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from service.models.numbers.analysis import Analysis, check_size
+from service.models.requests import arguments
+from service.models.source import Source
+from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest
+from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.problem import Integrator
+from substructures.analysis.orbits.lyapunov import lyapunov_exponents
+from substructures.analysis.orbits.periodic import TIMES, Shooting, periodic_orbits
+from substructures.quantities.numbers.states import read_states
+
+STATE = ("qd", "inputs", "parameters")
+
+
+def _state(given: dict[str, Any]) -> dict[str, Any]:
+    return {name: given[name] for name in STATE if name in given}
+
+
+def _integrator(source: Source, request: PeriodicOrbitRequest | LyapunovRequest, report: ProgressReport) -> Integrator:
+    relative, absolute = request.relative_tolerance, request.absolute_tolerance
+    return Integrator(relative_tolerance=relative, absolute_tolerance=absolute, progress=report, folder=source.folder)
+
+
+def _orbits(source: Source, request: PeriodicOrbitRequest, report: ProgressReport) -> Any:
+    model = source.model
+    check_size(source, max(1, len(request.values)), 3 * model.dof * TIMES)
+    state = {name: getattr(request, name) for name in ("q", "qd")}
+    read = read_states(model, state, 1)
+    given = _state(arguments(request)) | {"qd": read.qd[0]}
+    shooting = Shooting(request.period, request.fixed, request.hold, request.turns)
+    family: dict[str, Any] = {"vary": request.vary, "values": request.values}
+    return periodic_orbits(
+        model, read.q[0], shooting, **given, **family, integrator=_integrator(source, request, report)
+    )
+
+
+def _exponents(source: Source, request: LyapunovRequest, report: ProgressReport) -> Any:
+    check_size(source, request.intervals, 4 * source.model.dof + 1)
+    integrator = _integrator(source, request, report)
+    given = _state(arguments(request))
+    times: dict[str, Any] = {"transient": request.transient or 0.0, "intervals": request.intervals}
+    return lyapunov_exponents(source.model, request.q, request.duration, **given, **times, integrator=integrator)
+
+
+ANALYSES = {
+    "periodic-orbits": Analysis(
+        PeriodicOrbitRequest, _orbits, "Motions that come back, with Floquet's multipliers and their stability"
+    ),
+    "lyapunov-exponents": Analysis(
+        LyapunovRequest,
+        _exponents,
+        "How fast neighbouring motions part: whether a motion is chaotic, and how sure",
+    ),
+}

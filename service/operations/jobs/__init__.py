@@ -1,0 +1,1 @@
+"""Submit jobs and uploads, watch them, read their results."""

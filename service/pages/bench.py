@@ -1,0 +1,207 @@
+"""The workbench of a tree: its outline, which is the truth, and a form for every step; each step is a new revision."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, get_args
+
+import orjson
+
+from service.pages.html import Content, Html, html, joined, link, table, tag
+from service.pages.layout import document
+from service.queries.trees import Tree
+from substructures.tree.document import Closure
+
+LOOPS = get_args(Closure.model_fields["type"].annotation)
+PLACEMENT = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
+SPRING = (("stiffness", "N/m"), ("damping", "N s/m"), ("length", "m"))
+#: quantities whose operations are compared with those of the revision before
+COUNTED = ("metric", "christoffel", "forces")
+
+
+@dataclass(frozen=True)
+class Bench:
+    """A revision, the one before it, and the newest; ``frames``: of the tree by instance, in order."""
+
+    tree: Tree
+    before: Tree | None
+    latest: int
+    frames: Mapping[str, Sequence[str]]
+
+    @property
+    def reference(self) -> str:
+        """With its revision."""
+        return f"{self.tree.name}@{self.tree.revision}"
+
+    def spec(self) -> dict[str, Any]:
+        """The stored document."""
+        found: dict[str, Any] = orjson.loads(self.tree.spec)
+        return found
+
+
+def bench_page(bench: Bench, view: Html) -> bytes:
+    """The bytes of the page; ``view``: where the tree is drawn."""
+    spec = bench.spec()
+    left = tag("div", view, _steps(bench), _changed(bench), class_="left")
+    forms = (_couple(bench), _spring(), _loop(), _publish(bench))
+    right = tag("div", _outline(bench, spec), tag("p", id="told", role="status"), *forms, _requests(), class_="right")
+    about = {"reference": bench.reference, "name": bench.tree.name, "kind": "trees", "spec": bench.tree.spec}
+    place = tag("div", left, right, _frames(bench), class_="place", id="place", data_bench=orjson.dumps(about).decode())
+    title = tag("h1", link(f"Tree {bench.reference}", f"/trees/{bench.reference}"), ": workbench")
+    needs = tag("noscript", tag("p", "Steps are taken by a script; without one the interface takes them, as below."))
+    return document(f"Workbench of {bench.reference} - substructures", title, needs, place)
+
+
+def _frames(bench: Bench) -> Html:
+    """The places that fields may name."""
+    names = ["world", *(f"{instance}.{frame}" for instance, some in bench.frames.items() for frame in some)]
+    return tag("datalist", [tag("option", value=name) for name in names], id="frames")
+
+
+def _steps(bench: Bench) -> Html:
+    """Undo, redo and comparison, over revisions."""
+    n, name = bench.tree.revision, bench.tree.name
+    parts: list[Content] = []
+    if bench.before is not None:
+        before = f"{name}@{bench.before.revision}"
+        parts += [tag("button", "undo", type="button", id="undo", data_of=before)]
+        parts += [link(f"what changed since @{bench.before.revision}", f"/trees/{before}/difference?to={name}@{n}")]
+        parts += [link("revision before", f"/trees/{before}/edit")]
+    if n < bench.latest:
+        parts += [link("newest revision", f"/trees/{name}@{bench.latest}/edit")]
+    return tag(
+        "p", tag("button", "redo", type="button", id="redo", hidden="hidden"), " ", joined(parts, " "), class_="bar"
+    )
+
+
+def _changed(bench: Bench) -> Html:
+    """What the last step changed: size, mass, operations; and how it was proved."""
+    now, before = orjson.loads(bench.tree.summary), bench.before
+    then = None if before is None else orjson.loads(before.summary)
+    rows = [
+        ("degrees of freedom", then and before and before.dof, bench.tree.dof),
+        ("mass in kg", then and before and before.mass, bench.tree.mass),
+    ]
+    rows += [(f"operations of {x}", then and then["operations"].get(x), now["operations"].get(x)) for x in COUNTED]
+    shown = [(name, _number(a), _number(b)) for name, a, b in rows]
+    certificate = now["certificate"]
+    seconds = ", ".join(f"{name} {1000 * float(x):.0f} ms" for name, x in certificate.get("seconds", {}).items())
+    warnings = [tag("li", each["message"], class_="warn") for each in certificate.get("warnings", ())]
+    head = ("", "before" if before is None else f"@{before.revision}", f"@{bench.tree.revision}")
+    proof = tag("p", "Proved: ", link("certificate", f"/trees/{bench.reference}#certificate"), f" ({seconds})")
+    return tag("section", table(head, shown), proof, tag("ul", warnings, class_="plain small"), id="changed")
+
+
+def _number(given: Any) -> str:
+    return "" if given is None else f"{given:,.4g}" if isinstance(given, float) else f"{given:,}"
+
+
+def _outline(bench: Bench, spec: Mapping[str, Any]) -> Html:
+    """What hangs on what, with a button for every place."""
+    rows = _instances(bench, spec["instances"], "world")
+    world = tag("li", _place("world", "world"), tag("ul", rows))
+    lists = [_list(spec.get(kind, ()), kind) for kind in ("loads", "closures")]
+    return tag("section", tag("h2", "Outline"), tag("ul", world, class_="outline"), *lists, id="outline")
+
+
+def _instances(bench: Bench, instances: Sequence[Mapping[str, Any]], host: str) -> list[Html]:
+    """The instances on a place of the world, or on places of another instance."""
+    found = []
+    for each in instances:
+        at = each.get("at", "world")
+        if (at if host == "world" else at.partition(".")[0]) != host:
+            continue
+        name = each["name"]
+        part = each.get("substructure", "").partition("@")[0] or each.get("definition", {}).get("name", "")
+        remove = tag("button", "remove", type="button", data_remove=f"couplings/{name}", aria_label=f"remove {name}")
+        places = [_place(f"{name}.{frame}", frame) for frame in bench.frames.get(name, ())]
+        below = _instances(bench, instances, name)
+        where = tag("span", f" at {at}", class_="quiet small")
+        head = html(tag("b", name), " ", link(part, f"/substructures/{part}"), where, " ", remove)
+        found.append(tag("li", head, tag("div", places, class_="frames"), tag("ul", below) if below else None))
+    return found
+
+
+def _place(at: str, shown: str) -> Html:
+    return tag("button", shown, type="button", data_frame=at, aria_label=f"take {at}", class_="frame")
+
+
+def _list(given: Sequence[Mapping[str, Any]], kind: str) -> Html | None:
+    """Loads or closures, each with a button that removes it."""
+    rows = [
+        tag(
+            "li",
+            tag("b", each["name"]),
+            f" {each['type']} ",
+            tag(
+                "button",
+                "remove",
+                type="button",
+                data_remove=f"{kind}/{each['name']}",
+                aria_label=f"remove {each['name']}",
+            ),
+        )
+        for each in given
+    ]
+    return tag("section", tag("h3", kind.capitalize()), tag("ul", rows, class_="plain")) if rows else None
+
+
+def _field(name: str, unit: str = "", **attributes: str | int | None) -> Html:
+    label = f"{name} " if not unit else f"{name} in {unit} "
+    return tag("label", label, tag("input", name=name, **{"autocomplete": "off", **attributes}))
+
+
+def _frame_field(name: str, value: str = "") -> Html:
+    return _field(name, list="frames", value=value, required="required", data_pick="1")
+
+
+def _form(title: str, action: str, *fields: Content) -> Html:
+    button = tag("button", title, type="submit")
+    return tag("details", tag("summary", title), tag("form", fields, button, data_action=action, class_="step"))
+
+
+def _couple(bench: Bench) -> Html:
+    numbers = [_field(name, unit, value="0", inputmode="decimal") for name, unit in PLACEMENT]
+    found = tag("datalist", id="parts")
+    form = tag(
+        "form",
+        _field("substructure", list="parts", required="required", placeholder="search as you type"),
+        found,
+        _field("name", required="required", pattern="[A-Za-z][A-Za-z0-9_]*"),
+        _frame_field("at", "world" if not bench.frames else ""),
+        tag("fieldset", tag("legend", "placement: numbers or expressions"), numbers),
+        tag("button", "Couple", type="submit"),
+        data_action="couplings",
+        class_="step",
+    )
+    return tag("details", tag("summary", "Couple a part"), form, open="open")
+
+
+def _spring() -> Html:
+    numbers = [_field(name, unit, value="0") for name, unit in SPRING]
+    return _form(
+        "Add a spring", "loads", _field("name", required="required"), _frame_field("from"), _frame_field("to"), numbers
+    )
+
+
+def _loop() -> Html:
+    kinds = tag("label", "type ", tag("select", [tag("option", each, value=each) for each in LOOPS], name="type"))
+    ends = _frame_field("from"), _frame_field("to", "world")
+    length = _field("length", "m", placeholder="of a rod")
+    return _form("Close a loop", "closures", _field("name", required="required"), kinds, ends, length)
+
+
+def _publish(bench: Bench) -> Html:
+    return _form(
+        "Publish as a part", "publish", _field("name", value=bench.tree.name, required="required"), _field("title")
+    )
+
+
+def _requests() -> Html:
+    """Filled in by the script with what the form that is being filled in would send."""
+    names = ("curl", "Python", "MATLAB")
+    texts = [
+        tag("details", tag("summary", each), tag("pre", tag("code", data_request=each), tabindex="0")) for each in names
+    ]
+    return tag("section", tag("h2", "As a request"), tag("div", texts, class_="copies"), id="requests")

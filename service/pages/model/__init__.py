@@ -1,0 +1,1 @@
+"""The pages of one part and of one tree: view, sliders, formulas with their numbers."""

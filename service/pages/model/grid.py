@@ -1,0 +1,103 @@
+"""The entries of a quantity as a grid of links: what vanishes by structure is hatched, numbers are put in by a script,
+or by the server where the pose was sent as a form."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from service.pages.html import Content, Html, tag
+from service.pages.model.shown import LETTERS, TITLES, Shown
+from substructures.array import Array
+
+#: from this many coordinates on cells are too small for numbers
+SMALL = 12
+ZERO = "zero in every pose; choose it to read why"
+
+
+def tabs(shown: Shown, chosen: str) -> Html:
+    """The quantities, as links."""
+    links = [
+        tag(
+            "a",
+            TITLES[name],
+            href=f"{shown.path}?tab={name}",
+            data_tab=name,
+            aria_current="page" if name == chosen else None,
+        )
+        for name in shown.tabs
+    ]
+    if shown.kind == "trees":
+        integrals = f"/v1/trees/{shown.reference}/first_integrals?format=mathml"
+        links += [tag("a", "first integrals", href=integrals), tag("a", "motion", href=f"{shown.path}/motion")]
+        links.append(tag("a", "workbench", href=f"{shown.path}/edit"))
+    return tag("nav", links, class_="tabs", aria_label="Quantities")
+
+
+def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Html:
+    """One quantity; of the Christoffel symbols and rotations those of one first index, ``slice_``."""
+    output = shown.outputs[quantity]
+    labels = shown.labels(quantity)
+    lead: tuple[int, ...] = ()
+    chooser = None
+    if len(output.shape) == 3:
+        slice_ = min(max(slice_, 0), output.shape[0] - 1)
+        lead, chooser = (slice_,), _chooser(shown, quantity, labels[0], slice_)
+    there = {index for index, _, _ in output.expanded() if index[: len(lead)] == lead}
+    is_matrix = len(output.shape) - len(lead) > 1
+    rows, columns = labels[len(lead)], labels[-1] if is_matrix else ("",)
+    is_small = len(columns) > SMALL
+    head = tag(
+        "tr", tag("td"), [tag("th", _short(name, is_small, k), scope="col", title=name) for k, name in _n(columns)]
+    )
+    width = len(columns)
+    body = []
+    for i, row in _n(rows):
+        cells = []
+        for j, _ in _n(columns):
+            index = (*lead, i, j) if is_matrix else (*lead, i)
+            at = ((lead[0] if lead else 0) * len(rows) + i) * width + j
+            value = None if numbers is None else float(numbers[index])
+            cells.append(_cell(shown, quantity, index, index in there, at, value))
+        body.append(tag("tr", tag("th", _short(row, is_small, i), scope="row", title=row), cells))
+    kind = "grid small" if is_small else "grid"
+    table = tag("table", tag("thead", head), tag("tbody", body), class_=kind, data_quantity=quantity)
+    return tag(
+        "div", chooser, tag("div", table, class_="scroll", tabindex="0", role="group", aria_label=quantity), id="grid"
+    )
+
+
+def _n(names: Sequence[str]) -> list[tuple[int, str]]:
+    return list(enumerate(names))
+
+
+def _short(name: str, is_small: bool, k: int) -> str:
+    return str(k + 1) if is_small else name
+
+
+def _chooser(shown: Shown, quantity: str, names: Sequence[str], chosen: int) -> Html:
+    links = [
+        tag(
+            "a",
+            name,
+            href=f"{shown.path}?tab={quantity}&slice={k}",
+            data_slice=k,
+            aria_current="page" if k == chosen else None,
+        )
+        for k, name in _n(names)
+    ]
+    letter = f"{LETTERS[quantity]} of "
+    return tag("p", tag("span", letter, class_="quiet"), links, class_="chooser")
+
+
+def _cell(shown: Shown, quantity: str, index: tuple[int, ...], is_there: bool, at: int, value: float | None) -> Html:
+    name = f"{quantity},{','.join(map(str, index))}"
+    address = f"{shown.path}?entry={name}{_pose(shown)}"
+    text: Content = "" if value is None or not is_there else f"{value:.3g}"
+    label = f"{LETTERS[quantity]} {' '.join(str(i + 1) for i in index)}"
+    attributes: Mapping[str, str | int | None] = {"data_at": at, "data_entry": name, "aria_label": label}
+    link = tag("a", text, href=address, title=None if is_there else ZERO, **attributes)
+    return tag("td", link, class_=None if is_there else "zero")
+
+
+def _pose(shown: Shown) -> str:
+    return f"&pose={','.join(map(repr, shown.pose))}" if shown.pose else ""

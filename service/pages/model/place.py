@@ -1,0 +1,115 @@
+"""The first screen of the page of a part or a tree: view, sliders, formulas; and what it is made of without scripts."""
+
+from __future__ import annotations
+
+import orjson
+
+from service.pages.html import Html, html, link, tag
+from service.pages.model.grid import grid, tabs
+from service.pages.model.shown import Shown, described
+from substructures.array import Array
+
+STEPS = 1000  # of a slider
+ENTRY = "Choose an entry to read its formula, its value here, and the bodies that it comes from."
+
+
+def place(shown: Shown, quantity: str, slice_: int, numbers: Array | None, entry: Html | None, picture: str) -> Html:
+    """The whole; ``picture``: the address of the drawing of the server, for those without WebGL."""
+    formulas = tag("div", tabs(shown, quantity), grid(shown, quantity, slice_, numbers), class_="formulas")
+    panel = entry or tag("section", tag("p", ENTRY, class_="quiet"), id="entry")
+    left = tag("div", view(shown, picture), sliders(shown), class_="left")
+    right = tag("div", formulas, panel, _parameters(shown), class_="right")
+    return tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
+
+
+def model_data(shown: Shown) -> str:
+    """What scripts begin with, as JSON."""
+    return orjson.dumps(described(shown)).decode()
+
+
+def view(shown: Shown, picture: str) -> Html:
+    """Where the model is drawn: the drawing of the server until there is another one."""
+    drawn = tag("img", src=picture, alt=f"Picture of {shown.reference}", width="640", height="480", id="picture")
+    return tag("div", drawn, id="view", class_="view")
+
+
+def sliders(shown: Shown) -> Html:
+    """The state, as a form that works without scripts, too."""
+    vector = shown.interface.vectors["q"]
+    rows = []
+    for k, (name, unit, (low, high)) in enumerate(zip(vector.names, vector.units, shown.ranges, strict=True)):
+        at = repr(shown.pose[k] if shown.pose else 0.0)
+        span = {"min": repr(low), "max": repr(high), "step": repr((high - low) / STEPS)}
+        rows.append(
+            tag(
+                "div",
+                tag("label", name, for_=f"q{k}", title=name),
+                tag("input", type="range", id=f"q{k}", value=at, data_q=k, **span),
+                tag(
+                    "input",
+                    type="number",
+                    name="q",
+                    value=at,
+                    step="any",
+                    data_number=k,
+                    aria_label=f"{name} in {unit}",
+                ),
+                tag("span", unit, class_="quiet unit"),
+                tag("input", type="number", value="0", step="any", data_rate=k, aria_label=f"rate of {name}"),
+                tag("span", f"{unit}/s", class_="quiet unit"),
+                class_="slider",
+            )
+        )
+    random = tag("button", "random", type="button", id="random", hidden="hidden")
+    send = tag("button", "Numbers in this pose", type="submit", id="send")
+    told = tag(
+        "p", tag("span", "eigenvalues of M: ", class_="quiet"), tag("output", id="eigenvalues"), class_="small told"
+    )
+    return tag(
+        "form", rows, tag("p", random, send), told if rows else None, method="get", action=shown.path, id="sliders"
+    )
+
+
+def _parameters(shown: Shown) -> Html:
+    vector = shown.interface.vectors["p"]
+    rows = [
+        tag(
+            "tr",
+            tag("th", tag("code", name), scope="row"),
+            tag("td", tag("input", type="number", step="any", data_p=k, value=_default(x), aria_label=name)),
+            tag("td", unit, class_="quiet"),
+            tag("td", tag("button", "reset", type="button", data_reset=k, hidden="hidden")),
+        )
+        for k, (name, unit, x) in enumerate(zip(vector.names, vector.units, vector.defaults, strict=True))
+    ]
+    if not rows:
+        return Html()
+    everything = tag("button", "reset all", type="button", id="reset", hidden="hidden")
+    summary = tag("summary", f"{len(rows)} parameters ", tag("span", id="changed", class_="quiet"))
+    table = tag("table", tag("tbody", rows, id="parameters"))
+    return tag("details", summary, everything, tag("div", table, class_="scroll"), class_="parameters")
+
+
+def _default(x: float) -> str:
+    return "" if x != x else repr(x)
+
+
+def requests(shown: Shown, address: str) -> Html:
+    """The same numbers as requests, to be copied."""
+    pose = list(shown.pose or (0.0,) * len(shown.coordinates))
+    body = orjson.dumps({"q": pose, "quantities": ["metric"]}).decode()
+    url = f"{address}/v1/trees/{shown.reference}/evaluations"
+    texts = {
+        "curl": f"curl -s {url} -H 'Content-Type: application/json' -d '{body}'",
+        "Python": "from substructures.client import Client\n\n"
+        f'with Client("{address}") as client:\n'
+        f'    print(client.evaluate("{shown.reference}", q={pose}, quantities=["metric"]))',
+        "MATLAB": f'webwrite("{url}", struct("q", {pose}, "quantities", {{{{"metric"}}}}), '
+        'weboptions("MediaType", "application/json"))',
+    }
+    each = [
+        tag("details", tag("summary", name), tag("pre", tag("code", text), tabindex="0"))
+        for name, text in texts.items()
+    ]
+    json = link("JSON", f"/v1/{shown.kind}/{shown.reference}")
+    return html(tag("h2", "As a request"), tag("p", json), tag("div", each, class_="copies", id="requests"))

@@ -1,0 +1,245 @@
+"""``/substructures/{ref}`` and ``/trees/{ref}``, and the fragments of these pages: one entry, one grid."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated
+
+import orjson
+from fastapi import APIRouter, Query, Request, Response
+
+from service.http.acting import in_time
+from service.http.requests import StoreOf, ViewerOf, needs
+from service.jobs.worker import Worker
+from service.messages.refusals import not_found
+from service.messages.viewer import Viewer
+from service.operations import catalogue, modules, pictures, trees
+from service.pages.account import PageRoute
+from service.pages.bench import Bench, bench_page
+from service.pages.details import part_page, tree_page
+from service.pages.html import Html, html
+from service.pages.layout import answer, document
+from service.pages.model.assets import scripted, with_scripts
+from service.pages.model.entry import panel
+from service.pages.model.grid import grid
+from service.pages.model.motion import motion_page
+from service.pages.model.place import place, requests, view
+from service.pages.model.shown import Shown, read_entry
+from service.pages.versions import SHOWN, revisions_section, uses_section, versions_section, withdrawn_section
+from service.queries import aliases, uses, versions
+from service.queries.catalogue import Version
+from service.queries.trees import Tree
+from service.store.store import Store
+from substructures.export import interface_of_model, interface_of_part
+from substructures.part.outputs import with_own_inertia
+from substructures.part.part import Part
+from substructures.tree.model import Model
+
+Text = Annotated[str, Query(max_length=50_000)]
+Poses = Annotated[str | None, Query(max_length=50_000)]
+Numbers = Annotated[list[str] | None, Query(alias="q", max_length=2_000)]
+Time = Annotated[str, Query(alias="t", max_length=40)]
+#: revisions that a newer one is like after undo, and as far as can be done again; read by scripts
+Like = Annotated[int, Query(alias="of", ge=0)]
+Newest = Annotated[int, Query(alias="top", ge=0)]
+Slice = Annotated[int, Query(alias="slice", ge=0, le=100_000)]
+ADVICE = "take it as code instead"
+
+router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
+
+
+@router.get("/substructures/{ref}")
+async def substructure(
+    ref: str,
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    pose: Poses = None,
+    q: Numbers = None,
+    tab: Text = "metric",
+    slice_: Slice = 0,
+    entry: Text = "",
+) -> Response:
+    """A part."""
+
+    def shown_page(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            version = catalogue.find(connection, viewer, ref)
+            names = aliases.aliases_of(connection, (version.name, version.version))[0]
+            part = store.required_part(connection, version.digest)
+            gone = uses.withdrawn_in_part(connection, viewer, version.digest)
+            all_of_it = versions.page_versions(connection, viewer, version.name, None, SHOWN + 1)
+            used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
+        shown = of_part(version, part, pose, q)
+        work = _place(shown, lambda: modules.of_version(store, version), worker, tab, slice_, entry, bool(q))
+        notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, shown.reference)]
+        return _answer(request, part_page(version, names, part, work, notes))
+
+    return await in_time(request, shown_page, ADVICE)
+
+
+@router.get("/trees/{ref}")
+async def tree(
+    ref: str,
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    pose: Poses = None,
+    q: Numbers = None,
+    tab: Text = "metric",
+    slice_: Slice = 0,
+    entry: Text = "",
+) -> Response:
+    """A revision of a tree, the latest for a bare name."""
+
+    def shown_page(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            found = trees.find(connection, viewer, ref)
+            model = store.model(connection, found)
+            gone = trees.withdrawn(connection, viewer, found)
+            all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
+        shown = of_tree(found, model, pose, q)
+        subject = partial(modules.of_revision, store, found, has_parts=True)
+        work = _place(shown, subject, worker, tab, slice_, entry, bool(q))
+        told = html(work, requests(shown, f"{request.url.scheme}://{request.headers['host']}"))
+        notes = withdrawn_section(gone), revisions_section(all_of_it)
+        return _answer(request, tree_page(found, model, told, notes))
+
+    return await in_time(request, shown_page, ADVICE)
+
+
+@router.get("/trees/{ref}/motion")
+def motion(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, pose: Poses = None, _t: Time = "") -> Response:
+    """Motions of a tree; the time that is shown is read by scripts."""
+    with store.database.read() as connection:
+        found = trees.find(connection, viewer, ref)
+        model = store.model(connection, found)
+    shown = of_tree(found, model, pose, None)
+    return _answer(request, motion_page(shown, _picture(shown)), "motion.js")
+
+
+@router.get("/trees/{ref}/edit")
+def workbench(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, _of: Like = 0, _top: Newest = 0
+) -> Response:
+    """What changes a tree, step by step; what was undone is read by scripts."""
+    with store.database.read() as connection:
+        found = trees.find(connection, viewer, ref)
+        model = store.model(connection, found)
+        latest = trees.find(connection, viewer, found.name).revision
+        number = found.revision - 1
+        before = trees.find(connection, viewer, f"{found.name}@{number}") if number else None
+    frames: dict[str, list[str]] = {}
+    for name in model.frames:
+        frames.setdefault(name.partition(".")[0], []).append(name.partition(".")[2])
+    shown = of_tree(found, model, None, None)
+    made = bench_page(Bench(found, before, latest, frames), view(shown, _picture(shown)))
+    return _answer(request, made, "workbench.js")
+
+
+@router.get("/{kind}/{ref}/entry")
+async def one_entry(
+    kind: str, ref: str, request: Request, store: StoreOf, viewer: ViewerOf, entry: Text, pose: Poses = None
+) -> Response:
+    """The panel of an entry alone."""
+
+    def fragment(worker: Worker) -> Response:
+        """In a thread."""
+        shown, subject = _found(kind, ref, store, viewer, pose)
+        return answer(request, document(shown.reference, _panel(shown, subject, worker, entry)))
+
+    return await in_time(request, fragment, ADVICE)
+
+
+@router.get("/{kind}/{ref}/grid")
+def one_grid(
+    kind: str, ref: str, request: Request, store: StoreOf, viewer: ViewerOf, tab: Text, slice_: Slice = 0
+) -> Response:
+    """The grid of a quantity alone."""
+    shown, _ = _found(kind, ref, store, viewer, None)
+    return answer(request, document(shown.reference, grid(shown, _tab(shown, tab), slice_, None)))
+
+
+def of_part(version: Version, part: Part, pose: str | None, q: list[str] | None) -> Shown:
+    """A part as it stands alone."""
+    return Shown(
+        "substructures",
+        f"{version.name}@{version.version}",
+        part.joints,
+        interface_of_part(part),
+        part.program.outputs,
+        lambda names: with_own_inertia(part, part.program.select(list(names))),
+        _pose(pose, q, part.joints),
+    )
+
+
+def of_tree(found: Tree, model: Model, pose: str | None, q: list[str] | None) -> Shown:
+    """A revision of a tree."""
+    reference, program = f"{found.name}@{found.revision}", model.program
+    interface = interface_of_model(model)
+    return Shown(
+        "trees", reference, model.joints, interface, program.outputs, lambda _: program, _pose(pose, q, model.joints)
+    )
+
+
+def _found(
+    kind: str, ref: str, store: Store, viewer: Viewer, pose: str | None
+) -> tuple[Shown, Callable[[], modules.Subject]]:
+    if kind not in ("trees", "substructures"):
+        raise not_found(f"there is nothing at '/{kind[:80]}'", "not-found")
+    with store.database.read() as connection:
+        if kind == "trees":
+            tree_found = trees.find(connection, viewer, ref)
+            model = store.model(connection, tree_found)
+            shown = of_tree(tree_found, model, pose, None)
+            return shown, lambda: modules.of_revision(store, tree_found, has_parts=True)
+        version = catalogue.find(connection, viewer, ref)
+        shown = of_part(version, store.required_part(connection, version.digest), pose, None)
+        return shown, lambda: modules.of_version(store, version)
+
+
+def _pose(pose: str | None, q: list[str] | None, joints: str) -> tuple[float, ...]:
+    return pictures.read_pose(",".join(q) if q else pose, joints) or ()
+
+
+def _tab(shown: Shown, wanted: str) -> str:
+    return wanted if wanted in shown.tabs else next(iter(shown.tabs), "")
+
+
+def _place(
+    shown: Shown,
+    subject: Callable[[], modules.Subject],
+    worker: Worker,
+    tab: str,
+    slice_: int,
+    entry: str,
+    with_numbers: bool,
+) -> Html:
+    if not shown.coordinates:
+        return Html()
+    quantity = _tab(shown, (read_entry(entry) or (tab,))[0])
+    numbers = shown.numbers(quantity) if with_numbers else None
+    chosen = _panel(shown, subject, worker, entry) if entry else None
+    return place(shown, quantity, slice_, numbers, chosen, _picture(shown))
+
+
+def _picture(shown: Shown) -> str:
+    drawn = f"?q={','.join(map(repr, shown.pose))}" if shown.pose else ""
+    return f"/v1/{shown.kind}/{shown.reference}/picture{drawn}"
+
+
+def _panel(shown: Shown, subject: Callable[[], modules.Subject], worker: Worker, entry: str) -> Html:
+    """Raises Refused 404 for what is no entry, TooLarge, TimeoutError."""
+    found = read_entry(entry)
+    if found is None or found[0] not in shown.tabs:
+        raise not_found(f"there is no entry '{entry[:80]}'; write for example metric,0,1", "unknown-formula")
+    of = subject()
+    told = orjson.loads(modules.entry(of, worker, *found))
+    return panel(shown, told, orjson.loads(modules.origins(of, worker)))
+
+
+def _answer(request: Request, page: bytes, script: str = "main.js") -> Response:
+    return with_scripts(answer(request, scripted(page, script)))

@@ -1,0 +1,25 @@
+// Parts of pages from the server, which escapes them by the code that writes the pages.
+
+/** The element with this id out of a page at an address, to be put into this one. */
+export function fragment(address, id) {
+    return new Promise((resolve, reject) => {
+        const request = new XMLHttpRequest();
+        request.open("GET", address);
+        request.responseType = "document";
+        request.addEventListener("load", () => {
+            const found = request.status === 200 ? request.response?.getElementById(id) : null;
+            if (found) resolve(document.importNode(found, true));
+            else reject(new Error(`${request.status || "no answer"}`));
+        });
+        request.addEventListener("error", () => reject(new Error("the connection is lost")));
+        request.send();
+    });
+}
+
+/** An element with attributes and children. */
+export function element(name, attributes = {}, ...children) {
+    const made = document.createElement(name);
+    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
+    made.append(...children);
+    return made;
+}

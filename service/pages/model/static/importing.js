@@ -1,0 +1,74 @@
+// A robot file: read, derived and drawn before anything of it is stored.
+import { element } from "./fragments.js";
+
+const FILE = { "Content-Type": "application/octet-stream" };
+const place = document.getElementById("import");
+const [input, cut] = ["file", "cut"].map((id) => document.getElementById(id));
+const tell = (...content) => place.replaceChildren(...content);
+
+/** The answer of the interface for the file. */
+async function sent(file, more) {
+    const given = { file: file.name.slice(0, 200), ...(cut.value.trim() ? { cut: cut.value.trim() } : {}), ...more };
+    const answer = await fetch(`/v1/imports?${new URLSearchParams(given)}`, { method: "POST", headers: FILE, body: file });
+    const told = await answer.json();
+    if (!answer.ok) throw Object.assign(new Error(told.detail), { faults: told.errors ?? [] });
+    return [answer.status, told];
+}
+
+function failed({ message, faults = [] }) {
+    const lines = faults.length ? faults.map((fault) => fault.message) : [message];
+    tell(element("p", { class: "warn" }, "This cannot be stored:"), element("ul", {}, ...lines.map((line) => element("li", {}, line))));
+}
+
+function remarks(rows) {
+    if (!rows.length) return element("p", {}, "Nothing was left out or changed.");
+    const lines = rows.map(({ line, place: where, level, message }) =>
+        element("tr", {}, ...[line || "", level, where, message].map((text) => element("td", {}, String(text)))));
+    const heads = ["line", "level", "place", "remark"].map((name) => element("th", { scope: "col" }, name));
+    const table = element("table", {}, element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...lines));
+    return element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "Remarks" }, table);
+}
+
+/** What would be stored, with a button that stores it. */
+async function preview(file) {
+    if (!file) return;
+    tell(element("p", { class: "quiet" }, `reading and deriving ${file.name} ...`));
+    const [, told] = await sent(file, { preview: "true" });
+    const { picture, dof, joints, mass, warnings } = told.preview;
+    const drawn = URL.createObjectURL(new Blob([picture], { type: "image/svg+xml" }));
+    const image = element("img", { src: drawn, alt: `Picture of ${file.name}`, width: "320", height: "240" });
+    image.addEventListener("load", () => URL.revokeObjectURL(drawn));
+    const name = element("input", { id: "name", value: (told.tree ?? told.definition).name, "aria-label": "Name", maxlength: "64" });
+    const button = element("button", { type: "button", id: "store" }, "Store");
+    button.addEventListener("click", () => {
+        button.disabled = true;
+        store(file, name.value.trim()).catch(failed);
+    });
+    const size = `${told.kind}: ${dof} dof ${joints}${mass === null ? "" : `, ${Number(mass.toPrecision(4))} kg`}`;
+    const words = warnings.map(({ message }) => element("li", { class: "warn" }, message));
+    const about = element("div", {}, element("p", {}, size), element("ul", {}, ...words),
+        element("p", {}, name, " ", button), element("p", { class: "quiet small" }, "Nothing is stored yet."));
+    tell(element("div", { class: "split" }, element("div", { class: "picture" }, image), about), remarks(told.report));
+}
+
+async function store(file, name) {
+    const [status, told] = await sent(file, { store: "true", ...(name ? { name } : {}) });
+    if (status === 202) return tell(element("p", {}, "It became ", element("a", { href: `/jobs/${told.id}` }, "a job"), "."));
+    const reference = `${told.stored.name}@${told.stored.version}`;
+    const address = `${told.tree ? "/trees/" : "/substructures/"}${reference}`;
+    return tell(element("p", {}, "Stored as ", element("a", { href: address }, reference), "."), remarks(told.report));
+}
+
+if (input) {
+    const chosen = () => preview(input.files[0]).catch(failed);
+    input.addEventListener("change", chosen);
+    cut.addEventListener("change", chosen);
+    addEventListener("dragover", (event) => event.preventDefault());
+    addEventListener("drop", (event) => {
+        event.preventDefault();
+        if (!event.dataTransfer.files.length) return;
+        input.files = event.dataTransfer.files;
+        place.scrollIntoView({ block: "center" });
+        chosen();
+    });
+}

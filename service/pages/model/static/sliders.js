@@ -1,0 +1,102 @@
+// Sliders and parameters: what the user changes becomes the state of the page, and the pose its address.
+
+export class Sliders {
+    /** changed() is called when a value has changed, rested() when none has for a while. */
+    constructor(state, ranges, changed, rested) {
+        Object.assign(this, { state, ranges, changed, rested });
+        this.form = document.getElementById("sliders");
+        this.ranged = [...this.form.querySelectorAll("[data-q]")];
+        this.numbers = [...this.form.querySelectorAll("[data-number]")];
+        this.numbers.forEach((input, k) => (state.q[k] = Number(input.value)));
+        this.form.addEventListener("input", (event) => this.moved(event.target));
+        this.form.addEventListener("submit", (event) => event.preventDefault());
+        document.getElementById("send").hidden = true;
+        this.random = document.getElementById("random");
+        this.random.hidden = false;
+        this.random.addEventListener("click", () => this.set(ranges.map(([low, high]) => low + (high - low) * Math.random())));
+    }
+
+    /** A button for every pose of the definitions. */
+    offer(poses) {
+        for (const [name, pose] of Object.entries(poses)) {
+            const button = Object.assign(document.createElement("button"), { type: "button", textContent: name });
+            button.dataset.pose = name;
+            button.addEventListener("click", () => this.set(pose));
+            this.random.before(button);
+        }
+    }
+
+    /** The pose and the rates that the fields show. */
+    given() {
+        const rates = [...this.form.querySelectorAll("[data-rate]")];
+        return [this.numbers, rates].map((inputs) => inputs.map(({ valueAsNumber: x }) => (Number.isFinite(x) ? x : 0)));
+    }
+
+    moved(input) {
+        const { q, number, rate } = input.dataset;
+        const value = input.valueAsNumber;
+        if (!Number.isFinite(value)) return;
+        if (rate !== undefined) this.state.qd[Number(rate)] = value;
+        const k = Number(q ?? number);
+        if (rate === undefined) {
+            this.state.q[k] = value;
+            if (q === undefined) this.ranged[k].value = String(value);
+            else this.numbers[k].value = input.value;
+        }
+        this.tell();
+    }
+
+    set(pose) {
+        pose.forEach((value, k) => {
+            this.state.q[k] = value;
+            this.ranged[k].value = String(value);
+            this.numbers[k].value = String(Number(value.toPrecision(6)));
+            this.state.q[k] = Number(this.numbers[k].value);
+        });
+        this.tell();
+    }
+
+    tell() {
+        this.changed();
+        clearTimeout(this.waiting);
+        this.waiting = setTimeout(() => {
+            const address = new URL(location.href);
+            address.searchParams.delete("q");
+            address.searchParams.set("pose", [...this.state.q].join(","));
+            history.replaceState(null, "", address);
+            this.rested();
+        }, 150);
+    }
+}
+
+/** The table of parameters: those that differ from their defaults come first. */
+export function parameters(state, changed) {
+    const body = document.getElementById("parameters");
+    if (!body) return;
+    const rows = [...body.rows];
+    const all = document.getElementById("reset");
+    const inputs = rows.map((row) => row.querySelector("[data-p]"));
+    const update = () => {
+        const differ = inputs.map((input) => input.value !== input.defaultValue);
+        inputs.forEach((input, k) => {
+            state.p[k] = input.valueAsNumber;
+            rows[k].querySelector("[data-reset]").hidden = !differ[k];
+        });
+        body.append(...rows.filter((_, k) => differ[k]), ...rows.filter((_, k) => !differ[k]));
+        const count = differ.filter(Boolean).length;
+        all.hidden = count === 0;
+        document.getElementById("changed").textContent = count ? `${count} changed` : "";
+        changed();
+    };
+    const reset = (input) => (input.value = input.defaultValue);
+    body.addEventListener("change", update);
+    body.addEventListener("click", ({ target }) => {
+        if (target.dataset.reset === undefined) return;
+        reset(inputs[Number(target.dataset.reset)]);
+        update();
+    });
+    all.addEventListener("click", () => {
+        inputs.forEach(reset);
+        update();
+    });
+}

@@ -1,0 +1,19 @@
+// Loads what draws in three dimensions, after the page can be used.
+
+/** The view in three dimensions, null where there is no WebGL: the picture of the server stays. */
+export async function shown(kind, reference, sliders) {
+    try {
+        const answer = await fetch(`/v1/${kind}/${reference}/scene`);
+        if (!answer.ok) return null;
+        const scene = await answer.json();
+        const { View } = await import("./view.js");
+        const view = new View(document.getElementById("view"), scene);
+        sliders.offer(scene.poses);
+        if (!new URL(location.href).searchParams.has("pose")) {
+            sliders.set(scene.poses.home);
+        }
+        return view;
+    } catch {
+        return null;
+    }
+}

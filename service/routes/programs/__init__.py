@@ -1,0 +1,1 @@
+"""Programs that leave or run: exports, kernels, and what pages in a browser compute with."""

@@ -1,0 +1,39 @@
+"""Periodic orbits and Lyapunov exponents as they are asked for; SI units, angles in rad."""
+
+from __future__ import annotations
+
+from typing import Annotated
+
+from pydantic import Field
+
+from service.schemas.analyses.motions import Seconds, StateRequest
+from service.schemas.measured import OF_VARIED
+from substructures.documents.fields import Real
+
+Relative = Annotated[Real, Field(ge=1e-14, le=1e-2)]
+Absolute = Annotated[Real, Field(ge=0, le=1e-2)]
+
+
+class PeriodicOrbitRequest(StateRequest):
+    """A state near an orbit and about its period; inputs are numbers, tables or expressions in t, of which it is a
+    period.
+    """
+
+    period: Seconds = Field(description="s; a guess, where no input depends on the time")
+    fixed: bool = Field(False, description="whether the period stays as it is")
+    hold: tuple[str, ...] = Field((), max_length=500, description="coordinates and velocities that stay as given")
+    turns: dict[str, int] = Field({}, description="whole turns of revolute coordinates in a period")
+    vary: str | None = Field(None, description="of a family: a parameter, or a coordinate or velocity that is held")
+    values: Annotated[tuple[Real, ...], OF_VARIED] = Field((), max_length=1000, description="of `vary`")
+    relative_tolerance: Relative = 1e-11
+    absolute_tolerance: Absolute = 1e-13
+
+
+class LyapunovRequest(StateRequest):
+    """A motion, and how long it is followed."""
+
+    duration: Seconds = Field(description="s")
+    transient: Annotated[Seconds | None, Field(description="s before that, which do not count")] = None
+    intervals: Annotated[int, Field(ge=20, le=1_000_000)] = Field(200, description="between two factorisations")
+    relative_tolerance: Relative = 1e-10
+    absolute_tolerance: Absolute = 1e-12

@@ -1,0 +1,123 @@
+"""Explicit methods whose steps are machine code around the kernels, with the interface of SciPy's integrators."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import cache, cached_property
+from typing import Any, Literal, Protocol, runtime_checkable
+
+import numpy as np
+import scipy
+
+from substructures.analysis.motion.integrators.steppers import LEAST_TOLERANCE, Stepper, scipy_stepper
+from substructures.array import Array
+from substructures.compile.motion import FAILED, FINISHED, HEAD, RUNNING, CompiledRates, CompiledRun, Tableau
+
+#: steps that are tried in one call of machine code: a few milliseconds, then whoever watches the progress is told
+MOST = 256
+EXPLICIT = ("DOP853", "RK45", "RK23")
+TOO_SMALL = "Required step size is less than spacing between numbers."
+
+
+@runtime_checkable
+class Compiled(Protocol):
+    """A right-hand side that may be calls of kernels."""
+
+    def compiled(self) -> CompiledRates | None:
+        """As it is now; None where it is not."""
+
+
+@cache
+def tableau(method: str) -> Tableau:
+    """The coefficients of one of EXPLICIT, which are SciPy's."""
+    made: Any = getattr(scipy.integrate, method)
+    e = getattr(made, "E5", None)
+    e, e3 = (made.E, np.zeros(made.n_stages + 1)) if e is None else (e, made.E3)
+    rows = tuple(map(tuple, np.asarray(made.A).tolist()))
+    b, c, e, e3 = (tuple(np.asarray(x).tolist()) for x in (made.B, made.C, e, e3))
+    return Tableau(rows, b, c, e, e3, -1 / (made.error_estimator_order + 1))
+
+
+def rates_of(f: Any) -> CompiledRates | None:
+    """The calls of kernels that a function consists of; None where it does not."""
+    return f.compiled() if isinstance(f, Compiled) else None
+
+
+def compiled_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
+    """The same as scipy_stepper, with machine code where an explicit method has a right-hand side of kernels."""
+    plain = scipy_stepper(method, rtol, atol, max_step)
+
+    def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
+        """A stepper of f from x at start to end."""
+        first, rates = plain(f, start, x, end, **first_step), rates_of(f)
+        if rates is None or end <= start:
+            return first
+        limits = (max(rtol, LEAST_TOLERANCE), atol), np.inf if max_step is None else max_step
+        return CompiledStepper(first, end, lambda most: CompiledRun(tableau(method), rates, *limits, most))
+
+    return make if method in EXPLICIT else plain
+
+
+class CompiledStepper:
+    """One step after the other, of which many are made at a time; the attributes are those of
+    scipy.integrate.OdeSolver.
+    """
+
+    def __init__(self, first: Any, end: float, run: Callable[[int], CompiledRun]) -> None:
+        """``first``: SciPy's at the start, which chooses the first step; ``run``: of so many steps in a call."""
+        self.fun, self.nfev = first.fun, first.nfev
+        self._before = first.nfev - 1
+        self.t, self.t_old = float(first.t), float(first.t)
+        self.y: Array = np.array(first.y)
+        self.y_old = self.y
+        self.status: Literal["running", "finished", "failed"] = "running"
+        self._make, self._run = run, run(MOST)
+        self._run.begin(self.t, self.y, end, float(first.h_abs))
+        self._made: Array = np.zeros((0, HEAD + len(self.y)))
+        self._next, self._tried = 0, 1
+
+    def step(self) -> str | None:
+        """Advance by one step; a message when that failed."""
+        if self._next == len(self._made) and not self._more():
+            self.status = "failed"
+            return TOO_SMALL
+        row = self._made[self._next]
+        self._next += 1
+        self.t_old, self.y_old = self.t, self.y
+        self.t, self.y, self.nfev = float(row[0]), row[HEAD:], self._before + int(row[1])
+        if self._next == len(self._made) and self._run.status == FINISHED:
+            self.status = "finished"
+        return None
+
+    def _more(self) -> bool:
+        """Further steps: more and more of them, as the first ones may end at a corner."""
+        self._made, self._next = self._made[:0], 0
+        while not len(self._made) and self._run.status == RUNNING:
+            self._made = self._run.advance(self._tried).copy()
+            self._tried = min(2 * self._tried, MOST)
+        return bool(len(self._made))
+
+    @cached_property
+    def _short(self) -> CompiledRun:
+        """For steps within the last one."""
+        return self._make(1)
+
+    def dense_output(self) -> Callable[[float], Array]:
+        """States within the last step."""
+        return self._at
+
+    def _at(self, t: float) -> Array:
+        """The state at a time within the last step, by a shorter step from its start, which is as accurate.
+
+        Raises ArithmeticError where the method fails.
+        """
+        if t <= self.t_old:
+            return self.y_old.copy()
+        self._short.begin(self.t_old, self.y_old, t, t - self.t_old)
+        while self._short.status == RUNNING:
+            self._short.advance()
+        self._before += self._short.evaluations
+        self.nfev += self._short.evaluations
+        if self._short.status == FAILED:
+            raise ArithmeticError(TOO_SMALL)
+        return self._short.state

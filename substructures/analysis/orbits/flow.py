@@ -1,0 +1,66 @@
+"""The flow of a tree and of its linear neighbourhood: x' = f(t, x), S' = f_x S, x = (q, q')."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.equations.perturbation import require_smooth
+from substructures.analysis.motion.conditions import state_names
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
+from substructures.analysis.motion.parameter_sensitivity import Variation, require_plain, variational
+from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.simulation import tree_conditions
+from substructures.array import Array
+
+
+class EndsEarlyError(ArithmeticError):
+    """A motion does not come to its end, and why."""
+
+
+class Flow:
+    """``start`` (2n,); ``is_forced``: inputs depend on the time. Raises InvalidInput, MissingValue as sensitivities."""
+
+    def __init__(self, problem: MotionProblem) -> None:
+        require_smooth(problem.model)
+        self.conditions, self.choice = tree_conditions(problem), problem.integrator
+        require_plain(self.conditions, self.choice)
+        self.model, self.n = problem.model, problem.model.dof
+        self._f = Variation(self.conditions, (), True, self.choice.folder)
+        self.start = self.conditions.start
+        symbols = (*self.conditions.expressions.symbols, *variational(self.model, ()).symbols)
+        self.is_forced = bool(self.conditions.curves) or any(symbol.kind == "time" for symbol in symbols)
+
+    def rate(self, t: float, x: Array) -> Array:
+        """x' (2n,) at t."""
+        rows = np.zeros((self._f.columns + 1, 2 * self.n))
+        rows[0] = x
+        found: Array = self._f(t, rows.ravel())[: 2 * self.n]
+        return found
+
+    def move(self, x: Array, directions: Array, span: tuple[float, float], times: Array) -> tuple[Array, Array]:
+        """States (K, 2n) at the times, and S (K, 2n, 2n) with the ``directions`` (2n, 2n) as columns at the start.
+
+        Raises EndsEarlyError.
+        """
+        start = np.vstack([x, directions.T]).ravel()
+        settings = IntegratorSettings(self.choice.stepper(), self.choice.max_steps)
+        breaks = self.conditions.breaks(span)
+        motion = integrate(self._f, start, span, times, settings, breaks=breaks, enter=self._f.inputs.enter)
+        if motion.status != "finished":
+            raise EndsEarlyError(motion.message)
+        rows = np.array(motion.x).reshape(len(times), -1, 2 * self.n)
+        return rows[:, 0], np.swapaxes(rows[:, 1:], 1, 2)
+
+    def divergence(self, t: Array, x: Array) -> Array:
+        """tr f_x (K,), the rate at which volumes of the state space grow, at times (K,) and states (K, 2n)."""
+        n, names = self.n, state_names(self.model)
+        kernel = program_kernel(variational(self.model, ()))
+        # d q''^a / d q'^a, a = 1 ... n
+        seeds = np.tile(np.eye(2 * n)[n:], (len(t), 1))
+        values = self.conditions.values | {"t": np.repeat(t, n)}
+        values |= {name: np.repeat(v, n) for name, v in self.conditions.inputs_at(t, x).items()}
+        columns = [(names, np.repeat(x, n, axis=0)), ([f"d.{name}" for name in names], seeds)]
+        slopes = kernel.evaluate(values, ["variation"], columns=columns)["variation"].reshape(len(t), n, n)
+        found: Array = np.einsum("kaa->k", slopes)
+        return found

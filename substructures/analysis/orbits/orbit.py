@@ -1,0 +1,90 @@
+"""What is known of a periodic orbit, and what its multipliers say of it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.verdict import Check, verdict
+from substructures.array import Array
+
+Stability = Literal["stable", "unstable", "neutral", "unknown"]
+#: |multiplier| - 1 that says something: multipliers of a double eigenvalue 1 are only known to the root of their errors
+NOISE = 1e-4
+
+
+@dataclass(frozen=True)
+class Orbit:
+    """``q``, ``qd`` (n,) [rad, m; per s] on the orbit, its ``period`` [s], the ``multipliers`` (2n,), the largest one
+    first, and Floquet's ``exponents`` log(multiplier)/period [1/s].
+
+    ``stability`` of the orbit, with its ``reason``: asymptotically stable, unstable, or neutral, when multipliers are
+    on the unit circle and linear equations say no more. ``trajectory``: the motion over a period; ``value``: of what
+    varies along a family. ``status`` is ``failed`` where no orbit was found, with a ``message``.
+    """
+
+    q: Array
+    qd: Array
+    period: float
+    multipliers: Array
+    exponents: Array
+    stability: Stability
+    reason: str
+    status: Literal["finished", "failed"]
+    message: str
+    iterations: int
+    checks: tuple[Check, ...]
+    trajectory: Trajectory
+    value: float | None = None
+
+    @property
+    def is_right(self) -> bool | None:
+        """Whether all checks hold; None where no orbit was found."""
+        return verdict(self.checks, self.status == "finished")
+
+
+@dataclass(frozen=True)
+class Family:
+    """``found``: the orbits, each from the one before; ``coordinates``; ``vary``: what varies."""
+
+    coordinates: tuple[str, ...]
+    vary: str | None
+    found: tuple[Orbit, ...]
+
+    @property
+    def is_right(self) -> bool | None:
+        """Whether all that were found are; None where any was not."""
+        rights = [orbit.is_right for orbit in self.found]
+        return False if False in rights else None if None in rights else True
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """What is looked for. ``period`` [s]: a guess, of forced motions the period; ``is_fixed``: it stays as it is;
+    ``hold``: components of the state (``arm.q1``, ``arm.q1'``) that stay as they are; ``turns``: whole turns that
+    revolute coordinates make in a period.
+    """
+
+    period: float
+    is_fixed: bool = False
+    hold: tuple[str, ...] = ()
+    turns: Mapping[str, int] | None = None
+
+
+def stability(multipliers: Array, is_free: bool) -> tuple[Stability, str]:
+    """What the multipliers say of an orbit, and why; ``is_free``: one is 1, along the motion."""
+    sizes = np.abs(multipliers)
+    if sizes.max(initial=0) > 1 + NOISE:
+        return "unstable", f"a multiplier has the modulus {sizes.max():.6g}"
+    rest = np.sort(np.abs(multipliers - 1)) if is_free else np.array([])
+    others = np.delete(sizes, np.argmin(np.abs(multipliers - 1))) if is_free else sizes
+    if is_free and rest[0] > 100 * NOISE:
+        return "unknown", "no multiplier is 1, which the one along a motion has to be"
+    if others.max(initial=0) < 1 - NOISE:
+        return "stable", f"all multipliers{' but that along the motion' if is_free else ''} are within the unit circle"
+    count = int((others >= 1 - NOISE).sum())
+    return "neutral", f"{count} multipliers{' beside that along the motion' if is_free else ''} are on the unit circle"

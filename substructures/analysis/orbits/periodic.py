@@ -1,0 +1,243 @@
+"""Periodic orbits: a state that the motion comes back to, by Newton's method on the return map (shooting).
+
+F(x, T) = x(T; x) - x = 0 with F_x = M - 1, F_T = f, M the monodromy matrix, whose eigenvalues are the multipliers
+(R. Seydel, Practical Bifurcation and Stability Analysis, 3rd ed. 2010, chapters 7.1 to 7.6). Steps are the shortest
+that solve the linear equations, orthogonal to the motion where its phase is free.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.arguments import positive
+from substructures.analysis.motion.conditions import state_names
+from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.problems.output_times import OutputTimes
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.orbits.flow import EndsEarlyError, Flow
+from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stability
+from substructures.analysis.verdict import About, Check
+from substructures.array import Array
+from substructures.documents import escape
+from substructures.errors import Fault, InvalidArgument, among
+from substructures.tree.model import Model
+
+DEFAULT = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-13)
+#: times of an orbit in the result
+TIMES = 101
+#: relative, of the return to the start
+CLOSED = 1e-9
+ITERATIONS = 40
+#: no step changes the state by more than this part of its size
+LONGEST = 0.2
+#: of the period that was given: what is shorter is no orbit but a place where nothing moves
+SHORTEST = 0.1
+#: what moves less in a period at its first rate, relative to the size of the state, rests
+LEAST = 1e-6
+#: steps of differences, relative, and what may be between them and the derivatives, relative to the square of those
+DIFFERENCE, AGREE, RETURN = 1e-4, 1e-3, 1e-7
+
+
+def periodic_orbits(
+    model: Model,
+    q: StateVector | None,
+    shooting: Shooting,
+    *,
+    qd: StateVector | None = None,
+    inputs: Mapping[str, Signal] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    vary: str | None = None,
+    values: Sequence[float] = (),
+    integrator: Integrator = DEFAULT,
+) -> Family:
+    """Orbits of a tree without closures near ``q``, ``qd``: one, or one for each of the ``values`` of ``vary``, a
+    parameter or a component of the state that is held there.
+
+    ``inputs``: numbers, tables or expressions in t alone; then the period is given. Raises InvalidInput (pointers start
+    with names of arguments) and MissingValue.
+    """
+    given = dict(parameters or {})
+    start = Start(q, qd, given, inputs or {})
+    problem = MotionProblem(
+        model=model, start=start, times=OutputTimes((0.0, positive(shooting.period, "period"))), integrator=integrator
+    )
+    names = state_names(model)
+    _check(model, shooting, vary, names)
+    if vary is None:
+        return Family(model.coordinates, None, (_Search(problem, shooting).run(),))
+    return Family(model.coordinates, vary, tuple(_family(problem, shooting, vary, values)))
+
+
+def _family(problem: MotionProblem, shooting: Shooting, vary: str, values: Sequence[float]) -> Iterator[Orbit]:
+    """The orbits for all values, each from the one before."""
+    names, start = state_names(problem.model), problem.start
+    for value in values:
+        if vary in names:
+            x = _with(problem.model, start, names.index(vary), value)
+            own = replace(shooting, hold=tuple(dict.fromkeys((*shooting.hold, vary))))
+        else:
+            x, own = replace(start, parameters={**start.parameters, vary: value}), shooting
+        orbit = replace(_Search(replace(problem, start=x), own).run(), value=value)
+        if orbit.status == "finished":
+            start, shooting = replace(start, q=orbit.q, qd=orbit.qd), replace(shooting, period=orbit.period)
+        yield orbit
+
+
+def _check(model: Model, shooting: Shooting, vary: str | None, names: Sequence[str]) -> None:
+    faults = [
+        Fault(f"/hold/{k}", "unknown-name", f"there is no coordinate or velocity '{name[:80]}'{among(name, names)}")
+        for k, name in enumerate(shooting.hold)
+        if name not in names
+    ]
+    kinds = dict(zip(model.coordinates, model.joints, strict=True))
+    for name in shooting.turns or {}:
+        if kinds.get(name) != "R":
+            message = f"'{name[:80]}' is no coordinate of a revolute joint"
+            faults.append(Fault(f"/turns/{escape(name)}", "unknown-coordinate", message))
+    if vary is not None and vary not in (*names, *model.parameters):
+        message = (
+            f"there is no parameter, coordinate or velocity '{vary[:80]}'{among(vary, [*model.parameters, *names])}"
+        )
+        faults.append(Fault("/vary", "unknown-name", message))
+    if faults:
+        raise InvalidArgument(faults)
+
+
+def _with(model: Model, start: Start, place: int, value: float) -> Start:
+    n = model.dof
+    zero = np.zeros(n)
+    q, qd = (np.array(x if isinstance(x, np.ndarray) else zero, dtype=np.float64) for x in (start.q, start.qd))
+    (q if place < n else qd)[place % n] = value
+    return replace(start, q=q, qd=qd)
+
+
+class _Search:
+    def __init__(self, problem: MotionProblem, shooting: Shooting) -> None:
+        self.problem, self.shooting, self.flow = problem, shooting, Flow(problem)
+        n, names = self.flow.n, state_names(problem.model)
+        self.held = [names.index(name) for name in shooting.hold]
+        self.is_fixed = shooting.is_fixed or self.flow.is_forced
+        self.turned = np.zeros(2 * n)
+        for name, turns in (shooting.turns or {}).items():
+            self.turned[problem.model.coordinates.index(name)] = 2 * np.pi * turns
+
+    def run(self) -> Orbit:
+        """The orbit, or how far the search came."""
+        x, period, best = self.flow.start.copy(), self.shooting.period, np.inf
+        for k in range(ITERATIONS):
+            try:
+                step, size = self._step(x, period)
+            except EndsEarlyError as error:
+                return self._orbit(x, period, f"a motion on the way has no end: {error}", k)
+            if size <= CLOSED or best <= size <= 1e3 * CLOSED:
+                return self._orbit(x, period, self._rest(x, period), k)
+            best = min(best, size)
+            largest = max(np.abs(step[:-1]).max() / (1 + np.abs(x).max()), abs(step[-1]) / period)
+            step *= min(1.0, LONGEST / largest) if largest > 0 else 1.0
+            x, period = x + step[:-1], period + float(step[-1])
+            if period < SHORTEST * self.shooting.period:
+                why = f"the search comes to a period of {period:.3g} s, where there is nothing but rest"
+                return self._orbit(x, period, why, k)
+        why = f"after {ITERATIONS} steps of Newton's method the motion does not come back: choose another start"
+        return self._orbit(x, period, why, ITERATIONS)
+
+    def _rest(self, x: Array, period: float) -> str:
+        """Why this is no orbit: nothing moves."""
+        moved = float(np.abs(self.flow.rate(0.0, x)).max(initial=0)) * period
+        if self.flow.is_forced or moved > LEAST * (1 + np.abs(x).max(initial=0)):
+            return ""
+        return "the search comes to rest at an equilibrium: hold what makes the orbit large, or choose another start"
+
+    def _step(self, x: Array, period: float) -> tuple[Array, float]:
+        """Newton's step of (x, T), and how far the motion is from where it began, relative to its size."""
+        n, flow = self.flow.n, self.flow
+        states, slopes = flow.move(x, np.eye(2 * n), (0.0, period), np.array([0.0, period]))
+        end, monodromy = states[-1], slopes[-1]
+        gap = end - x - self.turned
+        rows = np.column_stack([monodromy - np.eye(2 * n), flow.rate(period, end)])
+        right = -gap
+        if not self.is_fixed and not self.held:  # no step along the motion
+            rows, right = np.vstack([rows, np.append(flow.rate(0.0, x), 0.0)]), np.append(right, 0.0)
+        kept = {*self.held, *([2 * n] if self.is_fixed else [])}
+        free = [k for k in range(2 * n + 1) if k not in kept]
+        step = np.zeros(2 * n + 1)
+        step[free] = np.linalg.lstsq(rows[:, free], right, rcond=1e-9)[0]
+        return step, float(np.abs(gap).max() / (1 + np.abs(x).max()))
+
+    def _orbit(self, x: Array, period: float, message: str, iterations: int) -> Orbit:
+        n, start = self.flow.n, self.problem.start
+        outputs = SensitivityOutputs(of_start=True, count=TIMES)
+        motion = sensitivities(
+            self.problem.model,
+            x[:n],
+            (0.0, period),
+            qd=x[n:],
+            inputs=start.inputs,
+            parameters=start.parameters,
+            integrator=self.problem.integrator,
+            outputs=outputs,
+        )
+        if motion.status != "finished":
+            message = message or motion.message
+        monodromy = motion.series["d.start"][-1]
+        multipliers = np.linalg.eigvals(monodromy)
+        multipliers = multipliers[np.argsort(-np.abs(multipliers), kind="stable")].astype(complex)
+        with np.errstate(divide="ignore", invalid="ignore"):
+            exponents = np.log(multipliers) / period
+        told: tuple[Any, str] = ("unknown", "no orbit was found")
+        checks: tuple[Check, ...] = motion.checks
+        if not message:
+            told = stability(multipliers, not self.flow.is_forced)
+            checks = (*checks, *self._checks(x, period, motion, monodromy))
+        without = {name: s for name, s in motion.series.items() if name != "d.start"}
+        return Orbit(
+            x[:n],
+            x[n:],
+            period,
+            multipliers,
+            exponents,
+            *told,
+            "failed" if message else "finished",
+            message,
+            iterations,
+            checks,
+            replace(motion, series=without, checks=()),
+        )
+
+    def _checks(self, x: Array, period: float, motion: Trajectory, monodromy: Array) -> list[Check]:
+        """The return, the multipliers' product, and the derivatives of the return map against differences."""
+        last, states = np.array([period]), np.column_stack([motion.q, motion.qd])
+        gap = np.array([np.abs(states[-1] - x - self.turned).max()])
+        about: About = ("return", "zero", "after a period the state is the first one", "")
+        found = [Check.of(about, gap, last, 1 + float(np.abs(x).max()), RETURN)]
+        # det M = exp(integral of tr f_x); the trapezoidal rule of a periodic function
+        expected = float(np.exp(np.trapezoid(self.flow.divergence(motion.t, states), motion.t)))
+        sizes = np.abs(np.linalg.eigvals(monodromy))
+        reason = "the product of the multipliers is exp of the integral of the divergence of the flow"
+        scale = max(expected, 1e-3 * float(np.prod(np.maximum(1.0, sizes))))
+        gap = np.array([np.linalg.det(monodromy) - expected])
+        found.append(Check.of(("product", "accurate", reason, ""), gap, last, scale, AGREE))
+        reason = "the derivative of the return map is what differences of motions give"
+        gap = np.array([np.abs(self._differences(x, period) - monodromy).max()])
+        scale = max(1.0, float(np.abs(monodromy).max())) ** 2
+        found.append(Check.of(("return-map", "accurate", reason, ""), gap, last, scale, AGREE))
+        return found
+
+    def _differences(self, x: Array, period: float) -> Array:
+        """dx(T)/dx by central differences."""
+        one, ends = np.eye(len(x)), np.array([0.0, period])
+        columns = []
+        for k, h in enumerate(DIFFERENCE * np.maximum(1e-2, np.abs(x))):
+            above, below = (self.flow.move(x + s * h * one[k], one, (0.0, period), ends)[0][-1] for s in (1, -1))
+            columns.append((above - below) / (2 * h))
+        return np.array(columns).T
+
+
+__all__ = ["Family", "Orbit", "Shooting", "periodic_orbits", "stability"]

@@ -1,0 +1,73 @@
+"""A linearised tree as a linear system x' = A x + B u: its poles, and which modes inputs reach and outputs see."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import scipy
+
+from substructures.analysis.arguments import NumberOrExpression
+from substructures.analysis.given import StateArray
+from substructures.analysis.stability.linearisation_result import Linearisation
+from substructures.analysis.stability.linearise import linearise
+from substructures.array import Array, ComplexArray
+from substructures.errors import InvalidArgument
+from substructures.tree.model import Model
+
+#: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
+LOST, SURE = 1e-10, 1e-7
+
+
+@dataclass(frozen=True)
+class Reach:
+    """How far a mode is from what inputs do not move, or outputs do not see: ``eigenvalue`` [1/s], ``distance`` the
+    least singular value of (A - s, B), or of (A - s, C), states and inputs scaled, relative to its largest.
+    """
+
+    eigenvalue: complex
+    distance: float
+
+
+def linear_system(
+    model: Model, q: StateArray, point: Mapping[str, Any], outputs: Mapping[str, NumberOrExpression]
+) -> Linearisation:
+    """A, B, C, D about one state, with inputs that act. Raises as :func:`linearise`, and InvalidArgument."""
+    if model.closures:
+        message = "closures are not taken: linearise gives A, B, C, D in independent coordinates"
+        raise InvalidArgument.at("/q", "closures", message)
+    found = linearise(model, q, outputs=outputs, **point)
+    if found.M.ndim == 3:
+        raise InvalidArgument.at("/q", "one-state", "one state is needed, not several")
+    if found.status == "failed":
+        raise InvalidArgument.at("/q", "not-linearised", found.message)
+    if not found.inputs:
+        raise InvalidArgument.at("/of_inputs", "no-input", "no input acts: name one in 'of_inputs'")
+    return found
+
+
+def eigenvalues(A: Array) -> ComplexArray:
+    """In the order of their real parts."""
+    found = np.linalg.eigvals(A).astype(np.complex128)
+    return found[np.lexsort((found.imag, found.real))]
+
+
+def reach(A: Array, B: Array) -> tuple[Reach, ...]:
+    """The test of Popov, Belevitch and Hautus for every mode, slowest first; columns of B of equal size."""
+    balanced, (scales, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
+    sizes = np.linalg.norm(B / scales[:, None], axis=0)
+    columns = (B / scales[:, None])[:, sizes > 0] / sizes[sizes > 0]
+    columns = columns * max(1.0, float(np.linalg.norm(balanced, 2)))
+    found = []
+    for s in sorted(eigenvalues(A), key=lambda x: (abs(x), x.imag)):
+        values = scipy.linalg.svdvals(np.hstack([balanced - s * np.eye(len(A)), columns]))
+        found.append(Reach(complex(s), float(values[len(A) - 1] / values[0]) if values[0] > 0 else 0.0))
+    return tuple(found)
+
+
+def is_complete(modes: Sequence[Reach]) -> bool | None:
+    """Whether every mode is reached; None where rounding decides."""
+    least = min((each.distance for each in modes), default=1.0)
+    return True if least > SURE else False if least < LOST else None

@@ -1,0 +1,117 @@
+"""Joints that relations move, q^d = mu q^i + delta: what documents say of them, in the coordinates that are left.
+
+Where a text names such a joint the position of the joint is put in its place, so that nothing else names it.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from decimal import Decimal
+from typing import Any
+
+from flint import arb
+
+from substructures.certificate.linear import Ball
+from substructures.certificate.numbers import Numbers, Plain
+
+#: fields of loads that are names
+_NAMES = frozenset(("type", "name", "coordinate", "body", "from", "to", "frame", "axes", "along", "title"))
+#: measures of frames, whose names are not those of coordinates; names with the mark of a rate
+_WORD = re.compile(r"(?:distance|angle)'?\([^()]*\)|[A-Za-z][A-Za-z0-9_]*'?")
+
+
+def moved(definition: Plain) -> dict[str, Plain]:
+    """The relations by the coordinate that depends on another."""
+    return {each["coordinate"]: each for each in definition.get("relations", ())}
+
+
+def mover(definition: Plain, name: str) -> str:
+    """The coordinate that moves a joint."""
+    relations = moved(definition)
+    while name in relations:
+        name = relations[name]["of"]
+    return name
+
+
+class Related(Mapping[str, Ball]):
+    """The names of a definition, positions and velocities of joints that relations move among them."""
+
+    def __init__(self, definition: Plain, names: Mapping[str, Ball]) -> None:
+        self.relations, self.names = moved(definition), names
+
+    def __getitem__(self, name: str) -> Ball:
+        relation = self.relations.get(name.rstrip("'"))
+        if relation is None:
+            return self.names[name]
+        marks = name[len(relation["coordinate"]) :]
+        read = Numbers(self.names).read
+        shift = arb(0) if marks else read(relation.get("offset", 0))
+        return read(relation.get("multiplier", 1)) * self[relation["of"] + marks] + shift
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.names or (isinstance(name, str) and name.rstrip("'") in self.relations)
+
+
+def slope_of(definition: Plain, name: str, numbers: Numbers) -> Ball:
+    """N_ai = dq^a / dq^i of a joint."""
+    relations, result = moved(definition), arb(1)
+    while name in relations:
+        result = result * numbers.read(relations[name].get("multiplier", 1))
+        name = relations[name]["of"]
+    return result
+
+
+def position_text(definition: Plain, name: str) -> str:
+    """The position of a joint, or with the mark of a rate its velocity, in the coordinate that moves it."""
+    relation, mark = moved(definition).get(name.rstrip("'")), "'" if name.endswith("'") else ""
+    if relation is None:
+        return name
+    factor, before = _text(relation.get("multiplier", 1)), position_text(definition, relation["of"] + mark)
+    return f"(({factor})*{before})" if mark else f"(({factor})*{before}+({_text(relation.get('offset', 0))}))"
+
+
+def multiplier_text(definition: Plain, name: str) -> str:
+    """N_ai of a joint."""
+    relations, result = moved(definition), "1"
+    while name in relations:
+        result, name = f"({result})*({_text(relations[name].get('multiplier', 1))})", relations[name]["of"]
+    return result
+
+
+def _text(number: Any) -> str:
+    return format(number, "f") if isinstance(number, Decimal) else str(number)
+
+
+def written(definition: Plain) -> Plain:
+    """The definition with the coordinates that are left in the texts of its laws and loads."""
+    relations = moved(definition)
+    if not relations:
+        return definition
+
+    def shown(given: Any) -> Any:
+        """With other names."""
+        if isinstance(given, str):
+            return _WORD.sub(lambda found: position_text(definition, found[0]), given)
+        if isinstance(given, Mapping):
+            return {key: x if key in _NAMES else shown(x) for key, x in given.items()}
+        return [shown(x) for x in given] if isinstance(given, (list, tuple)) else given
+
+    bodies = [
+        {**body, "joint": {key: shown(x) if key in ("stiffness", "rest", "damping") else x for key, x in joint.items()}}
+        for body in definition.get("bodies", ())
+        for joint in (body["joint"],)
+    ]
+    loads = [shown(load) for load in definition.get("loads", ())]
+    for load in loads:
+        if load["type"] == "joint" and load["coordinate"] in relations:
+            # the work of a force on a joint is that of mu times the force on what moves it
+            name, factor = load["coordinate"], multiplier_text(definition, load["coordinate"])
+            load |= {"coordinate": mover(definition, name), "force": f"({factor})*({_text(load['force'])})"}
+    return {**definition, "bodies": bodies, "loads": loads}

@@ -1,0 +1,116 @@
+"""Motions in machine code: steps of a Runge-Kutta method around bound kernels, many in one call."""
+
+from __future__ import annotations
+
+import ctypes
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.compile import target
+from substructures.compile.engine import Scratch, address, assembled, shared_runtime
+from substructures.compile.machine import BoundCall
+from substructures.compile.stepping import FAILED, FINISHED, HEAD, NUMBERS, RUN, RUNNING, WORDS, Tableau, stepping
+
+__all__ = ["FAILED", "FINISHED", "HEAD", "RUNNING", "CompiledRates", "CompiledRun", "Tableau"]
+
+_Words = ctypes.c_int64 * len(RUN)
+
+
+@dataclass(frozen=True)
+class CompiledRates:
+    """x' = (q', q'', power) as calls of kernels, one after the other, that share memory: they read ``t`` (1,) and ``x``
+    (1, 2n), and write ``second`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
+    """
+
+    calls: tuple[BoundCall, ...]
+    t: Array
+    x: Array
+    second: Array
+    power: Array | None
+    folder: Path | None = None
+
+    @property
+    def size(self) -> int:
+        """Length of the state (q, q', W)."""
+        return self.x.size + (self.power is not None)
+
+
+@lru_cache(maxsize=16)
+def _loaded(tableau: Tableau, width: int, folder: Path | None) -> tuple[target.Loaded, Callable[[Any], None]]:
+    loaded = target.Loaded.load(assembled(stepping(tableau, width), folder), ["advance"])
+    return loaded, ctypes.CFUNCTYPE(None, ctypes.POINTER(_Words))(loaded.names["advance"])
+
+
+class CompiledRun:
+    """A run of a method from a state on. Not for several threads at a time, nor beside others with the same rates."""
+
+    def __init__(
+        self,
+        tableau: Tableau,
+        rates: CompiledRates,
+        tolerances: tuple[float, float],
+        longest: float = np.inf,
+        most: int = 1,
+    ) -> None:
+        """``tolerances``: relative and absolute; ``longest``: step; ``most``: steps that are tried in a call."""
+        runtime, size = shared_runtime(target.host().width, rates.folder), rates.size
+        width = runtime.width
+        rows = -(-size // width) * width
+        # vectors that are filled up: what is behind a state stays zero
+        self._rows = Scratch.zeros(tableau.stages + 3, rows)
+        self._y = self._rows.array[0, :size]
+        self._steps = np.zeros((most, HEAD + size))
+        self._memory = np.zeros(len(NUMBERS) + len(WORDS))
+        self._words = self._memory[len(NUMBERS) :].view(np.int64)
+        self._memory[3:6] = longest, *tolerances
+        calls = np.array([ctypes.addressof(call.context) for call in rates.calls], dtype=np.int64)
+        row = [self._rows.address + 8 * rows * k for k in range(3)]
+        power = 0 if rates.power is None else address(rates.power)
+        own = [runtime.loaded.names["drive"], address(calls), len(calls)]
+        own += [address(rates.t), address(rates.x), address(rates.second), power, rates.x.size // 2, size, rows]
+        own += [target.math_library()["pow"], address(self._memory), row[0], row[2], row[1], address(self._steps)]
+        self._alive = rates, calls, runtime
+        self._run = _Words(*own, 0)
+        self._loaded, self._advance = _loaded(tableau, width, rates.folder)
+
+    def begin(self, t: float, x: Array, end: float, h: float) -> None:
+        """From x (size,) at t on, to ``end``, with a first step h."""
+        self._y[:] = x
+        self._memory[:3] = t, h, end
+        self._words[:] = 0
+
+    def go_on(self, t: float, end: float, h: float) -> None:
+        """From the state that was reached at t, where x' is known."""
+        self._memory[:3] = t, h, end
+        self._words[WORDS.index("status")] = RUNNING
+
+    def advance(self, most: int = 1) -> Array:
+        """The steps (k, HEAD + size) that were accepted of ``most`` tried ones: time, evaluations up to there, state.
+
+        They are overwritten by the next call.
+        """
+        self._words[0] = 0
+        self._run[-1] = min(most, len(self._steps))
+        self._advance(self._run)
+        return self._steps[: self._words[0]]
+
+    @property
+    def status(self) -> int:
+        """RUNNING, FAILED (the steps became too small) or FINISHED."""
+        return int(self._words[WORDS.index("status")])
+
+    @property
+    def evaluations(self) -> int:
+        """Of x' since the state that it began at."""
+        return int(self._words[WORDS.index("evaluations")])
+
+    @property
+    def state(self) -> Array:
+        """The state that was reached (size,)."""
+        return self._y.copy()

@@ -1,0 +1,132 @@
+"""What a member of an ensemble is worth: numbers of its motion."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal
+
+import numpy as np
+from pydantic import Field, model_validator
+from pydantic_core import PydanticCustomError
+
+from substructures.analysis.equations.expressions import read_expressions
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.motion.conditions import state_names
+from substructures.array import Array
+from substructures.compile.kernel import NO_PLACES, Places
+from substructures.documents import DocumentPart
+from substructures.documents.fields import PlainNumber
+from substructures.errors import InvalidArgument
+from substructures.expr.program import Program
+from substructures.quantities.numbers.evaluation import Evaluation, EvaluationOptions, Sources, evaluate
+from substructures.sweeps.columns import TAKEN, check_quantity, numbers_of, row_of
+from substructures.sweeps.document import QuantityColumn
+
+#: what becomes of the values at all times
+Take = Literal["end", "largest", "smallest", "largest_absolute", "mean", "rms"]
+QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
+_TAKEN: dict[str, Callable[[Array], Array]] = {**TAKEN, "end": lambda x: x[:, -1]}
+
+
+class MotionColumn(DocumentPart):
+    """A number of a motion: an ``expression`` in coordinates, velocities, parameters, inputs and t, or a ``quantity``
+    (and which element of it, ``of``), and what to ``take`` of its values at all times.
+    """
+
+    expression: PlainNumber | None = None
+    quantity: str | None = None
+    of: str | list[str] | None = None
+    take: Annotated[Take, Field(description="of the values at all times")] = "end"
+
+    @model_validator(mode="after")
+    def _one(self) -> MotionColumn:
+        if (self.expression is None) == (self.quantity is None):
+            raise PydanticCustomError("one-source", "give either 'expression' or 'quantity'")
+        return self
+
+
+@dataclass(frozen=True)
+class MotionColumns:
+    """All columns of an ensemble, read."""
+
+    columns: Mapping[str, MotionColumn]
+    sources: Sources
+    expressions: Program
+
+    @classmethod
+    def read(cls, sources: Sources, columns: Mapping[str, MotionColumn]) -> MotionColumns:
+        """Check them against a model. Raises InvalidInput (pointers ``/columns/name/...``)."""
+        for name, column in columns.items():
+            if column.quantity is not None:
+                check_quantity(_as_quantity(column), f"/columns/{name}")
+        texts = {
+            name: [(column.expression, f"/columns/{name}/expression")]
+            for name, column in columns.items()
+            if column.expression is not None
+        }
+        return cls(columns, sources, read_expressions(sources.model, texts))
+
+    def of(self, values: Mapping[str, float | Array], x: Array) -> dict[str, Array]:
+        """The columns (M,) of motions ``x`` (M, K, 2n); ``values``: of all other symbols, numbers or (M, K)."""
+        model, (rows, times) = self.sources.model, x.shape[:2]
+        state = np.ascontiguousarray(x).reshape(rows * times, -1)
+        flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
+        followed = program_kernel(self.expressions).evaluate(flat, columns=[(state_names(model), state)])
+        answer = self._evaluated(flat, state)
+        found = {}
+        for name, column in self.columns.items():
+            if answer is None or column.quantity is None:
+                numbers = np.broadcast_to(followed[name].reshape(-1), (rows * times,))
+            else:
+                numbers = numbers_of(_as_quantity(column), answer, model, f"/columns/{name}")
+            if numbers.size != rows * times:
+                message = f"'{column.quantity}' is several numbers: say which by 'of'"
+                raise InvalidArgument.at(f"/columns/{name}/of", "several-numbers", message)
+            with np.errstate(invalid="ignore"):
+                found[name] = _TAKEN[column.take](numbers.reshape(rows, times))
+        return found
+
+    def _evaluated(self, values: Mapping[str, Any], state: Array) -> Evaluation | None:
+        """All quantities of the columns at all states, None where there are none."""
+        wanted = [c.quantity for c in self.columns.values() if c.quantity is not None]
+        if not wanted:
+            return None
+        model, n = self.sources.model, self.sources.model.dof
+        return evaluate(
+            self.sources,
+            list(dict.fromkeys(row_of(name) or name for name in wanted)),
+            state[:, :n],
+            state[:, n:],
+            inputs={name: values[name] for name in model.input_names if name in values},
+            parameters={name: values[name] for name in model.parameters if name in values},
+            t=values["t"],
+            options=EvaluationOptions(evaluator=_compiled),
+        )
+
+
+def _compiled(
+    program: Program, values: Mapping[str, Any], names: list[str], _states: int, places: Places = NO_PLACES, /
+) -> dict[str, Array]:
+    """The engine of evaluations: kernels."""
+    return program_kernel(program.select(names)).evaluate(values, places=places)
+
+
+def _as_quantity(column: MotionColumn) -> QuantityColumn:
+    return QuantityColumn(quantity=str(column.quantity), of=column.of)
+
+
+def statistics(column: Array) -> dict[str, Any]:
+    """Mean, deviation, extremes and quantiles of the members that have a number, and how many these are."""
+    known = column[np.isfinite(column)]
+    if not len(known):
+        return {"count": 0}
+    levels = np.quantile(known, QUANTILES)
+    return {
+        "count": len(known),
+        "mean": float(known.mean()),
+        "deviation": float(known.std(ddof=1)) if len(known) > 1 else 0.0,
+        "least": float(known.min()),
+        "largest": float(known.max()),
+        "quantiles": {f"{level:g}": float(x) for level, x in zip(QUANTILES, levels, strict=True)},
+    }

@@ -1,0 +1,279 @@
+"""Motions of one model from many starts and with many parameters: columns, statistics, and a verdict of each."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.integral import FirstIntegrals
+from substructures.analysis.motion.judges import Condition, MotionStates, conditions, integral_series
+from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes
+from substructures.analysis.motion.problems.problem import Integrator
+from substructures.array import Array
+from substructures.ensembles.columns import MotionColumn, MotionColumns, statistics
+from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
+from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
+from substructures.errors import InvalidArgument
+from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.numbers.states import StateInput
+from substructures.tree.model import Model
+
+METHODS = ("DOP853", "RK45", "RK23")
+#: states of a part of the members, which are in memory together
+STATES = 400_000
+#: failures that are told one by one
+TOLD = 100
+WHY = {
+    TOO_SMALL: "the steps became too small: a singular position, a law with a jump, or stiff equations (simulate the "
+    "member with the method Radau)",
+}
+DEFAULT, NO_VALUES, NO_COLUMNS = Integrator(), dict[str, Any](), dict[str, MotionColumn]()
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A member that has no motion up to the end: its number, when it ended [s], and why."""
+
+    member: int
+    t: float
+    message: str
+
+
+@dataclass(frozen=True)
+class Ensemble:
+    """``count`` = M motions at the times ``t`` (K,).
+
+    ``columns`` (M,) by name, not a number for members that failed, and their ``statistics``. ``violation`` (M,): the
+    largest of all conditions in units of what is allowed, so that a motion is right up to 1; not a number where it
+    failed or nothing could be checked. ``checks``: of each condition the largest violation relative to its scale, and
+    how many members violate it. ``q``, ``qd`` (M, K, n) [rad, m; per s] where they are asked for. ``steps``: of all.
+    """
+
+    coordinates: tuple[str, ...]
+    count: int
+    t: Array
+    columns: Mapping[str, Array]
+    statistics: Mapping[str, Mapping[str, Any]]
+    violation: Array
+    checks: tuple[Mapping[str, Any], ...]
+    failures: tuple[Failure, ...]
+    failed: int
+    steps: int
+    evaluations: int
+    q: Array | None = None
+    qd: Array | None = None
+    cancelled: bool = False
+
+    def __repr__(self) -> str:
+        names = ", ".join(self.columns) or "none"
+        right = int((self.violation <= 1).sum())
+        return f"Ensemble of {self.count}: {right} right, {self.failed} failed; columns: {names}"
+
+    @property
+    def is_right(self) -> bool | None:
+        """True when all members are right, False when any violates a necessary condition, None otherwise."""
+        if (self.violation > 1).any():
+            return False
+        return True if (self.violation <= 1).all() and self.count and not self.cancelled else None
+
+    def summary(self) -> dict[str, Any]:
+        """As plain data and arrays."""
+        states = {} if self.q is None else {"q": self.q, "qd": self.qd}
+        return {
+            "coordinates": list(self.coordinates),
+            "count": self.count,
+            "t": self.t,
+            "is_right": self.is_right,
+            "right": int((self.violation <= 1).sum()),
+            "wrong": np.flatnonzero(self.violation > 1)[:TOLD],
+            "failed": self.failed,
+            "failures": [vars(each) for each in self.failures],
+            "checks": [dict(each) for each in self.checks],
+            "columns": dict(self.columns),
+            "statistics": dict(self.statistics),
+            "violation": self.violation,
+            "steps": self.steps,
+            "evaluations": self.evaluations,
+            "cancelled": self.cancelled,
+            **states,
+        }
+
+
+def simulate_ensemble(
+    model: Model | Sources,
+    q: StateInput | None,
+    span: tuple[float, float],
+    *,
+    qd: StateInput | None = None,
+    inputs: Given = NO_VALUES,
+    parameters: Given = NO_VALUES,
+    columns: Mapping[str, MotionColumn] = NO_COLUMNS,
+    grid: OutputGrid = EVEN,
+    integrator: Integrator = DEFAULT,
+    states: bool | None = None,
+) -> Ensemble:
+    """Motions over a ``span`` [s] from M starts: q'' = g^-1 (Q - Gamma q' q') of a tree without closures.
+
+    ``q`` [rad, m], ``qd`` [rad/s, m/s; 0]: (n,) for all or (M, n), or by name; ``parameters`` [SI] and ``inputs`` [N m,
+    N]: by name a number or (M,), inputs also an expression in coordinates, velocities, parameters and t. ``columns``:
+    numbers of each motion at the times of ``grid``; ``states``: whether q and qd are in the result (by default where
+    there are no columns). ``integrator``: an explicit method, DOP853, RK45 or RK23, its tolerances and drift limit.
+
+    Each member has its own steps, and the same bits whatever other members there are. Raises InvalidInput (pointers
+    start with names of arguments), MissingValue.
+
+    >>> from substructures import couple, derive
+    >>> tree = {"name": "clock", "gravity": [0, 0, "-9.81"]}
+    >>> tree["instances"] = [{"name": "p", "substructure": "simple-pendulum"}]
+    >>> model = couple(tree, {"p": derive("simple-pendulum")})
+    >>> top = {"angle": MotionColumn(expression="p.q1", take="largest")}
+    >>> simulate_ensemble(model, [[0.1], [0.2], [0.3]], (0, 2), columns=top)
+    Ensemble of 3: 3 right, 0 failed; columns: angle
+    """
+    sources = Sources(model) if isinstance(model, Model) else model
+    if integrator.method not in METHODS:
+        message = f"members are integrated by {', '.join(METHODS)}; for stiff equations simulate them one by one"
+        raise InvalidArgument.at("/method", "not-supported", message)
+    times = OutputTimes(span, grid)
+    members = read_members(sources.model, q, qd, parameters, inputs, times.span)
+    read = MotionColumns.read(sources, columns)
+    return _Run(members, times, integrator, read, not columns if states is None else states).run()
+
+
+@dataclass
+class _Run:
+    """An ensemble part by part, so that memory holds the states of one part and the columns of all."""
+
+    members: Members
+    times: OutputTimes
+    integrator: Integrator
+    columns: MotionColumns
+    keeps: bool
+    parts: list[dict[str, Array]] = field(default_factory=list)
+    worst: dict[str, list[Any]] = field(default_factory=dict)
+    failures: list[Failure] = field(default_factory=list)
+    failed: int = 0
+    steps: int = 0
+    evaluations: int = 0
+
+    def run(self) -> Ensemble:
+        """All members, or those up to where whoever watches the progress says that it is enough."""
+        members, settings, grid = self.members, self._settings(), self._grid()
+        lanes = min(settings.lanes, members.count)
+        rates = KernelRates(members, lanes, self.integrator.folder)
+        integrals = self._integrals()
+        size = max(lanes, STATES // len(grid))
+        is_cancelled = False
+        for begin in range(0, members.count, size):
+            chosen = slice(begin, min(begin + size, members.count))
+            rates.first = begin
+            start = members.start[chosen]
+            start = np.concatenate([start, np.zeros((len(start), rates.size - 2 * rates.n))], axis=1)
+            told = self._told(begin)
+            found = march(rates, start, grid, settings, told)
+            self._note(begin, found)
+            self.parts.append(self._part(chosen, grid, found.x, rates, integrals))
+            if told(len(start)) is False:
+                is_cancelled = chosen.stop < members.count
+                break
+        return self._result(grid, is_cancelled)
+
+    def _settings(self) -> LaneSettings:
+        how = self.integrator
+        tolerances = how.relative_tolerance, how.absolute_tolerance
+        return LaneSettings(str(how.method), *tolerances, how.max_step or np.inf, how.max_steps)
+
+    def _grid(self) -> Array:
+        """The times of results, with the start before them."""
+        times = np.asarray(self.times.grid(), dtype=np.float64)
+        start = self.times.span[0]
+        return times if len(times) and times[0] == start else np.concatenate([[start], times])
+
+    def _told(self, begin: int) -> Callable[[int], bool]:
+        progress, count = self.integrator.progress, self.members.count
+        return lambda done: progress is None or progress((begin + done) / count) is not False
+
+    def _integrals(self) -> FirstIntegrals:
+        model, zero = self.members.model, self.members.zero
+        given = {*self.members.conditions.formulas, *self.members.varied, *self.members.constants}
+        acting = [name for name in model.input_names if name in given and name not in zero]
+        return first_integrals(model, acting, zero & set(model.parameters))
+
+    def _note(self, begin: int, found: LaneMotions) -> None:
+        self.steps += int(found.steps.sum())
+        self.evaluations += found.evaluations
+        lost = np.flatnonzero(found.endings != FINISHED)
+        self.failed += len(lost)
+        for k in lost[: TOLD - len(self.failures)].tolist():
+            why = WHY.get(int(found.endings[k]), f"more than {self.integrator.max_steps:,} steps are needed")
+            self.failures.append(Failure(begin + k, float(found.reached[k]), why))
+
+    def _part(
+        self, chosen: slice, grid: Array, x: Array, rates: KernelRates, integrals: FirstIntegrals
+    ) -> dict[str, Array]:
+        """Columns, verdicts and states of a part of the members."""
+        n = rates.n
+        values = along(self.members, chosen, grid, x)
+        work = x[..., 2 * n] if rates.has_power else np.zeros(x.shape[:2])
+        motions = MotionStates(np.tile(grid, (len(x), 1)), x[..., :n], x[..., n : 2 * n], values, work)
+        found = {f"columns.{name}": v for name, v in self.columns.of(values, x[..., : 2 * n]).items()}
+        found["violation"] = self._judged(motions, integrals)
+        if self.keeps:
+            found |= {"q": x[..., :n], "qd": x[..., n : 2 * n]}
+        return found
+
+    def _judged(self, motions: MotionStates, integrals: FirstIntegrals) -> Array:
+        """The largest violation of each member in units of what is allowed."""
+        model, limit = self.members.model, self.integrator.drift_limit
+        series = integral_series(model, integrals, motions)
+        largest = np.full(len(motions.t), np.nan)
+        with np.errstate(invalid="ignore", divide="ignore"):
+            for each in conditions(model, integrals, motions, series):
+                # whether energy has to fall is not seen from some times of a motion; its balance is kept at all of them
+                if not isinstance(each, Condition) or each.about[1] == "falling":
+                    continue
+                size = np.abs(each.violation).max(axis=-1, initial=0)
+                allowed = limit * each.scale + each.noise
+                share = np.where(size == 0, 0.0, size / allowed)
+                share = np.where(each.applies, share, np.nan)
+                self._note_check(each, size, share)
+                largest = np.fmax(largest, share)
+        return np.where(np.isnan(motions.q).any(axis=(1, 2)), np.nan, largest)
+
+    def _note_check(self, each: Condition, size: Array, share: Array) -> None:
+        name, rule, reason, unit = each.about
+        told = self.worst.setdefault(f"{name} {rule}", [name, rule, reason, unit, 0.0, 0.0, 0])
+        told[4] = max(told[4], float(np.nanmax(size, initial=0.0)))
+        relative = np.where(each.scale > 0, size / np.where(each.scale > 0, each.scale, 1.0), 0.0)
+        told[5] = max(told[5], float(np.nanmax(relative, initial=0.0)))
+        told[6] += int((share > 1).sum())
+
+    def _result(self, grid: Array, is_cancelled: bool) -> Ensemble:
+        whole = {name: np.concatenate([part[name] for part in self.parts]) for name in self.parts[0]}
+        columns = {name: whole[f"columns.{name}"] for name in self.columns.columns}
+        limit = self.integrator.drift_limit
+        names = ("name", "rule", "reason", "unit", "worst", "relative", "violated")
+        checks = tuple({**dict(zip(names, told, strict=True)), "limit": limit} for told in self.worst.values())
+        return Ensemble(
+            self.members.model.coordinates,
+            len(whole["violation"]),
+            grid,
+            columns,
+            {name: statistics(column) for name, column in columns.items()},
+            whole["violation"],
+            checks,
+            tuple(self.failures),
+            self.failed,
+            self.steps,
+            self.evaluations,
+            whole.get("q"),
+            whole.get("qd"),
+            is_cancelled,
+        )
+
+
+__all__ = ["Ensemble", "Failure", "MotionColumn", "simulate_ensemble"]

@@ -1,0 +1,33 @@
+"""The shape of a definition: what is left of it without words, and without the values of its parameters."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from substructures.documents import read_json
+from substructures.part.definition import Definition
+from substructures.part.parameters import described
+
+#: members of a definition that are words, or the name of the whole
+WORDS = ("name", "title", "description", "tags", "license", "source", "poses", "left_out")
+
+
+def shape_of(definition: Definition) -> dict[str, Any]:
+    """The definition as plain data without words and values of parameters, which have their SI units alone.
+
+    Numbers that stand in bodies, joints and loads stay: formulas are made of them.
+    """
+    plain: dict[str, Any] = read_json(definition.canonical())
+    left = {name: x for name, x in plain.items() if name not in WORDS}
+    units = {name: x["unit"] for name, x in described(definition.parameters).items()}
+    return without_descriptions(left) | {"parameters": units}
+
+
+def without_descriptions(plain: dict[str, Any]) -> dict[str, Any]:
+    """A definition or tree whose parameters and inputs have no descriptions."""
+    kinds = [kind for kind in ("parameters", "inputs") if kind in plain]
+    return plain | {kind: {name: _without_words(x) for name, x in plain[kind].items()} for kind in kinds}
+
+
+def _without_words(given: dict[str, Any]) -> dict[str, Any]:
+    return {field: x for field, x in given.items() if field != "description"}

@@ -1,0 +1,1 @@
+"""Numbers of quantities: states checked, kernels run, limits and conditions held, results with their warnings."""

@@ -1,0 +1,101 @@
+"""Shapes of trees: one program for all trees that differ in the numbers of their parameters alone.
+
+What may stand in the place of an instance is an Option: a part, where it is mounted, and the numbers of its parameters.
+Two options have one key where all but these numbers and words are equal; trees of options with equal keys have one
+program, in which all parameters are symbols (notation.md, section 6).
+"""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.array import Array
+from substructures.compile import compile_program
+from substructures.compile.kernel import NO_PLACES, Kernel, Places
+from substructures.documents import write_json
+from substructures.errors import InvalidDocument, InvalidInput
+from substructures.expr.program import Program
+from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.numbers.states import default_number
+from substructures.quantities.sources import Sources, of_parts
+from substructures.tree.document import TreeSpec, read_instance
+from substructures.tree.interfaces import differing_interfaces
+from substructures.tree.model import Model, couple_formulas
+
+
+@dataclass(frozen=True)
+class Option:
+    """What may stand in the place of an instance.
+
+    ``fields``: of the instance in the tree document, with the parameters that are bound to expressions; ``values``: in
+    SI by the name of the parameter in the definition, of those that have a number.
+    """
+
+    part: Part = field(repr=False)
+    fields: Mapping[str, Any]
+    values: Mapping[str, float]
+    key: str
+
+
+def option_of(part: Part, instance: Mapping[str, Any]) -> Option:
+    """The option that an instance of a tree document is."""
+    bound: dict[str, Any] = {}
+    values = {
+        name: default_number(each["value"]) for name, each in part.parameters.items() if each["value"] is not None
+    }
+    for name, given in read_instance(instance).parameters.items():
+        try:
+            values[name] = default_number(given)
+        except InvalidInput:  # an expression in other parameters
+            bound[name] = instance["parameters"][name]
+            values.pop(name, None)
+    fields = {**instance, "parameters": bound}
+    placed = {name: fields[name] for name in ("at", "placement", "parameters") if name in fields}
+    text = write_json([part.shape, placed])
+    return Option(part, fields, values, hashlib.sha256(text).hexdigest())
+
+
+@dataclass(frozen=True)
+class Shape:
+    """A tree of options, coupled once. ``kernels``: compiled, by the outputs that were asked for."""
+
+    sources: Sources
+    kernels: dict[tuple[str, tuple[str, ...]], Kernel] = field(default_factory=dict, repr=False)
+
+    @property
+    def model(self) -> Model:
+        """The model, without certificate."""
+        return self.sources.model
+
+    def evaluate(
+        self, program: Program, values: Mapping[str, Any], names: list[str], _states: int, places: Places = NO_PLACES, /
+    ) -> dict[str, Array]:
+        """The engine of evaluations: a kernel of its own for every list of outputs."""
+        key = program.digest, tuple(names)
+        if key not in self.kernels:
+            self.kernels[key] = compile_program(program, names)
+        return self.kernels[key].evaluate(values, threads=1, places=places)
+
+
+def couple_shape(
+    template: Mapping[str, Any], options: Sequence[Option], christoffel: bool, max_nodes: int = MAX_NODES
+) -> Shape:
+    """The shape of a tree document with these options in the places of its instances, in their order.
+
+    ``christoffel``: whether with the Christoffel symbols. Raises InvalidDocument with pointers into the document,
+    TooLarge.
+    """
+    spec = TreeSpec.read({**template, "instances": [dict(option.fields) for option in options]})
+    parts = {instance.name: option.part for instance, option in zip(spec.instances, options, strict=True)}
+    for told in differing_interfaces(spec, {name: part.definition for name, part in parts.items()}):
+        raise InvalidDocument.at(told["pointer"], told["code"], told["message"])
+    model = couple_formulas(spec, parts, max_nodes, christoffel)
+    return Shape(Sources(model, of_parts=of_parts(spec, parts, max_nodes)))
+
+
+def values_of(options: Sequence[Option]) -> dict[str, float]:
+    """The numbers of a tree of options, by the names of its parameters."""
+    return {f"{each.fields['name']}.{name}": x for each in options for name, x in each.values.items()}

@@ -1,0 +1,132 @@
+"""Steps in machine code are SciPy's: times, states, evaluations, states within, and how they fail."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from analysis_models import catalogue_model, shipped
+from in_depth import deep
+from simulated import simulated
+
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
+from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
+from substructures.analysis.motion.integrators.steppers import scipy_stepper, within
+from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.right_hand_side import RightHandSide
+from substructures.analysis.motion.simulation import DYNAMICS
+from substructures.analysis.simulate import Table
+from substructures.compile import target
+
+pytestmark = pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+#: without a joint
+RIGID = {"camera", "flange-tool", "welding-torch"}
+DRIVEN = "3*sin(2*t) - 0.2*{qd}"
+
+
+def function(model: Model, inputs: dict[str, Any], span: tuple[float, float]) -> tuple[RightHandSide, Any]:
+    """x' of a model from a start in which it moves fast, and that start."""
+    start = Start(q=[1.2, 0.4], qd=[2.0, -1.0], inputs=inputs).with_defaults(model)
+    conditions = read_conditions(model, start, span, DYNAMICS)
+    f = RightHandSide(model, conditions.values, conditions.zero, conditions)
+    return f, np.concatenate([conditions.start, np.zeros(f.size - 2 * f.n)])
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+@pytest.mark.parametrize("longest", [None, 0.01])
+@pytest.mark.parametrize("is_driven", [False, True])
+def test_the_steps_of_scipy(method: str, longest: float | None, is_driven: bool) -> None:
+    model = catalogue_model("acrobot")
+    inputs = {model.input_names[0]: DRIVEN.format(qd=f"{model.coordinates[1]}'")} if is_driven else {}
+    span = (-0.25, 0.75)
+    f, x = function(model, inputs, span)
+    assert f.has_power == is_driven
+    settings = method, 1e-7, 1e-9, longest
+    plain, ours = scipy_stepper(*settings)(f, span[0], x, span[1]), compiled_stepper(*settings)(f, span[0], x, span[1])
+    assert isinstance(ours, CompiledStepper)
+    steps = 0
+    while plain.status == "running":
+        assert plain.step() is None
+        assert ours.step() is None
+        steps += 1
+        assert (ours.status, ours.nfev) == (plain.status, plain.nfev)
+        np.testing.assert_allclose([ours.t_old, ours.t], [plain.t_old, plain.t], rtol=0, atol=1e-9)
+        np.testing.assert_allclose(ours.y, plain.y, rtol=1e-8, atol=1e-8)
+        if steps % 10 == 1:
+            middle = (plain.t_old + plain.t) / 2
+            states = [within(each, scipy_stepper(*settings))(middle) for each in (ours, plain)]
+            np.testing.assert_allclose(states[0], states[1], rtol=1e-8, atol=1e-8)
+    assert ours.t == span[1]
+    assert steps > 10
+
+
+@pytest.mark.parametrize("name", deep(*sorted({*catalogue.names()} - RIGID)))
+def test_shipped_entries(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Motions of the whole catalogue against SciPy's steps, to a hundred times the tolerance of 1e-10."""
+    model = shipped(name)
+    q = (0.3 + 0.05 * np.arange(model.dof)).tolist()
+    request: dict[str, Any] = {"q": q, "span": [0, 0.3], "count": 31}
+    ours = simulated(model, **request)
+    monkeypatch.setattr(RightHandSide, "compiled", lambda _: None)
+    plain = simulated(model, **request)
+    assert (ours.status, ours.is_right) == (plain.status, plain.is_right)
+    assert abs(ours.steps - plain.steps) <= 2
+    for one, two in ((ours.q, plain.q), (ours.qd, plain.qd)):
+        np.testing.assert_allclose(one, two, rtol=0, atol=1e-8 * (1 + np.abs(two).max()))
+
+
+def test_fixed_steps() -> None:
+    """Steps one after the other, and shorter ones from where they begin."""
+    model = catalogue_model("acrobot")
+    f, x = function(model, {model.input_names[0]: DRIVEN.format(qd=f"{model.coordinates[1]}'")}, (0, 1))
+    rates = f.compiled()
+    assert rates is not None
+    step, ours, plain = compiled_rk4(rates), x, x
+    for k in range(20):
+        t, h = 0.02 * k, 0.01
+        np.testing.assert_allclose(step(f, t, ours, h / 3), rk4(f, t, plain, h / 3), rtol=1e-12, atol=1e-13)
+        for part in (0.0, h):
+            ours, plain = step(f, t + part, ours, h), rk4(f, t + part, plain, h)
+        np.testing.assert_allclose(ours, plain, rtol=1e-12, atol=1e-13)
+    assert not np.isfinite(step(f, 0.0, np.full(len(x), 1e200), 1.0)).all()
+
+
+def test_what_is_more_than_kernels_is_left_to_scipy() -> None:
+    model = catalogue_model("acrobot")
+    f, x = function(model, {model.input_names[0]: Table([0, 1], [0, 1])}, (0, 1))
+    assert f.compiled() is None
+    assert not isinstance(compiled_stepper("DOP853", 1e-8, 1e-8)(f, 0.0, x, 1.0), CompiledStepper)
+
+
+def test_a_motion_that_cannot_go_on() -> None:
+    """x'' = 6 x^2 with x = (1 - t)^-2 up to the pole, where the steps become too small."""
+    definition = {
+        "name": "cart",
+        "parameters": {"m": {"value": 1, "unit": "kg"}},
+        "bodies": [{"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "x"}, "mass": "m"}],
+        "loads": [{"type": "joint", "coordinate": "x", "force": "6*x^2"}],
+    }
+    spec = TreeSpec.read({"name": "t", "instances": [{"name": "c", "definition": definition}]})
+    found = simulated(couple(spec, {"c": derive(Definition.read(definition))}), q=[1], qd=[2], span=[0, 2], count=5)
+    assert found.status == "failed"
+    assert "could not go on at t = 1 s (Required step size" in found.message
+    np.testing.assert_allclose(found.q[1], [4], rtol=1e-7)
+
+
+def test_cancelled_between_steps() -> None:
+    """Many steps are made at a time; who watches is told each one, and has enough when it says so."""
+    told: list[float] = []
+
+    def progress(share: float) -> bool:
+        """Enough after twenty."""
+        told.append(share)
+        return len(told) < 20
+
+    found = simulated(catalogue_model("acrobot"), q=[1.2, 0.4], span=[0, 20], progress=progress)
+    assert found.cancelled
+    assert found.steps == 20
+    assert told == sorted(told)
+    assert found.t[-1] < 20

@@ -1,0 +1,141 @@
+"""Trees that differ in numbers and words alone have one program and one certificate, which are made once."""
+
+from __future__ import annotations
+
+from copy import deepcopy
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import Definition, Model, Part, catalogue, couple, derive
+from substructures.errors import VerificationFailed
+from substructures.tree.shape import CertifiedProgram
+from tests.catalogue_entries import shipped_part
+from tests.damaged import damages
+
+
+class Shapes(dict[str, CertifiedProgram]):
+    """Known shapes, and how many were asked for and known."""
+
+    hits = 0
+
+    def get(self, key: str, /) -> CertifiedProgram | None:  # type: ignore[override]
+        """One of them."""
+        self.hits += key in self
+        return super().get(key)
+
+    def put(self, key: str, value: CertifiedProgram, /) -> None:
+        """One more."""
+        self[key] = value
+
+
+def _document(name: str) -> dict[str, Any]:
+    return deepcopy(catalogue.load(name))
+
+
+def _varied(name: str, source: np.random.Generator) -> Part:
+    """An entry with other numbers, of which none stands in its formulas, and with other words."""
+    document = _document(name) | {"name": f"x{source.integers(10**9)}", "description": "sqrt(x) of words"}
+    for each in document["parameters"].values():
+        each |= {"value": round(source.uniform(0.1, 0.9), 9), "description": "atan2(y, x)"}
+    return derive(Definition.read(document))
+
+
+def _tree(**bound: Any) -> dict[str, Any]:
+    hand = {"name": "hand", "substructure": "x", "at": "arm.flange", "parameters": bound}
+    arm = {"name": "arm", "substructure": "x"}
+    own = {"g": {"value": 9.81, "unit": "m/s^2", "description": "sqrt(x)"}, "m": {"unit": "kg"}}
+    return {"name": "t", "gravity": [0, 0, "-g"], "parameters": own, "instances": [arm, hand]}
+
+
+def _said(model: Model) -> dict[str, Any]:
+    """All that is stored, but for the time that it took."""
+    summary = model.summary()
+    certificate = {name: x for name, x in summary["certificate"].items() if name != "seconds"}
+    return summary | {"certificate": certificate, "program": model.program.digest, "marks": model.program.not_judged}
+
+
+@pytest.mark.parametrize(("arm", "hand"), [("scara", "parallel-gripper"), ("planar-2r", "simple-pendulum")])
+def test_a_tree_by_its_shape_is_the_tree_by_the_slow_way(arm: str, hand: str) -> None:
+    source, known = np.random.default_rng(3), Shapes()
+    name = next(iter(_document(hand)["parameters"]))
+    numbers = [round(source.uniform(0.1, 0.9), 6) for _ in range(2)]
+    bindings: list[dict[str, Any]] = [{}, {}, {name: numbers[0]}, {name: numbers[0]}, {name: numbers[1]}, {name: "m"}]
+    for bound in bindings:
+        parts = {"arm": _varied(arm, source), "hand": _varied(hand, source)}
+        assert _said(couple(_tree(**bound), parts, known=known)) == _said(couple(_tree(**bound), parts))
+    assert (known.hits, len(known)) == (2, 4)
+    couple(_tree(), parts, known=known, group=True)
+    assert len(known) == 5
+
+
+def test_defaults_that_change_the_order_of_operations_make_programs_of_their_own() -> None:
+    """2 and 1/2 stand in formulas, too: of equal numbers a graph keeps the first. Digests stay what they were."""
+    known = Shapes()
+    for value in (0.123, 2, 0.5, 0.321):
+        document = _document("planar-2r")
+        for each in document["parameters"].values():
+            each["value"] = value
+        parts = {"arm": derive(Definition.read(document)), "hand": shipped_part("simple-pendulum")}
+        assert _said(couple(_tree(), parts, known=known)) == _said(couple(_tree(), parts))
+    assert (known.hits, len(known)) == (2, 2)
+
+
+def test_a_wrong_number_is_told_of_its_tree_alone() -> None:
+    source, known = np.random.default_rng(4), Shapes()
+    told = []
+    for mass in (0.7, -0.7, 0.8):
+        document = _varied("planar-2r", source).definition.model_dump(exclude_defaults=True, by_alias=True)
+        document["parameters"]["m1"]["value"] = mass
+        parts = {"arm": derive(Definition.read(document)), "hand": shipped_part("simple-pendulum")}
+        model = couple(_tree(), parts, known=known)
+        told.append([x["code"] for x in model.certificate["warnings"]])
+    assert ["negative-mass" in codes for codes in told] == [False, True, False]
+    assert known.hits == 2
+
+
+def test_a_part_with_wrong_formulas_has_no_shape_that_is_known() -> None:
+    known, parts = Shapes(), {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
+    couple(_tree(), parts, known=known)
+    found = damages(parts["arm"].program, np.random.default_rng(1))
+    wrong = next(program for _, place, program in found if place.startswith("frame.position"))
+    with pytest.raises(VerificationFailed, match="planar-2r"):
+        couple(_tree(), parts | {"arm": replace(parts["arm"], program=wrong)}, known=known)
+    assert (known.hits, len(known)) == (0, 1)
+
+
+def test_a_certificate_that_needs_defaults_is_not_that_of_a_shape() -> None:
+    """sqrt(k - 5) has no value at random ones of the order of one."""
+    known = Shapes()
+    for k in (7.25, 6.25, 1.25):
+        document = _document("simple-pendulum")
+        document["parameters"]["k"] = {"value": k}
+        document["loads"] = [{"type": "joint", "coordinate": "q1", "force": "sqrt(k - 5)*q1'"}]
+        part = derive(Definition.read(document))
+        model = couple({"name": "t", "instances": [{"name": "p", "substructure": "x"}]}, {"p": part}, known=known)
+        assert (model.certificate["direct_form"]["max_relative_error"]["forces"] is None) == (k < 5)
+    assert not known
+
+
+def test_notices_of_loads_of_the_tree_are_told_again() -> None:
+    known, part = Shapes(), shipped_part("planar-2r")
+    load = {"name": "x", "type": "spring", "from": "world", "to": "arm.flange", "stiffness": "2 + arm.q1^2"}
+    tree = {"name": "t", "gravity": [0, 0, 0], "instances": [{"name": "arm", "substructure": "x"}], "loads": [load]}
+    told = [couple(tree, {"arm": part}, known=known).certificate["warnings"] for _ in range(2)]
+    assert known.hits == 1
+    assert told[0] == told[1] != []
+
+
+@pytest.mark.parametrize("words", ["sqrt(x)", "min(a, b) and atan2(y, x)"])
+def test_words_do_not_change_a_certificate(words: str) -> None:
+    plain, worded = _document("simple-pendulum"), _document("simple-pendulum")
+    worded |= {"title": words, "description": words, "tags": ["sqrt"], "source": words, "license": words}
+    for each in worded["parameters"].values():
+        each["description"] = words
+    part, other = (derive(Definition.read(document)) for document in (plain, worded))
+    assert part.certificate["states"] == other.certificate["states"] == 1
+    tree = {"name": "t", "parameters": {"h": {"value": 1, "description": words}}}
+    tree["instances"] = [{"name": "p", "definition": worded, "parameters": {"m": "h"}}]
+    assert couple(tree, {"p": other}).certificate["states"] == 1

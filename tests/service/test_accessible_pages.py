@@ -1,0 +1,59 @@
+"""Everybody can read every page: axe finds nothing serious, in light and in dark, and none scrolls sideways."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import Any
+
+import pytest
+
+from .one_store import filled, store
+from .test_model_pages import READY, Tab, address, browser, in_browser
+
+__all__ = ["address", "browser", "filled", "store"]
+#: paths, and whether a view in three dimensions is awaited
+PATHS = {
+    "/": False,
+    "/?q=pendulum": False,
+    "/trees": False,
+    "/jobs": False,
+    "/docs": False,
+    "/docs/explanation/notation": False,
+    "/account": False,
+    "/substructures/pendulum@1": True,
+    "/trees/cell@2?entry=metric,0,1&pose=0.3,-0.8": True,
+    "/trees/cell@2/motion": True,
+    "/trees/cell@2/edit": True,
+    "/trees/cell@1/difference?to=cell@2": False,
+    "/v1/trees/cell@2/report?format=mathml": False,
+}
+
+
+def faults(tab: Tab) -> list[str]:
+    """What axe finds that is serious or critical, with the first element."""
+    pytest.importorskip("axe_playwright_python")
+    tab.page.evaluate(files("axe_playwright_python").joinpath("axe.min.js").read_text(encoding="utf-8"))
+    told = tab.page.evaluate("axe.run(document, {resultTypes: ['violations']})")["violations"]
+    return [f"{v['id']}: {v['nodes'][0]['html'][:200]}" for v in told if v["impact"] in ("serious", "critical")]
+
+
+@in_browser
+@pytest.mark.deep
+@pytest.mark.parametrize("width", [1280, 360])
+@pytest.mark.parametrize("scheme", ["light", "dark"])
+@pytest.mark.parametrize("path", PATHS)
+def test_axe_finds_nothing_serious(browser: Any, address: str, path: str, scheme: str, width: int) -> None:
+    tab = Tab(browser, address, path, width, color_scheme=scheme)
+    if PATHS[path]:
+        tab.until(READY)
+    assert faults(tab) == []
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_axe_finds_a_planted_fault(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/jobs")
+    tab.page.evaluate("document.querySelector('main').append(document.createElement('button'))")
+    assert [each.partition(":")[0] for each in faults(tab)] == ["button-name"]
+    tab.close()

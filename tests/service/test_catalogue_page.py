@@ -1,0 +1,82 @@
+"""The catalogue in a browser: results while one types, facets, the address, and files that are looked at first."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from .one_store import filled, store
+from .test_model_pages import Tab, address, browser, in_browser
+from .test_requested import ROBOT
+
+__all__ = ["address", "browser", "filled", "store"]
+TEXT = "document.getElementById('results').textContent"
+HOSTILE = ROBOT.replace("</robot>", '<gazebo reference="&lt;img src=x onerror=alert(1)&gt;"/></robot>')
+
+
+def chosen(tab: Tab, text: str, name: str) -> None:
+    """A file that somebody chose, or dropped."""
+    tab.page.set_input_files("#file", {"name": name, "mimeType": "application/xml", "buffer": text.encode()})
+
+
+@in_browser
+@pytest.mark.parametrize("width", [1280, *[pytest.param(360, marks=pytest.mark.deep)]])
+def test_results_follow_what_is_typed(browser: Any, address: str, width: int) -> None:
+    tab = Tab(browser, address, "/", width)
+    tab.page.keyboard.press("/")
+    tab.page.keyboard.type("slidng")
+    tab.until(f"{TEXT}.includes('slider@1') && !{TEXT}.includes('pendulum@1') && location.search === '?q=slidng'")
+    assert "'slidng' is nowhere" in tab.page.inner_text("#results")
+    tab.page.fill("#filter", "")
+    tab.until(f"{TEXT}.includes('pendulum@1') && location.search === ''")
+    tab.page.click(".facets a[href='/?joints=P']")
+    tab.until(f"!{TEXT}.includes('pendulum@1') && location.search === '?joints=P'")
+    tab.page.select_option("[name=sort]", "-created")
+    tab.until("location.search === '?sort=-created&joints=P'")
+    tab.page.go_back()
+    tab.until(f"{TEXT}.includes('pendulum@1') && location.search === ''")
+    tab.close()
+
+
+@in_browser
+def test_a_file_is_looked_at_before_it_is_stored(browser: Any, address: str, filled: TestClient) -> None:
+    tab = Tab(browser, address, "/")
+    chosen(tab, ROBOT, "rod.urdf")
+    tab.until("document.querySelector('#import img')?.naturalWidth > 0")
+    shown = tab.page.inner_text("#import")
+    assert "urdf: 1 dof R, 2 kg" in shown
+    assert "Nothing is stored yet." in shown
+    assert filled.get("/v1/substructures/rod").status_code == 404
+    tab.page.fill("#name", "bar")
+    tab.page.click("#store")
+    tab.until("document.querySelector('#import a')?.textContent === 'bar@1'")
+    assert filled.get("/v1/substructures/bar@1").json()["dof"] == 1
+    chosen(tab, "<robot/>", "bad.urdf")
+    tab.until("document.getElementById('import').textContent.includes('cannot be stored')")
+    tab.wrong = [each for each in tab.wrong if "422" not in each]  # the browser notes answers that are no success
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_hostile_files_stay_texts(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/", 360)
+    chosen(tab, HOSTILE, "<img src=x onerror=alert(1)>.urdf")
+    tab.until("document.querySelector('#import img')")
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_lost_connection_is_said_and_comes_back(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/")
+    tab.page.context.set_offline(True)
+    tab.page.fill("#filter", "slider")
+    tab.until("document.querySelector('#results .warn')?.textContent.includes('connection is lost')")
+    tab.page.context.set_offline(False)
+    tab.page.fill("#filter", "sliding")
+    tab.until(f"{TEXT}.includes('slider@1') && !{TEXT}.includes('pendulum@1')")
+    tab.wrong = [each for each in tab.wrong if "ERR_INTERNET_DISCONNECTED" not in each]
+    tab.close()

@@ -1,0 +1,242 @@
+"""Sweeps over HTTP: accepted at once, computed in ranges of rows, read as tables, front and trees."""
+
+from __future__ import annotations
+
+import io
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from service.jobs.kinds import sweep as kind
+from service.store.store import Store
+from substructures.formats.arrays import read_npz
+from substructures.sweeps import block
+
+from .conftest import PENDULUM, SLIDER
+from .fake_engine import FakeEngine, finished, running, submitted
+from .jobs_library import MemoryLibrary
+from .reading import read
+
+SWEEP: dict[str, Any] = {
+    "kind": "sweep",
+    "labels": {"study": "night", "arm": "long"},
+    "template": {
+        "name": "pair",
+        "gravity": [0, "-9.81", 0],
+        "instances": [
+            {"name": "arm", "substructure": "pendulum"},
+            {"name": "hand", "substructure": "pendulum", "at": "arm.tip"},
+        ],
+    },
+    "choices": {
+        "hand": [
+            "pendulum",
+            {"substructure": "pendulum", "parameters": {"m": 5}},
+            {"substructure": "slider", "at": "arm.tip"},
+            {"substructure": "pendulum", "at": "arm.nowhere"},
+        ]
+    },
+    "samples": {"of": {"arm.m": {"uniform": [1, 3], "count": 5}, "arm.l": {"values": [500, 1000], "unit": "mm"}}},
+    "columns": {
+        "mass": "mass",
+        "torque": {"quantity": "gravity", "of": "arm.q", "over": {"q": [0.3, 0.1]}, "take": "largest_absolute"},
+        "use": "torque/mass",
+    },
+    "where": "torque < 90",
+    "pareto": {"minimise": ["torque"], "maximise": ["mass"]},
+    "proof": 40,
+}
+
+
+def done(client: TestClient, store: Store, document: dict[str, Any]) -> str:
+    with running(store, FakeEngine()):
+        job = submitted(client, document)
+        assert finished(client, job)["state"] == "succeeded"
+    return job
+
+
+def table(client: TestClient, job: str, query: str = "", what: str = "table") -> dict[str, Any]:
+    found = client.get(f"/v1/jobs/{job}/{what}{query}")
+    assert found.status_code == 200, found.text
+    told: dict[str, Any] = found.json()
+    return told
+
+
+def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
+    job = done(filled, store, SWEEP)
+    whole = table(filled, job, "?page_size=100")
+    assert whole["columns"] == ["row", "hand", "arm.m", "arm.l", "mass", "torque", "use"]
+    assert (whole["rows"], whole["done"], whole["state"]) == (40, 40, "succeeded")
+    # the slider needs a stiffness, but not for gravity; no body or port is called nowhere
+    assert {code: each["rows"] for code, each in whole["refused"].items()} == {"unknown-port": 10}
+    assert whole["finite"] == 30
+    assert whole["count"] == whole["kept"] == whole["proven"] == len(whole["items"]) <= 30
+    assert all(row["torque"] < 90 and row["use"] == row["torque"] / row["mass"] for row in whole["items"])
+    assert {row["hand"] for row in whole["items"]} >= {"pendulum #1", "slider"}
+
+    page = table(filled, job, "?sort=-torque&page_size=4&columns=torque,mass&where=mass>3")
+    assert page["columns"] == ["row", "torque", "mass"]
+    torques = sorted((row["torque"] for row in whole["items"] if row["mass"] > 3), reverse=True)
+    assert [row["torque"] for row in page["items"]] == torques[:4]
+    following = filled.get(page["links"]["next"]).json()
+    assert [row["torque"] for row in following["items"]] == torques[4:8]
+
+    front = table(filled, job, what="pareto")["items"]
+    for row in whole["items"]:
+        beaten = any(
+            one["torque"] <= row["torque"] and one["mass"] >= row["mass"] and one["row"] != row["row"] for one in front
+        )
+        assert beaten != (row["row"] in [one["row"] for one in front])
+
+    column = table(filled, job, "/columns/torque?bins=3")
+    assert column["count"] == sum(column["histogram"]["counts"]) == whole["count"]
+    assert column["quantiles"]["1"] == max(row["torque"] for row in whole["items"])
+
+    for label in ("study:night", "arm:long", "study:night arm:long"):
+        assert [each["id"] for each in filled.get("/v1/jobs", params={"label": label}).json()["items"]] == [job]
+    assert filled.get("/v1/jobs?label=study").json()["items"] == []
+
+
+def test_tables_are_files_and_rows_become_trees(filled: TestClient, store: Store) -> None:
+    job = done(filled, store, SWEEP)
+    whole = table(filled, job, "?page_size=100")["items"]
+    accept = {"npz": "application/x-npz", "arrow": "application/vnd.apache.arrow.stream"}
+    npz = filled.get(f"/v1/jobs/{job}/table", headers={"Accept": accept["npz"]}).content
+    arrays = read_npz(io.BytesIO(npz), len(npz))
+    assert arrays["torque"].tolist() == [row["torque"] for row in whole]
+    assert arrays["hand"].tolist() == [row["hand"] for row in whole]
+    text = filled.get(f"/v1/jobs/{job}/table?sort=mass", headers={"Accept": "text/csv"}).text.splitlines()
+    assert text[0] == "row,hand,arm.m,arm.l,mass,torque,use"
+    assert len(text) == len(whole) + 1
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    stream = filled.get(f"/v1/jobs/{job}/table", headers={"Accept": accept["arrow"]}).content
+    assert pyarrow.ipc.open_stream(stream).read_all().column("torque").to_pylist() == [row["torque"] for row in whole]
+    kept = filled.get(f"/v1/jobs/{job}/pareto", headers={"Accept": "application/vnd.apache.parquet"}).content
+    assert 0 < parquet.read_table(io.BytesIO(kept)).num_rows < len(whole)
+    assert filled.get(f"/v1/jobs/{job}/table", headers={"Accept": "image/png"}).status_code == 406
+
+    row = whole[7]
+    made = filled.post(f"/v1/jobs/{job}/rows/{row['row']}/tree", json={"name": "chosen"})
+    assert made.status_code == 201, made.text
+    state = {"quantities": ["gravity"], "q": [0.3, 0.1]}
+    numbers = filled.post("/v1/trees/chosen/evaluations", json=state).json()["gravity"]
+    assert abs(numbers[0]) == pytest.approx(row["torque"], rel=1e-12)
+    assert filled.get("/v1/trees/chosen").json()["mass"] == pytest.approx(row["mass"])
+    gone = filled.post(f"/v1/jobs/{job}/rows/4000/tree")
+    assert (gone.status_code, gone.json()["code"]) == (404, "unknown-row")
+    other = submitted(filled, {"kind": "verify", "items": [{"tree": "cell"}]})
+    assert filled.get(f"/v1/jobs/{other}/table").json()["code"] == "no-table"
+
+
+def test_queries_choose_parts(filled: TestClient, store: Store) -> None:
+    choices = {"hand": {"query": {"tag": "planar"}}}
+    job = done(filled, store, {**SWEEP, "choices": choices, "keep": 3, "proof": 0})
+    whole = table(filled, job)
+    assert whole["rows"] == 20
+    assert len(whole["items"]) == whole["kept"] == 3
+
+
+CHANGES: tuple[tuple[dict[str, Any], str, str], ...] = (
+    ({"choices": {"leg": ["pendulum"]}}, "/choices/leg", "unknown-choice"),
+    ({"choices": {"hand": ["pendulum", "pendolum"]}}, "/choices/hand/1", "unknown-substructure"),
+    ({"choices": {"hand": {"query": {"tag": "nothing"}}}}, "/choices/hand/query", "nothing-found"),
+    ({"choices": {"hand": []}}, "/choices/hand", "empty"),
+    ({"columns": {"x": {"quantity": "metrik"}}}, "/columns/x/quantity", "unknown-quantity"),
+    (
+        {"columns": {"x": {"quantity": "gravity", "of": "arm.qq"}}, "where": "", "pareto": None},
+        "/columns/x/of",
+        "unknown-coordinate",
+    ),
+    ({"columns": {"x": "mass/weight"}}, "/columns/x", "unknown-column"),
+    ({"columns": {"mass": "mass"}, "where": "mass", "pareto": None}, "/where", "comparison-expected"),
+    ({"where": "weight < 3"}, "/where", "unknown-column"),
+    ({"pareto": {"minimise": ["weight"]}}, "/pareto/minimise/0", "unknown-column"),
+    ({"samples": {"method": "sobol", "of": {"arm.m": {"uniform": [1, 2]}}}}, "/samples", "missing-count"),
+    ({"samples": {"of": {"arm.mm": {"values": [1]}}}}, "/samples/of/arm.mm", "unknown-parameter"),
+    ({"samples": {"of": {"arm.m": {"values": [1], "unit": "s"}}}}, "/samples/of/arm.m/unit", "unit-mismatch"),
+    ({"samples": {"of": {"arm.m": {"uniform": [1, 2], "count": 10**8}}}}, "/samples", "too-many-rows"),
+    ({"samples": {"of": {"arm.m": {"uniform": [1, 2], "count": 10**7}}}}, "/keep", "missing"),
+    ({"template": {"name": "pair"}}, "/template/instances", "missing"),
+    ({"columns": {}}, "/columns", "too_short"),
+    ({"on_invalid": "refuse"}, "/on_invalid", "extra-forbidden"),
+    ({"labels": {"a": "b c"}}, "/labels", "bad-label"),
+)
+
+
+def test_flanges_that_do_not_fit_are_told_and_left_out(filled: TestClient, store: Store) -> None:
+    """A tree is warned of them, a sweep counts them by reason."""
+    flange = {**PENDULUM["ports"][0], "interface": "ISO 9409-1-50-4-M6"}
+    for name, more in (
+        ("wide", {"ports": [flange]}),
+        ("fits", {"mount": {"interface": "ISO 9409-1-50-4-M6"}}),
+        ("differs", {"mount": {"interface": "ISO 9409-1-31.5-4-M5"}}),
+    ):
+        assert filled.post("/v1/substructures", json={**PENDULUM, "name": name, **more}).status_code == 201
+    arm = {"name": "arm", "substructure": "wide"}
+    warned = []
+    for name in ("pendulum", "fits", "differs"):
+        hand = {"name": "hand", "substructure": name, "at": f"arm.{flange['name']}"}
+        tree = {"name": f"with-{name}", "gravity": [0, 0, 0], "instances": [arm, hand]}
+        made = filled.post("/v1/trees", json=tree)
+        assert made.status_code == 201
+        codes = [each["code"] for each in made.json()["certificate"]["warnings"]]
+        warned.append("interfaces-differ" in codes)
+    assert warned == [False, False, True]
+    template = {**SWEEP["template"], "instances": [arm, {"name": "hand", "substructure": "fits", "at": "arm.tip"}]}
+    choices = {"hand": ["pendulum", "fits", "differs"]}
+    whole = table(filled, done(filled, store, {**SWEEP, "template": template, "choices": choices, "where": ""}))
+    assert {code: each["rows"] for code, each in whole["refused"].items()} == {"interfaces-differ": 10}
+    assert whole["kept"] == 20
+
+
+@pytest.mark.parametrize(("change", "pointer", "code"), CHANGES)
+def test_bad_sweeps_are_refused_by_name(filled: TestClient, change: dict[str, Any], pointer: str, code: str) -> None:
+    found = filled.post("/v1/jobs", json={**SWEEP, **change})
+    assert found.status_code == 422, found.text
+    told = [(each["pointer"], each["code"]) for each in found.json()["errors"]]
+    assert pointer in [place for place, _ in told]
+    assert code in [each for _, each in told] or code.replace("_", "-") in [each for _, each in told], told
+    assert filled.get("/v1/jobs").json()["items"] == []
+
+
+def test_items_are_ranges_that_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = MemoryLibrary([PENDULUM, SLIDER])
+    request = {name: x for name, x in SWEEP.items() if name not in ("kind", "labels")} | {"proof": 0}
+    whole = [kind.SWEEP.run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
+    assert len(whole) == 1
+    monkeypatch.setattr(kind, "AT_ONCE", 7)
+    parts = [kind.SWEEP.run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
+    assert len(parts) == 6
+    read = [[kind.rows_of(each.files["rows"]) for each in some] for some in (whole, parts)]
+    for name in ("row", "torque", "arm.m"):
+        assert np.array_equal(read[0][0][name], np.concatenate([each[name] for each in read[1]]))
+
+
+def test_a_planted_fault_in_one_range_fails_it(monkeypatch: pytest.MonkeyPatch) -> None:
+    library = MemoryLibrary([PENDULUM, SLIDER])
+    request = {name: x for name, x in SWEEP.items() if name not in ("kind", "labels")} | {"proof": 400}
+    item = library.items("sweep", request)[0]
+    assert kind.SWEEP.run(item, library.blobs, lambda _: None).problem is None
+    real = block.values_of
+    monkeypatch.setattr(block, "values_of", lambda some: {n: x * (1 + 1e-9) for n, x in real(some).items()})
+    outcome = kind.SWEEP.run(item, library.blobs, lambda _: None)
+    assert outcome.problem is not None
+    assert outcome.problem["code"] == "proof-failed"
+
+
+def test_the_page_of_a_sweep_is_its_table(filled: TestClient, store: Store) -> None:
+    job = done(filled, store, SWEEP)
+    page = read(filled, f"/jobs/{job}?sort=-torque&where=mass>3")
+    torques = [row["torque"] for row in table(filled, job, "?sort=-torque&where=mass>3&page_size=100")["items"]]
+    cells = [f"{x:.6g}" for x in torques]
+    assert [word for word in page.words if word in cells][: len(cells)] == cells
+    assert f"{len(torques)} of" in page.text
+    assert "unknown-port" in page.text
+    assert ("class", "plot") in page.attributes
+    assert ("data-address", f"/v1/jobs/{job}") in page.attributes
+    assert any(name == "data-address" and str(x).endswith("/tree") for name, x in page.attributes)
+    assert "truth value" in read(filled, f"/jobs/{job}?where=mass").text
+    assert job[:16] in read(filled, "/jobs?label=study:night").text
+    assert "None of these" in read(filled, "/jobs?kind=evaluate").text

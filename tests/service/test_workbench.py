@@ -1,0 +1,162 @@
+"""The workbench in a browser: what is done by hand is what the interface does, and can be undone to the digest."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from .one_store import filled, store
+from .test_model_pages import READY, Tab, address, browser, in_browser
+
+__all__ = ["address", "browser", "filled", "store"]
+
+
+@pytest.fixture
+def bench(filled: TestClient, request: pytest.FixtureRequest) -> str:
+    """A tree of one pendulum of its own name."""
+    name = f"bench-{abs(hash(request.node.name)) % 10**8}"
+    tree = {"name": name, "gravity": [0, 0, "-9.81"], "instances": [{"name": "arm", "substructure": "pendulum"}]}
+    assert filled.post("/v1/trees", json=tree).status_code == 201
+    return name
+
+
+def digest(client: TestClient, reference: str) -> str:
+    found: str = client.get(f"/v1/trees/{reference}").json()["digest"]
+    return found
+
+
+def arrived(tab: Tab, path: str) -> None:
+    tab.page.wait_for_url(f"**{path}*")
+    tab.page.wait_for_selector("#place[data-view]")
+
+
+def typed(tab: Tab, *fields: str) -> None:
+    """Fields one after the other, by the keyboard alone."""
+    for text in fields:
+        tab.page.keyboard.press("Control+A")
+        tab.page.keyboard.type(text)
+        tab.page.keyboard.press("Tab")
+
+
+@in_browser
+def test_coupled_by_keyboard_undone_and_done_again(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    assert tab.until(READY) == "3d"
+    tab.page.focus("[data-action=couplings] [name=substructure]")
+    typed(tab, "pendulum", "hand", "arm.tip", "0.1")
+    tab.until("document.getElementById('view').dataset.ghost === 'arm.tip'")
+    request = tab.page.evaluate("document.querySelector('[data-request=curl]').textContent")
+    tab.page.keyboard.press("Enter")
+    arrived(tab, f"/trees/{bench}@2/edit")
+    placement = {"position": [0.1, 0, 0], "rpy": [0, 0, 0]}
+    other = {"name": "hand", "substructure": "pendulum", "at": "arm.tip", "placement": placement}
+    assert json.loads(request.partition("-d '")[2][:-1]) == other
+    first, made = digest(filled, f"{bench}@1"), digest(filled, f"{bench}@2")
+    assert filled.post(f"/v1/trees/{bench}@1/couplings", json=other).json()["digest"] == made
+    shown = tab.page.inner_text("#changed")
+    assert "degrees of freedom\t1\t2" in shown
+    assert "operations of metric" in shown
+    tab.page.focus("#undo")
+    tab.page.keyboard.press("Enter")
+    arrived(tab, f"/trees/{bench}@4/edit")
+    assert digest(filled, bench) == first
+    tab.page.click("#redo")
+    arrived(tab, f"/trees/{bench}@5/edit")
+    assert digest(filled, bench) == made
+    tab.close()
+
+
+@in_browser
+def test_frames_are_picked_for_loads_and_loops(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    tab.page.click("summary:has-text('Add a spring')")
+    tab.page.fill("[data-action=loads] [name=name]", "pull")
+    tab.page.focus("[data-action=loads] [name=from]")
+    tab.page.click("[data-frame='world']")
+    tab.page.click("[data-frame='arm.tip']")
+    tab.page.fill("[data-action=loads] [name=stiffness]", "20")
+    tab.page.click("[data-action=loads] button")
+    arrived(tab, f"/trees/{bench}@2/edit")
+    told = filled.get(f"/v1/trees/{bench}").json()["loads"]
+    assert [(x["type"], x["to"], x["stiffness"]) for x in told] == [("spring", "arm.tip", 20)]
+    tab.page.click("[aria-label='remove pull']")
+    arrived(tab, f"/trees/{bench}@3/edit")
+    assert digest(filled, bench) == digest(filled, f"{bench}@1")
+    tab.page.click("summary:has-text('Close a loop')")
+    tab.page.fill("[data-action=closures] [name=name]", "rod")
+    tab.page.select_option("[data-action=closures] [name=type]", "rod")
+    tab.page.fill("[data-action=closures] [name=from]", "arm.tip")
+    tab.page.fill("[data-action=closures] [name=length]", "1.5")
+    tab.page.click("[data-action=closures] button")
+    arrived(tab, f"/trees/{bench}@4/edit")
+    (told,) = filled.get(f"/v1/trees/{bench}").json()["closures"]
+    assert (told["name"], told["type"], told["from"]) == ("rod", "rod", "arm.tip"), told
+    tab.close()
+
+
+@in_browser
+def test_a_frame_is_picked_in_the_view(browser: Any, address: str, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    tab.page.focus("[data-action=couplings] [name=at]")
+    box = tab.page.query_selector("#view canvas").bounding_box()
+    field = "document.querySelector('[data-action=couplings] [name=at]').value"
+    for x, y in ((i / 12, j / 12) for j in range(1, 11) for i in range(3, 10)):
+        tab.page.mouse.click(box["x"] + x * box["width"], box["y"] + y * box["height"])
+        if tab.page.evaluate(field) == "arm.tip":
+            break
+    assert tab.page.evaluate(field) == "arm.tip"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_is_wrong_is_told_and_nothing_changes(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit", 360)
+    tab.until(READY)
+    for name, text in (("substructure", "nothing"), ("name", "hand"), ("at", "arm.tipp")):
+        tab.page.fill(f"[data-action=couplings] [name={name}]", text)
+    tab.page.click("[data-action=couplings] button")
+    tab.until("document.getElementById('told').className === 'warn'")
+    assert "nothing" in tab.page.inner_text("#told")
+    assert filled.get(f"/v1/trees/{bench}").json()["revision"] == 1
+    tab.wrong = [each for each in tab.wrong if "40" not in each and "422" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_published_and_the_requests_of_other_programs(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    for name, text in (("substructure", "pendulum"), ("name", "hand"), ("at", "arm.tip"), ("z", "-0.2")):
+        tab.page.fill(f"[data-action=couplings] [name={name}]", text)
+    command = tab.page.evaluate("document.querySelector('[data-request=curl]').textContent")
+    told = subprocess.run(["/bin/bash", "-c", command], capture_output=True, text=True, check=True).stdout
+    assert json.loads(told)["revision"] == 2
+    python = tab.page.evaluate("document.querySelector('[data-request=Python]').textContent")
+    assert "couple(" in python
+    exec(compile(python.replace(f"{bench}@1", f"{bench}@2").replace('"hand"', '"other"'), "shown", "exec"), {})  # noqa: S102
+    assert filled.get(f"/v1/trees/{bench}").json()["dof"] == 3
+    tab.page.click("summary:has-text('Publish as a part')")
+    tab.page.fill("[data-action=publish] [name=name]", f"{bench}-part")
+    tab.page.click("[data-action=publish] button")
+    tab.page.wait_for_url(f"**/substructures/{bench}-part@1")
+    tab.until(READY)
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_without_scripts_the_outline_is_there(browser: Any, address: str, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit", java_script_enabled=False)
+    assert "Steps are taken by a script" in tab.page.inner_text("main")
+    assert "arm" in tab.page.inner_text("#outline")
+    tab.page.close()

@@ -1,0 +1,164 @@
+"""Rows of sweeps: they are what their trees are, whatever the ranges in which they were computed."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from substructures import couple, linearise
+from substructures.documents import read_model
+from substructures.sweeps import block as blocks
+from substructures.sweeps.block import Block, Refusals, compute, disagreement, joined, shape_maker, slow_columns
+from substructures.sweeps.document import SweepDocument
+from substructures.sweeps.plan import Plan, given_options
+from substructures.sweeps.shapes import Option, Shape, option_of
+from tests.catalogue_entries import shipped_part
+
+STATE = {"q": [0.2, 0.4, -0.3], "qd": [0.1, 0.2, 0.3], "qdd": [1, 0, 2]}
+REST = {"q": [0, 0, 0]}
+CRANE: dict[str, Any] = {
+    "template": {
+        "name": "crane",
+        "gravity": [0, 0, "-g"],
+        "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}},
+        "instances": [
+            {"name": "rail", "substructure": "linear-rail"},
+            {"name": "load", "substructure": "acrobot", "at": "rail.mount", "placement": {"rpy": [0, 0, 0]}},
+        ],
+    },
+    "choices": {
+        "load": ["acrobot", {"substructure": "acrobot", "parameters": {"m1": 3}}, "simple-pendulum"],
+    },
+    "samples": {
+        "method": "random",
+        "count": 40,
+        "seed": 2,
+        "of": {"rail.m": {"uniform": [1, 9]}, "g": {"uniform": [1, 9]}},
+    },
+    "columns": {
+        "mass": "mass",
+        "force": {"quantity": "inverse_dynamics", "of": "rail.x", "over": STATE},
+        "worst": {
+            "quantity": "inverse_dynamics",
+            "over": {"q": [[0, 0.1, 0.2], [0, 0.2, 0.1]], "qd": [[1, 2, 3], [3, 2, 1]], "qdd": [[1, 1, 1], [0, 0, 0]]},
+            "take": "largest_absolute",
+        },
+        "inertia": {"quantity": "metric", "of": ["rail.x", "rail.x"], "over": {"q": STATE["q"]}},
+        "x": {"quantity": "mass_centre.position", "of": "x", "over": {"q": STATE["q"]}},
+        "use": "force/mass - rail.m",
+    },
+    "where": "mass > 0",
+}
+
+
+class Sweep:
+    """A sweep of parts of the catalogue, in process."""
+
+    def __init__(self, **changes: Any) -> None:
+        document = read_model(SweepDocument, {**CRANE, **changes})
+        given = [[fields for _, fields in each] for each in given_options(document)]
+        self.plan = Plan(document, tuple(tuple(each) for each in given))
+        self.made: dict[tuple[str, ...], Shape] = {}
+        self.refusals = Refusals()
+
+    def option(self, i: int, k: int) -> Option:
+        fields = self.plan.options[i][k]
+        return option_of(shipped_part(fields["substructure"]), fields)
+
+    def rows(self, start: int = 0, stop: int | None = None) -> Block:
+        shape_of = shape_maker(self.plan, self.made)
+        return compute(self.plan, start, stop or self.plan.rows, self.option, shape_of, self.refusals, [])
+
+    def slow(self, row: int) -> tuple[dict[str, float], float]:
+        chosen = self.plan.chosen(row // self.plan.sampler.size)
+        return slow_columns(self.plan, row, [self.option(i, k).part for i, k in enumerate(chosen)])
+
+
+def test_rows_are_what_their_trees_are() -> None:
+    sweep = Sweep()
+    found = sweep.rows()
+    # two options of one part have one shape, the pendulum has other coordinates than the columns are given for
+    assert len(sweep.made) == 2
+    assert sweep.plan.rows == 120
+    assert found.rows.tolist() == list(range(80))
+    assert {code: each["rows"] for code, each in sweep.refusals.by_code.items()} == {"wrong-length": 40}
+    for k in (0, 17, 40, 79):
+        slow, condition = sweep.slow(int(found.rows[k]))
+        assert not disagreement({name: float(found.columns[name][k]) for name in slow}, slow, condition)
+    # what is bound for the second option
+    mass = found.columns["mass"]
+    assert mass[40:] - mass[:40] == pytest.approx(mass[40] - mass[0])
+
+
+def test_ranges_do_not_matter() -> None:
+    sweep = Sweep()
+    whole = sweep.rows()
+    parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))])
+    assert parts.rows.tolist() == whole.rows.tolist()
+    assert all(np.array_equal(parts.columns[name], x) for name, x in whole.columns.items())
+
+
+def test_frequencies_are_those_of_the_linearisation() -> None:
+    takes = ("lowest_frequency", "highest_frequency", "least_damping", "largest_real_part", "is_stable")
+    hanging = {"q": [0, -np.pi / 2, 0]}
+    columns: dict[str, Any] = {take: {"analysis": "linearisation", "at": hanging, "take": take} for take in takes}
+    columns["free"] = {"analysis": "linearisation", "at": REST}
+    held = {"held": {"analysis": "linearisation", "at": REST, "held": True, "take": "highest_frequency"}}
+    sweep = Sweep(columns={name: x for name, x in columns.items() if name != "free"}, where="", choices={})
+    found = sweep.rows()
+    for row in (0, 5):
+        parts = {"rail": shipped_part("linear-rail"), "load": shipped_part("acrobot")}
+        linear = linearise(couple(sweep.plan.tree(row), parts), hanging["q"])
+        sizes = [mode.frequency for mode in linear.modes]
+        assert len(sizes) > 2
+        assert found.columns["highest_frequency"][row] == pytest.approx(max(sizes), rel=1e-9)
+        assert found.columns["lowest_frequency"][row] == pytest.approx(min(sizes), abs=1e-6)
+        assert found.columns["least_damping"][row] == pytest.approx(
+            min(m.damping_ratio for m in linear.modes), abs=1e-6
+        )
+        assert found.columns["is_stable"][row] == ("unstable" not in linear.stability.verdict)
+    # what falls has no modes, unless it is held
+    falling = Sweep(columns=columns, where="", choices={})
+    assert not len(falling.rows().rows)
+    assert "'free'" in falling.refusals.by_code["not-finite"]["example"]["message"]
+    assert len(Sweep(columns=held, where="", choices={}).rows().rows) == 40
+
+
+def test_a_planted_fault_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    sweep = Sweep()
+    slow, condition = sweep.slow(3)
+    right = {name: float(x[3]) for name, x in sweep.rows().columns.items() if name in slow}
+    assert not disagreement(right, slow, condition)
+    real = blocks.values_of
+    monkeypatch.setattr(blocks, "values_of", lambda some: {n: x * (1 + 1e-9) for n, x in real(some).items()})
+    wrong = {name: float(x[3]) for name, x in Sweep().rows().columns.items() if name in slow}
+    assert "by the tree of this row" in disagreement(wrong, slow, condition)
+
+
+def test_the_front_is_kept_first() -> None:
+    sweep = Sweep(pareto={"minimise": ["mass"], "maximise": ["x"]}, keep=9, choices={})
+    kept, every = sweep.rows(), Sweep(choices={}).rows()
+    assert len(kept.rows) == 9
+    assert every.columns["mass"].argmin() in kept.rows
+    assert every.columns["x"].argmax() in kept.rows
+
+
+def test_rows_without_finite_numbers_are_told() -> None:
+    sweep = Sweep(columns={"mass": "mass", "bad": "sqrt(mass - 4.5)"}, where="", choices={})
+    found = sweep.rows()
+    bad = sweep.refusals.by_code["not-finite"]
+    assert 0 < bad["rows"] == 40 - len(found.rows)
+    assert "'bad'" in bad["example"]["message"]
+
+
+def test_trees_of_rows_have_their_numbers_bound() -> None:
+    plan = Sweep().plan
+    tree = plan.tree(41)
+    sample = {name: float(x[0]) for name, x in plan.sampler.rows(1, 2).items()}
+    assert tree["instances"][0]["parameters"] == {"m": sample["rail.m"]}
+    assert tree["instances"][1]["parameters"] == {"m1": 3}
+    assert tree["parameters"]["g"]["value"] == sample["g"]
+    assert replace(plan).shown(41) == {"load": "acrobot"}
