@@ -14,7 +14,7 @@ from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.sharing.provenance import Origin
 from service.queries.trees import Tree
-from service.schemas.entries import PLAIN
+from service.schemas.entries import PLAIN, PartEntry
 from service.store.store import Store
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
@@ -37,13 +37,15 @@ def with_preview(store: Store, worker: Worker, found: Mapping[str, Any]) -> Mapp
     return {**found, "preview": worker("preview", item).summary}
 
 
-def prepare(store: Store, viewer: Viewer, worker: Worker, tree: Mapping[str, Any]) -> ImportedTree:
-    """Derive the parts of a file and couple them. Raises as submissions of parts and trees."""
-    revision = trees.prepare(store, viewer, worker, tree, PLAIN, named=True)
+def prepare(
+    store: Store, viewer: Viewer, worker: Worker, tree: Mapping[str, Any], entry: PartEntry = PLAIN
+) -> ImportedTree:
+    """Derive the parts of a file and couple them; ``entry``: of all of them. Raises as submissions of parts and trees."""
+    revision = trees.prepare(store, viewer, worker, tree, entry, named=True)
     made = []
     for content in revision.coupled.inline:
         definition = Definition.stored(read_json(content.row["definition"].encode()))
-        made.append(catalogue.prepare(store, viewer, definition, PLAIN, IMPORTED, partial(_given, content)))
+        made.append(catalogue.prepare(store, viewer, definition, entry, IMPORTED, partial(_given, content)))
     return ImportedTree(made, revision)
 
 

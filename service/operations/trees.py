@@ -16,7 +16,7 @@ from service.jobs.kinds.shapes import SHARE
 from service.jobs.worker import Worker
 from service.messages.answers import etag
 from service.messages.references import Reference, is_pinned, parse_reference
-from service.messages.refusals import Refused, StaleError, moved, not_found
+from service.messages.refusals import Refused, StaleError, moved, not_found, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import catalogue, owners
 from service.operations.library import StoreLibrary
@@ -113,6 +113,29 @@ def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: st
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
     kept = [each for each in instances if each["name"] != instance]
     return TreeChange({**spec, "instances": kept}, base, is_pinned(text), "")
+
+
+def replacement(
+    store: Store, viewer: Viewer, text: str, instance: str, data: Any, if_match: str | None = None
+) -> TreeChange:
+    """One instance with other members: those of ``data`` take the place of its own, null leaves one out, and a part
+    that is named takes that of a definition, or the other way round. Raises Refused 403, 404, 412 or 422.
+    """
+    base, spec = _existing(store, viewer, text, if_match)
+    instances = spec.get("instances", [])
+    known = [each["name"] for each in instances]
+    if instance not in known:
+        raise not_found(f"the tree '{text}' has no instance '{instance}'{among(instance, known)}", "unknown-instance")
+    if not isinstance(data, Mapping):
+        raise unprocessable("invalid-document", "send an object with the members that change", "")
+    if data.get("name", instance) != instance:
+        raise unprocessable("name-stays", f"what hangs on '{instance}' knows it by this name, which stays", "/name")
+    k = known.index(instance)
+    left = {"substructure", "definition"} if {"substructure", "definition"} & data.keys() else set()
+    merged = {**{name: value for name, value in instances[k].items() if name not in left}, **data}
+    made = {name: value for name, value in merged.items() if value is not None}
+    document = {**spec, "instances": [*instances[:k], made, *instances[k + 1 :]]}
+    return TreeChange(document, base, is_pinned(text), f"/instances/{k}")
 
 
 def load(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:

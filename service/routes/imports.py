@@ -19,7 +19,7 @@ from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
 from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
-from service.schemas.entries import PLAIN
+from service.schemas.entries import VISIBILITY, PartEntry, Visibility
 from service.schemas.imports import ImportView
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.kinds import KINDS
@@ -51,6 +51,7 @@ def read_file(
     ] = "",
     preview: Annotated[bool, Query(description="derive it, too, and draw it: nothing is stored")] = False,
     stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
+    visibility: Annotated[Visibility | None, Query(description=f"of what is stored: {VISIBILITY}")] = None,
 ) -> Response:
     """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
     if declared_type(request) not in MEDIA_TYPES:
@@ -63,7 +64,8 @@ def read_file(
         return act.compute(lambda: json_answer(imports.answer_of(_read(store, act, body, wanted, preview))))
     act.require("write")
     found = act.first(lambda: read(act.worker, body, wanted))
-    return _tree(store, act, found) if "tree" in found else _part(store, act, found)
+    entry = PartEntry(visibility=visibility)
+    return _tree(store, act, found, entry) if "tree" in found else _part(store, act, found, entry)
 
 
 def _read(store: StoreOf, act: ActOf, body: bytes, wanted: Wanted, preview: bool) -> Mapping[str, Any]:
@@ -71,14 +73,14 @@ def _read(store: StoreOf, act: ActOf, body: bytes, wanted: Wanted, preview: bool
     return imports.with_preview(store, act.worker, found) if preview else found
 
 
-def _part(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
+def _part(store: StoreOf, act: ActOf, found: Mapping[str, Any], entry: PartEntry) -> Response:
     """Derived and stored as a substructure, at once or by a job."""
     definition = Definition.read(found["definition"])
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
         make = partial(catalogue.derived, act.worker, definition, store.work_limits)
-        submission = catalogue.prepare(store, act.viewer, definition, PLAIN, IMPORTED, make)
+        submission = catalogue.prepare(store, act.viewer, definition, entry, IMPORTED, make)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and tell of it."""
@@ -90,15 +92,16 @@ def _part(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
 
         return commit
 
-    return act.run(prepare, deferred(act, "derive", found["definition"], members=IMPORTED.members()))
+    document = {**found["definition"], **_said(entry)}
+    return act.run(prepare, deferred(act, "derive", document, members=IMPORTED.members()))
 
 
-def _tree(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
+def _tree(store: StoreOf, act: ActOf, found: Mapping[str, Any], entry: PartEntry) -> Response:
     """Its parts stored as substructures, coupled and stored as a tree, at once or by a job."""
 
     def prepare() -> Any:
         """Derive the parts and couple them."""
-        ready = imports.prepare(store, act.viewer, act.worker, found["tree"])
+        ready = imports.prepare(store, act.viewer, act.worker, found["tree"], entry)
 
         def commit(connection: Connection) -> Answer:
             """Store the parts and the revision, and tell of it."""
@@ -108,4 +111,9 @@ def _tree(store: StoreOf, act: ActOf, found: Mapping[str, Any]) -> Response:
 
         return commit
 
-    return act.run(prepare, deferred(act, "assemble", found["tree"]))
+    return act.run(prepare, deferred(act, "assemble", {**found["tree"], **_said(entry)}))
+
+
+def _said(entry: PartEntry) -> dict[str, Any]:
+    """The members of a document that say the same."""
+    return entry.model_dump(exclude_none=True)

@@ -132,6 +132,22 @@ def add_coupling(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match:
     return changed(act, lambda: trees.coupling(store, act.viewer, ref, body, if_match))
 
 
+@router.patch(
+    "/{ref}/couplings/{instance}",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("ChangedInstance"),
+    responses=made(TreeView),
+)
+@timed("derive")
+def change_coupling(
+    ref: str, instance: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None
+) -> Response:
+    """Give an instance another part, place or other parameters; what it carries stays on it: a new revision."""
+    return changed(act, lambda: trees.replacement(store, act.viewer, ref, instance, body, if_match))
+
+
 @router.delete(
     "/{ref}/couplings/{instance}",
     status_code=201,

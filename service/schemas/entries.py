@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal, Self
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field
 
 from service.schemas.shapes import Shape
 from substructures.documents import read_model
-from substructures.documents.fields import Words
-from substructures.part.definition import Definition
-from substructures.tree.document import REFERENCE, TreeSpec
+from substructures.documents.fields import Name, Number, Words
+from substructures.part.definition import Definition, Placement
+from substructures.tree.document import MOUNT, REFERENCE, TreeSpec
 
 Visibility = Literal["public", "private"]
 VISIBILITY = "who sees the name: everybody (the default of a new name), or the keys of its owner"
@@ -58,6 +58,16 @@ class SubmittedTree(TreeSpec):
 
     visibility: Visibility = Field("public", description=VISIBILITY)
     note: Words = Field("", max_length=2000, description=NOTE)
+
+
+class ChangedInstance(Shape):
+    """Members of an instance that take the place of its own; null leaves one out."""
+
+    substructure: Annotated[str, Field(pattern=REFERENCE)] | None = None
+    definition: Definition | None = None
+    at: str | None = Field(None, pattern=MOUNT)
+    placement: Placement | None = None
+    parameters: dict[Name, Number] | None = Field(None, max_length=5000)
 
 
 class VisibilityRequest(Shape):

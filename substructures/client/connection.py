@@ -159,7 +159,7 @@ def _takes_key(method: str, path: str) -> bool:
     """
     if method == "POST":
         return not _is_computed(method, path)
-    return method == "DELETE" and path.startswith("/v1/trees/")
+    return method in ("DELETE", "PATCH") and path.startswith("/v1/trees/")
 
 
 def _is_computed(method: str, path: str) -> bool:

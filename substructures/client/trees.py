@@ -73,6 +73,11 @@ class TreeCaller(CatalogueCaller):
         """Couple one more instance onto a tree; the new revision. Of a Tree it is that revision which is changed."""
         return self.tree_of(self._made("POST", f"/v1/trees/{step(tree)}/couplings", instance))
 
+    def change_coupling(self, tree: str | Referable, instance: str, **members: Any) -> Tree:
+        """Give an instance other members (``substructure``, ``at``, ``placement``, ``parameters``), None leaves one
+        out; what it carries stays on it; the new revision."""
+        return self.tree_of(self._made("PATCH", f"/v1/trees/{step(tree)}/couplings/{step(instance)}", members))
+
     def uncouple(self, tree: str | Referable, instance: str) -> Tree:
         """Take an instance off a tree; the new revision."""
         return self.tree_of(self._made("DELETE", f"/v1/trees/{step(tree)}/couplings/{step(instance)}"))

@@ -294,3 +294,18 @@ def test_same_compares_files(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     ]
     theirs.write_text(ARM.replace('"shoulder"', '"other"'))
     assert main(["same", str(ours), str(theirs), "--coordinates", "shoulder=other"]) == 0
+
+
+@pytest.mark.parametrize("cut", ["", "&cut=upper-arm"])
+def test_what_is_stored_may_be_private(client: TestClient, cut: str) -> None:
+    answer = client.post(f"/v1/imports?store=true&name=arm&visibility=private{cut}", content=ARM, headers=XML)
+    assert answer.status_code == 201, answer.text
+    for kind in ("trees", "substructures") if cut else ("substructures",):
+        for found in client.get(f"/v1/{kind}").json()["items"]:
+            told = client.get(f"/v1/{kind}/{found['name']}/visibility").json()
+            assert told["visibility"] == "private", told
+
+
+def test_a_visibility_that_is_none_is_refused(client: TestClient) -> None:
+    answer = client.post("/v1/imports?store=true&visibility=hidden", content=ARM, headers=XML)
+    assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/query/visibility")

@@ -127,6 +127,9 @@ TABLE: dict[str, Row] = {
         TREE + "/{tree}/visibility", (409, 403, 404), (200, 403, 403), {"visibility": "public"}
     ),
     "post /v1/trees/{ref}/couplings": Row(TREE + "/{tree}/couplings", (201, 403, 404), (201, 403, 403), CAMERA),
+    "patch /v1/trees/{ref}/couplings/{instance}": Row(
+        TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403), {"placement": {"position": [0, 0, 1]}}
+    ),
     "delete /v1/trees/{ref}/couplings/{instance}": Row(
         TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403)
     ),

@@ -79,6 +79,53 @@ def test_a_carrier_cannot_be_removed(filled: TestClient, rows: Any) -> None:
     assert rows() == before
 
 
+def test_an_instance_gets_another_part_and_keeps_what_it_carries(filled: TestClient) -> None:
+    cart = {"name": "cart", "substructure": "slider", "at": "hand.tip"}
+    for body in (HAND, cart):
+        assert filled.post("/v1/trees/cell/couplings", json=body).status_code == 201
+    longer = {**PENDULUM, "name": "longer", "parameters": {**PENDULUM["parameters"], "l": {"value": 2, "unit": "m"}}}
+    assert filled.post("/v1/substructures", json=longer).status_code == 201
+    answer = filled.patch("/v1/trees/cell/couplings/hand", json={"substructure": "longer", "parameters": None})
+    assert answer.status_code == 201, answer.text
+    made = answer.json()
+    assert (made["revision"], made["based_on"], made["coordinates"]) == (4, 3, ["arm.q", "hand.q", "cart.x"])
+    hand = {**{name: x for name, x in HAND.items() if name != "parameters"}, "substructure": "longer"}
+    tree = {**TREE, "name": "other", "instances": [*TREE["instances"], hand, cart]}
+    assert filled.post("/v1/trees", json=tree).json()["program"] == made["program"]
+
+
+def test_an_instance_is_moved_and_moved_back(filled: TestClient) -> None:
+    before = filled.post("/v1/trees/cell/couplings", json=HAND).json()
+    for at, digest in (("world", None), (HAND["at"], before["digest"])):
+        moved = filled.patch("/v1/trees/cell/couplings/hand", json={"at": at}).json()
+        assert moved["instances"][-1].get("at", "world") == at
+        assert digest in (None, moved["digest"])
+
+
+@pytest.mark.parametrize(
+    ("instance", "body", "status", "pointer"),
+    [
+        ("nobody", {"at": "world"}, 404, None),
+        ("hand", {"at": "hand.tip"}, 422, "/at"),
+        ("hand", {"substructure": "nothing"}, 422, "/substructure"),
+        ("hand", {"substructure": None}, 422, ""),
+        ("hand", {"name": "other"}, 422, "/name"),
+        ("hand", {"weight": 3}, 422, "/weight"),
+        ("hand", [1], 422, ""),
+        ("arm", {"substructure": "slider"}, 422, "/instances/1/at"),  # of which the hand's place is none
+    ],
+)
+def test_what_an_instance_cannot_become_changes_nothing(
+    filled: TestClient, rows: Any, instance: str, body: Any, status: int, pointer: str | None
+) -> None:
+    filled.post("/v1/trees/cell/couplings", json=HAND)
+    before = rows()
+    answer = filled.patch(f"/v1/trees/cell/couplings/{instance}", json=body)
+    assert answer.status_code == status, answer.text
+    assert pointer is None or [each["pointer"] for each in answer.json()["errors"]] == [pointer]
+    assert rows() == before
+
+
 def test_inline_definition(filled: TestClient) -> None:
     instance = {"name": "cart", "definition": {**SLIDER, "name": "never-submitted"}, "at": "world"}
     answer = filled.post("/v1/trees", json={"name": "inline", "instances": [instance]})
