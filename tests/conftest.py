@@ -7,7 +7,12 @@ import sys
 from collections.abc import Generator
 from pathlib import Path
 
+import anyio
 import pytest
+
+# its modules are loaded when they are first used, and rewritten by pytest then, which two threads cannot do at once
+for _name in dir(anyio):
+    getattr(anyio, _name)
 
 sys.path.insert(0, str(Path(__file__).parent))
 

@@ -40,7 +40,7 @@ def with_preview(store: Store, worker: Worker, found: Mapping[str, Any]) -> Mapp
 def prepare(
     store: Store, viewer: Viewer, worker: Worker, tree: Mapping[str, Any], entry: PartEntry = PLAIN
 ) -> ImportedTree:
-    """Derive the parts of a file and couple them; ``entry``: of all of them. Raises as submissions of parts and trees."""
+    """Derive the parts of a file and couple them; ``entry``: of all. Raises as submissions of parts and trees."""
     revision = trees.prepare(store, viewer, worker, tree, entry, named=True)
     made = []
     for content in revision.coupled.inline:

@@ -4,18 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Any, get_args
+from typing import Any
 
 import orjson
 
+from service.pages import forms as step_forms
 from service.pages.html import Content, Html, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
-from substructures.tree.document import Closure
 
-LOOPS = get_args(Closure.model_fields["type"].annotation)
-PLACEMENT = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
-SPRING = (("stiffness", "N/m"), ("damping", "N s/m"), ("length", "m"))
+MOST = 50  # revisions that are offered for comparison
 #: quantities whose operations are compared with those of the revision before
 COUNTED = ("metric", "christoffel", "forces")
 
@@ -40,11 +38,17 @@ class Bench:
         return found
 
 
-def bench_page(bench: Bench, view: Html) -> bytes:
-    """The bytes of the page; ``view``: where the tree is drawn."""
+def bench_page(bench: Bench, view: Html, part: str = "") -> bytes:
+    """The bytes of the page; ``view``: where the tree is drawn; ``part``: that somebody wants to couple."""
     spec = bench.spec()
-    left = tag("div", view, _steps(bench), _changed(bench), class_="left")
-    forms = (_couple(bench), _spring(), _loop(), _publish(bench))
+    left = tag("div", view, tag("section", id="ahead"), _steps(bench), _changed(bench), class_="left")
+    forms = (
+        step_forms.couple(part, "world" if not bench.frames else ""),
+        step_forms.change(list(bench.frames)),
+        step_forms.load(orjson.loads(bench.tree.summary)["coordinates"]),
+        step_forms.loop(),
+        step_forms.publish(bench.tree.name),
+    )
     right = tag("div", _outline(bench, spec), tag("p", id="told", role="status"), *forms, _requests(), class_="right")
     about = {"reference": bench.reference, "name": bench.tree.name, "kind": "trees", "spec": bench.tree.spec}
     place = tag("div", left, right, _frames(bench), class_="place", id="place", data_bench=orjson.dumps(about).decode())
@@ -70,9 +74,19 @@ def _steps(bench: Bench) -> Html:
         parts += [link("revision before", f"/trees/{before}/edit")]
     if n < bench.latest:
         parts += [link("newest revision", f"/trees/{name}@{bench.latest}/edit")]
-    return tag(
-        "p", tag("button", "redo", type="button", id="redo", hidden="hidden"), " ", joined(parts, " "), class_="bar"
-    )
+    redo = tag("button", "redo", type="button", id="redo", hidden="hidden")
+    return html(tag("p", redo, " ", joined(parts, " "), class_="bar"), _comparison(bench))
+
+
+def _comparison(bench: Bench) -> Html:
+    """This revision beside any other one."""
+    others = [n for n in range(bench.latest, max(0, bench.latest - MOST), -1) if n != bench.tree.revision]
+    if not others:
+        return Html()
+    options = [tag("option", f"@{n}", value=f"{bench.tree.name}@{n}") for n in others]
+    chosen = tag("label", "compare with ", tag("select", options, name="to"))
+    compare = tag("button", "Compare", type="submit")
+    return tag("form", chosen, compare, method="get", action=f"/trees/{bench.reference}/difference", class_="bar small")
 
 
 def _changed(bench: Bench) -> Html:
@@ -114,11 +128,12 @@ def _instances(bench: Bench, instances: Sequence[Mapping[str, Any]], host: str) 
             continue
         name = each["name"]
         part = each.get("substructure", "").partition("@")[0] or each.get("definition", {}).get("name", "")
+        replace = tag("button", "replace", type="button", data_replace=name, aria_label=f"replace {name}")
         remove = tag("button", "remove", type="button", data_remove=f"couplings/{name}", aria_label=f"remove {name}")
         places = [_place(f"{name}.{frame}", frame) for frame in bench.frames.get(name, ())]
         below = _instances(bench, instances, name)
         where = tag("span", f" at {at}", class_="quiet small")
-        head = html(tag("b", name), " ", link(part, f"/substructures/{part}"), where, " ", remove)
+        head = html(tag("b", name), " ", link(part, f"/substructures/{part}"), where, " ", replace, " ", remove)
         found.append(tag("li", head, tag("div", places, class_="frames"), tag("ul", below) if below else None))
     return found
 
@@ -145,57 +160,6 @@ def _list(given: Sequence[Mapping[str, Any]], kind: str) -> Html | None:
         for each in given
     ]
     return tag("section", tag("h3", kind.capitalize()), tag("ul", rows, class_="plain")) if rows else None
-
-
-def _field(name: str, unit: str = "", **attributes: str | int | None) -> Html:
-    label = f"{name} " if not unit else f"{name} in {unit} "
-    return tag("label", label, tag("input", name=name, **{"autocomplete": "off", **attributes}))
-
-
-def _frame_field(name: str, value: str = "") -> Html:
-    return _field(name, list="frames", value=value, required="required", data_pick="1")
-
-
-def _form(title: str, action: str, *fields: Content) -> Html:
-    button = tag("button", title, type="submit")
-    return tag("details", tag("summary", title), tag("form", fields, button, data_action=action, class_="step"))
-
-
-def _couple(bench: Bench) -> Html:
-    numbers = [_field(name, unit, value="0", inputmode="decimal") for name, unit in PLACEMENT]
-    found = tag("datalist", id="parts")
-    form = tag(
-        "form",
-        _field("substructure", list="parts", required="required", placeholder="search as you type"),
-        found,
-        _field("name", required="required", pattern="[A-Za-z][A-Za-z0-9_]*"),
-        _frame_field("at", "world" if not bench.frames else ""),
-        tag("fieldset", tag("legend", "placement: numbers or expressions"), numbers),
-        tag("button", "Couple", type="submit"),
-        data_action="couplings",
-        class_="step",
-    )
-    return tag("details", tag("summary", "Couple a part"), form, open="open")
-
-
-def _spring() -> Html:
-    numbers = [_field(name, unit, value="0") for name, unit in SPRING]
-    return _form(
-        "Add a spring", "loads", _field("name", required="required"), _frame_field("from"), _frame_field("to"), numbers
-    )
-
-
-def _loop() -> Html:
-    kinds = tag("label", "type ", tag("select", [tag("option", each, value=each) for each in LOOPS], name="type"))
-    ends = _frame_field("from"), _frame_field("to", "world")
-    length = _field("length", "m", placeholder="of a rod")
-    return _form("Close a loop", "closures", _field("name", required="required"), kinds, ends, length)
-
-
-def _publish(bench: Bench) -> Html:
-    return _form(
-        "Publish as a part", "publish", _field("name", value=bench.tree.name, required="required"), _field("title")
-    )
 
 
 def _requests() -> Html:

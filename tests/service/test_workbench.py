@@ -74,7 +74,7 @@ def test_coupled_by_keyboard_undone_and_done_again(browser: Any, address: str, f
 def test_frames_are_picked_for_loads_and_loops(browser: Any, address: str, filled: TestClient, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit")
     tab.until(READY)
-    tab.page.click("summary:has-text('Add a spring')")
+    tab.page.click("summary:has-text('Add a load')")
     tab.page.fill("[data-action=loads] [name=name]", "pull")
     tab.page.focus("[data-action=loads] [name=from]")
     tab.page.click("[data-frame='world']")
@@ -96,6 +96,68 @@ def test_frames_are_picked_for_loads_and_loops(browser: Any, address: str, fille
     arrived(tab, f"/trees/{bench}@4/edit")
     (told,) = filled.get(f"/v1/trees/{bench}").json()["closures"]
     assert (told["name"], told["type"], told["from"]) == ("rod", "rod", "arm.tip"), told
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_loads_of_every_type_by_hand(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    form = "[data-action=loads]"
+    sent: list[dict[str, Any]] = [
+        {"type": "cable", "along": ["world", "arm.tip"], "stiffness": 30, "slack": True},
+        {"type": "force", "from": "world", "to": "arm.tip", "vector": [0, "2*sin(arm.q)", 1], "axes": "world"},
+        {"type": "joint", "coordinate": "arm.q", "force": "-3*arm.q"},
+        {"type": "friction", "coordinate": "arm.q", "coulomb": 0.2, "velocity": 0.01},
+    ]
+    for k, load in enumerate(sent):
+        tab.until(READY)
+        tab.page.click("summary:has-text('Add a load')")
+        tab.page.fill(f"{form} [name=name]", f"load{k}")
+        tab.page.select_option(f"{form} [name=type]", load["type"])
+        fields = f"{form} fieldset:not([hidden]) "
+        for name, value in load.items():
+            if name == "along":
+                tab.page.focus(f"{fields}[name=along]")
+                for frame in value:
+                    tab.page.click(f"[data-frame='{frame}']")
+            elif name in ("axes", "coordinate"):
+                tab.page.select_option(f"{fields}[name={name}]", value)
+            elif value is True:
+                tab.page.check(f"{fields}[name={name}]")
+            elif name != "type":
+                text = ", ".join(map(str, value)) if isinstance(value, list) else str(value)
+                tab.page.fill(f"{fields}[name={name}]", text)
+        python = tab.page.evaluate("document.querySelector('[data-request=Python]').textContent")
+        assert eval(python.partition("load(")[2].removesuffix("))"))[1] == {"name": f"load{k}", **load}  # noqa: S307
+        tab.page.click(f"{form} button")
+        arrived(tab, f"/trees/{bench}@{k + 2}/edit")
+    told = filled.get(f"/v1/trees/{bench}").json()["loads"]
+    assert [each["type"] for each in told] == [each["type"] for each in sent]
+    tab.close()
+
+
+@in_browser
+def test_an_instance_is_replaced_and_revisions_are_compared(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    hand = {"name": "hand", "substructure": "pendulum", "at": "arm.tip"}
+    assert filled.post(f"/v1/trees/{bench}/couplings", json=hand).status_code == 201
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    tab.page.click("[aria-label='replace hand']")
+    assert tab.page.evaluate("document.activeElement.name") == "substructure"
+    tab.page.keyboard.type("slider")
+    told = tab.page.evaluate("document.querySelector('[data-request=curl]').textContent")
+    assert f"-X PATCH {address}/v1/trees/{bench}@2/couplings/hand" in told
+    tab.page.keyboard.press("Enter")
+    arrived(tab, f"/trees/{bench}@3/edit")
+    found = filled.get(f"/v1/trees/{bench}").json()
+    assert found["coordinates"] == ["arm.q", "hand.x"]
+    tab.page.select_option("[name=to]", f"{bench}@1")
+    tab.page.click("button:has-text('Compare')")
+    tab.page.wait_for_url(lambda url: f"/trees/{bench}@3/difference" in url)
+    assert "hand" in tab.page.inner_text("main")
     tab.close()
 
 

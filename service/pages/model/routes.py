@@ -44,6 +44,7 @@ Time = Annotated[str, Query(alias="t", max_length=40)]
 Like = Annotated[int, Query(alias="of", ge=0)]
 Newest = Annotated[int, Query(alias="top", ge=0)]
 Slice = Annotated[int, Query(alias="slice", ge=0, le=100_000)]
+Name = Annotated[str, Query(max_length=200)]
 ADVICE = "take it as code instead"
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
@@ -123,9 +124,15 @@ def motion(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, pose: P
 
 @router.get("/trees/{ref}/edit")
 def workbench(
-    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, _of: Like = 0, _top: Newest = 0
+    ref: str,
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    substructure: Name = "",
+    _of: Like = 0,
+    _top: Newest = 0,
 ) -> Response:
-    """What changes a tree, step by step; what was undone is read by scripts."""
+    """What changes a tree, step by step, beginning with a ``substructure``; what was undone is read by scripts."""
     with store.database.read() as connection:
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)
@@ -136,7 +143,7 @@ def workbench(
     for name in model.frames:
         frames.setdefault(name.partition(".")[0], []).append(name.partition(".")[2])
     shown = of_tree(found, model, None, None)
-    made = bench_page(Bench(found, before, latest, frames), view(shown, _picture(shown)))
+    made = bench_page(Bench(found, before, latest, frames), view(shown, _picture(shown)), substructure)
     return _answer(request, made, "workbench.js")
 
 

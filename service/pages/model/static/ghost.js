@@ -1,4 +1,5 @@
 // A part where it would be: its scene, with the frames at home moved by a placement.
+import { plain, turned } from "./coupled.js";
 import { load } from "./program.js";
 
 const kept = new Map();
@@ -18,15 +19,8 @@ export async function sceneOf(reference) {
     return kept.get(reference);
 }
 
-/** Fixed-axis roll, pitch, yaw: R = Rz(yaw) Ry(pitch) Rx(roll), rows after each other. */
-function turned([roll, pitch, yaw]) {
-    const [[a, b], [c, d], [e, f]] = [roll, pitch, yaw].map((angle) => [Math.cos(angle), Math.sin(angle)]);
-    return [e * c, e * d * b - f * a, e * d * a + f * b, f * c, f * d * b + e * a, f * d * a - e * b, -d, c * b, c * a];
-}
-
 /** Ends of links and ellipsoids' centres in the frame that carries the part; expressions count as 0. */
 export function ghost({ scene, position, rotation }, { position: shift, rpy }) {
-    const plain = (values) => values.map((x) => (typeof x === "number" ? x : 0));
     const [R, t] = [turned(plain(rpy)), plain(shift)];
     const placed = ([x, y, z]) => [0, 1, 2].map((i) => R[3 * i] * x + R[3 * i + 1] * y + R[3 * i + 2] * z + t[i]);
     const at = (k, [x, y, z] = [0, 0, 0]) =>

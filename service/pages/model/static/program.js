@@ -45,11 +45,12 @@ export class Program {
     }
 }
 
-/** The program of the model at an address of the interface. */
-export async function load(address) {
+/** The program of the model at an address of the interface: of all that a page shows, or of quantities. */
+export async function load(address, quantities = []) {
+    const query = quantities.length ? `?quantities=${quantities.join(",")}` : "";
     const [layout, module] = await Promise.all([
-        fetch(`${address}/program.json`).then(answered).then((answer) => answer.json()),
-        WebAssembly.compileStreaming(fetch(`${address}/program.wasm`).then(answered)),
+        fetch(`${address}/program.json${query}`).then(answered).then((answer) => answer.json()),
+        WebAssembly.compileStreaming(fetch(`${address}/program.wasm${query}`).then(answered)),
     ]);
     return [new Program(module, layout), layout];
 }

@@ -8,36 +8,60 @@ function number(text) {
     return given === "" ? 0 : Number.isFinite(Number(given)) ? Number(given) : given;
 }
 
+const split = (text) => text.split(",").map((each) => each.trim());
+/** By kind of a field what it sends; undefined where it is left empty. */
+const KINDS = {
+    text: ({ value }) => value.trim() || undefined,
+    number: ({ value }) => (value.trim() ? number(value) : undefined),
+    vector: ({ value }) => (value.trim() ? split(value).map(number) : undefined),
+    frames: ({ value }) => split(value).filter(Boolean),
+    flag: ({ checked }) => checked || undefined,
+};
+
 /** The body of the request of a form. */
 export function filled(form) {
     const value = (name) => form.elements.namedItem(name)?.value.trim() ?? "";
     const numbers = (names) => names.map((name) => number(value(name)));
-    if (form.dataset.action === "publish") return { name: value("name"), ...(value("title") && { title: value("title") }) };
-    const body = { name: value("name") };
-    if (form.dataset.action === "couplings") {
+    const body = value("name") ? { name: value("name") } : {};
+    if (form.dataset.action === "couplings" && !form.dataset.method) {
         const placement = Object.fromEntries(Object.entries(PLACEMENT).map(([key, names]) => [key, numbers(names)]));
         return { ...body, substructure: value("substructure"), at: value("at"), placement };
     }
-    Object.assign(body, { type: value("type") || "spring", from: value("from"), to: value("to") });
-    if (form.dataset.action === "closures") return value("length") ? { ...body, length: number(value("length")) } : body;
-    const [stiffness, damping, length] = numbers(["stiffness", "damping", "length"]);
-    return { ...body, stiffness, damping, length };
+    if (value("type")) body.type = value("type");
+    for (const input of form.querySelectorAll("[data-kind]")) {
+        if (input.matches(":disabled")) continue;
+        const found = KINDS[input.dataset.kind](input);
+        if (found !== undefined) body[input.name] = found;
+    }
+    return body;
+}
+
+/** Method and path behind that of the tree. */
+export function request({ dataset: { action, method }, elements }) {
+    const instance = elements.namedItem("instance")?.value;
+    return [method ?? "POST", instance ? `${action}/${instance}` : action];
 }
 
 /** By program the text that does the same. */
-export function texts(origin, reference, action, body) {
-    const url = `${origin}/v1/trees/${reference}/${action}`;
-    const json = JSON.stringify(body);
-    const call = action === "publish"
-        ? `publish("${reference}", **${python(body)})`
-        : `${METHODS[action]}("${reference}", ${python(body)})`;
-    const matlab = `webwrite("${url}", '${json.replaceAll("'", "''")}', weboptions("MediaType", "application/json"))`;
+export function texts(origin, reference, form) {
+    const [[method, path], body] = [request(form), filled(form)];
+    const [url, json] = [`${origin}/v1/trees/${reference}/${path}`, JSON.stringify(body)];
+    const verb = method === "POST" ? "" : `-X ${method} `;
+    const option = method === "POST" ? "" : `, "RequestMethod", "${method.toLowerCase()}"`;
+    const matlab = `webwrite("${url}", '${json.replaceAll("'", "''")}', weboptions("MediaType", "application/json"${option}))`;
     return {
-        curl: `curl -s ${url} -H 'Content-Type: application/json' -d '${json.replaceAll("'", "'\\''")}'`,
-        Python: `from substructures.client import Client\n\nwith Client("${origin}") as client:\n    print(client.${call})`,
+        curl: `curl -s ${verb}${url} -H 'Content-Type: application/json' -d '${json.replaceAll("'", "'\\''")}'`,
+        Python: `from substructures.client import Client\n\nwith Client("${origin}") as client:\n    print(client.${call(reference, form, body)})`,
         MATLAB: matlab,
     };
 }
 
-// JSON of texts, numbers, lists and objects is Python, too
-const python = (body) => JSON.stringify(body);
+// JSON of texts, numbers, lists and objects is Python, too, but for its truth values
+function call(reference, form, body) {
+    const { action } = form.dataset;
+    const python = JSON.stringify(body).replaceAll(":true", ":True");
+    if (action === "publish") return `publish("${reference}", **${python})`;
+    const instance = form.elements.namedItem("instance")?.value;
+    if (instance) return `change_coupling("${reference}", "${instance}", **${python})`;
+    return `${METHODS[action]}("${reference}", ${python})`;
+}

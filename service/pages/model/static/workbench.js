@@ -1,7 +1,8 @@
 // The workbench: every step is a request of the interface and a new revision, whose page is shown then.
+import { Ahead } from "./ahead.js";
 import { element, fragment } from "./fragments.js";
 import { load } from "./program.js";
-import { filled, texts } from "./steps.js";
+import { filled, request, texts } from "./steps.js";
 import { ghost, sceneOf } from "./ghost.js";
 
 const JSON_TYPE = { "Content-Type": "application/json" };
@@ -13,7 +14,7 @@ const given = new URL(location.href).searchParams;
 const revision = Number(bench.reference.split("@")[1]);
 const of = Number(given.get("of") ?? revision); // the revision that this one is like, after undo and redo
 const top = Number(given.get("top") ?? of);
-let [picked, waiting, view] = [document.querySelector("[data-pick]"), 0, null];
+let [picked, waiting, view, ahead] = [document.querySelector("[data-pick]"), 0, null, null];
 
 function tell(words, kind = "quiet") {
     told.replaceChildren(words);
@@ -50,37 +51,57 @@ redo.addEventListener("click", () => tried(back(of + 1)));
 function pick(frame) {
     if (!picked) return;
     picked.closest("details").open = true;
-    picked.value = frame;
+    picked.value = picked.dataset.kind === "frames" && picked.value ? `${picked.value}, ${frame}` : frame;
     picked.dispatchEvent(new Event("input", { bubbles: true }));
     tell(`${picked.name}: ${frame}`);
-    const fields = [...picked.form.querySelectorAll("[data-pick]")];
+    if (picked.dataset.kind === "frames") return;
+    const fields = [...picked.form.querySelectorAll("[data-pick]:enabled")];
     picked = fields[(fields.indexOf(picked) + 1) % fields.length];
 }
 
 document.addEventListener("click", ({ target }) => {
-    const { frame, remove } = target.dataset;
+    const { frame, remove, replace } = target.dataset;
     if (frame) pick(frame);
     if (remove) tried(step("DELETE", `${path}/${remove}`));
+    if (replace) other(replace);
 });
+
+/** The form that gives an instance another part. */
+function other(instance) {
+    const form = document.querySelector("[data-method=PATCH]");
+    form.closest("details").open = true;
+    form.elements.namedItem("instance").value = instance;
+    form.elements.namedItem("substructure").focus();
+    show(form);
+}
+
+/** Of a load only the fields of its type are there. */
+function chosen(form) {
+    for (const set of form.querySelectorAll("[data-type]")) {
+        set.hidden = set.disabled = set.dataset.type !== form.elements.namedItem("type").value;
+    }
+}
+
 for (const form of document.querySelectorAll("[data-action]")) {
-    const { action } = form.dataset;
     form.addEventListener("focusin", ({ target }) => {
         if (target.dataset.pick) picked = target;
         show(form);
     });
     form.addEventListener("input", () => {
+        chosen(form);
         show(form);
         clearTimeout(waiting);
         waiting = setTimeout(() => tried(rested(form)), REST);
     });
     form.addEventListener("submit", (event) => {
         event.preventDefault();
-        tried(step("POST", `${path}/${action}`, JSON.stringify(filled(form))));
+        const [method, address] = request(form);
+        tried(step(method, `${path}/${address}`, JSON.stringify(filled(form))));
     });
 }
 
 function show(form) {
-    for (const [name, text] of Object.entries(texts(location.origin, bench.reference, form.dataset.action, filled(form)))) {
+    for (const [name, text] of Object.entries(texts(location.origin, bench.reference, form))) {
         document.querySelector(`[data-request="${name}"]`).textContent = text;
     }
 }
@@ -94,15 +115,17 @@ async function search(words) {
     document.getElementById("parts").replaceChildren(...options);
 }
 
-/** The part where it would be, before it is stored. */
+/** The part where it would be, and M of the whole, before it is stored. */
 async function rested(form) {
+    const coupling = filled(form);
+    const { substructure, at, placement } = coupling;
     if (form.dataset.action !== "couplings") return;
-    const { substructure, at, placement } = filled(form);
     const found = () => [...document.getElementById("parts").options].some(({ value }) => value === substructure.split("@")[0]);
     if (substructure && !found()) await search(substructure);
-    if (!view) return;
-    const scene = found() && at ? await sceneOf(substructure) : null;
-    view.ghost(scene && ghost(scene, placement), at);
+    if (form.dataset.method) return;
+    const part = found() && at ? await sceneOf(substructure) : null;
+    view?.ghost(part && ghost(part, placement), at);
+    await ahead?.show(coupling, part?.scene.poses.home);
 }
 
 async function start() {
@@ -110,6 +133,7 @@ async function start() {
     try {
         const [program] = await load(path);
         const scene = await (await fetch(`${path}/scene`)).json();
+        ahead = new Ahead(path, scene.poses.home);
         const { View } = await import("./view.js");
         view = new View(document.getElementById("view"), scene);
         program.vectors.q?.set(scene.poses.home);
@@ -119,5 +143,6 @@ async function start() {
         // the picture of the server stays
     }
     document.getElementById("place").dataset.view = view ? "3d" : "picture";
+    tried(rested(document.querySelector("[data-action]"))); // a part that came with the address
 }
 start();

@@ -1,0 +1,88 @@
+"""M of a tree that was never stored, computed in the browser out of two stored programs, is what the service says."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from substructures.catalogue import load as shipped
+from substructures.documents import write_json
+
+from .one_store import filled, store
+from .test_model_pages import READY, Tab, address, browser, in_browser
+from .test_workbench import bench
+
+__all__ = ["address", "bench", "browser", "filled", "store"]
+ROWS = "[...document.querySelectorAll('#ahead tbody tr')]"
+SHOWN = f"{ROWS}.map((row) => [...row.querySelectorAll('a')].map((x) => Number(x.title)))"
+JSON = {"Content-Type": "application/json"}
+HOSTS = {
+    "chain": [("arm", "acrobot", "world"), ("hand", "screw-gripper", "arm.tip")],
+    "puma": [("arm", "puma560", "world")],
+    "rail": [("cart", "linear-rail", "world")],
+}
+#: host, where, part; a part with relations, one that hangs on a host with relations, one that does not move, ...
+PAIRS = [
+    ("puma", "arm.flange", "screw-gripper"),
+    *(
+        pytest.param(*each, marks=pytest.mark.deep)
+        for each in (
+            ("puma", "arm.link3", "flange-tool"),
+            ("puma", "world", "parallel-gripper"),
+            ("chain", "hand.left_pad", "ball-pendulum"),
+            ("chain", "hand.grasp", "puma560"),
+            ("rail", "cart.mount", "simple-pendulum"),
+        )
+    ),
+]
+PLACEMENT = {"position": [0.11, -0.2, 0.3], "rpy": [0.4, -0.7, 1.9]}
+FIELDS = ("x", "y", "z", "roll", "pitch", "yaw")
+
+
+def made(client: TestClient, host: str) -> str:
+    """A tree of shipped parts."""
+    others = {part for *_, part in (getattr(each, "values", each) for each in PAIRS)}
+    for name in {part for _, part, _ in HOSTS[host]} | others:
+        assert client.post("/v1/substructures", content=write_json(shipped(name)), headers=JSON).status_code in (
+            200,
+            201,
+        )
+    instances = [{"name": name, "substructure": part, "at": at} for name, part, at in HOSTS[host]]
+    tree = {"name": f"{host}-host", "gravity": [0, 0, "-9.81"], "instances": instances}
+    assert client.post("/v1/trees", json=tree).status_code in (200, 201)
+    return f"{host}-host@1"
+
+
+@in_browser
+@pytest.mark.parametrize(("host", "at", "part"), PAIRS)
+def test_m_before_anything_is_stored(
+    browser: Any, address: str, filled: TestClient, host: str, at: str, part: str
+) -> None:
+    tree = made(filled, host)
+    tab = Tab(browser, address, f"/trees/{tree}/edit")
+    tab.until(READY)
+    form = "[data-action=couplings]"
+    values = [*PLACEMENT["position"], *PLACEMENT["rpy"]]
+    for name, text in (
+        ("substructure", part),
+        ("name", "more"),
+        ("at", at),
+        *zip(FIELDS, map(str, values), strict=True),
+    ):
+        tab.page.fill(f"{form} [name={name}]", text)
+    before = filled.get(f"/v1/trees/{tree}").json()["dof"]
+    dof = before + filled.get(f"/v1/substructures/{part}").json()["dof"]
+    tab.until(f"document.querySelectorAll('#ahead tbody tr').length === {dof}")
+    tab.until(f"document.getElementById('view').dataset.ghost === '{at}'")
+    body = {"name": "more", "substructure": part, "at": at, "placement": PLACEMENT}
+    stored = filled.post(f"/v1/trees/{tree}/couplings", json=body).json()
+    whole = f"{stored['name']}@{stored['revision']}"
+    home = filled.get(f"/v1/trees/{whole}/scene").json()["poses"]["home"]
+    asked = {"q": home, "quantities": ["metric"]}
+    told = np.array(filled.post(f"/v1/trees/{whole}/evaluations", json=asked).json()["metric"])
+    shown = np.array(tab.page.evaluate(SHOWN))
+    assert np.max(np.abs(shown - told)) <= 1e-12 * np.max(np.abs(told))
+    tab.close()
