@@ -10,10 +10,6 @@ from pathlib import Path
 import anyio
 import pytest
 
-# its modules are loaded when they are first used, and rewritten by pytest then, which two threads cannot do at once
-for _name in dir(anyio):
-    getattr(anyio, _name)
-
 sys.path.insert(0, str(Path(__file__).parent))
 
 import checked_graph
@@ -29,7 +25,13 @@ def pytest_addoption(parser: pytest.Parser) -> None:
 
 
 def pytest_configure(config: pytest.Config) -> None:
-    """Before anything is imported that makes formulas."""
+    """Before anything is imported that makes formulas.
+
+    Modules of anyio are loaded when they are first used, and rewritten by pytest then, which two threads cannot do at
+    once: they are loaded here.
+    """
+    for name in dir(anyio):
+        getattr(anyio, name)
     if config.getoption("--checked"):
         checked_graph.install()
 

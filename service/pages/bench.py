@@ -52,9 +52,10 @@ def bench_page(bench: Bench, view: Html, part: str = "") -> bytes:
     right = tag("div", _outline(bench, spec), tag("p", id="told", role="status"), *forms, _requests(), class_="right")
     about = {"reference": bench.reference, "name": bench.tree.name, "kind": "trees", "spec": bench.tree.spec}
     place = tag("div", left, right, _frames(bench), class_="place", id="place", data_bench=orjson.dumps(about).decode())
-    title = tag("h1", link(f"Tree {bench.reference}", f"/trees/{bench.reference}"), ": workbench")
+    title = tag("h1", f"Workbench of {bench.reference}")
+    path = [("trees", "/trees"), (bench.reference, f"/trees/{bench.reference}")]
     needs = tag("noscript", tag("p", "Steps are taken by a script; without one the interface takes them, as below."))
-    return document(f"Workbench of {bench.reference} - substructures", title, needs, place)
+    return document(f"Workbench of {bench.reference} - substructures", title, needs, place, crumbs=path)
 
 
 def _frames(bench: Bench) -> Html:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 import orjson
 
 from service.pages.found import Found, results
-from service.pages.html import Html, tag
+from service.pages.html import Html, link, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 
@@ -45,6 +45,7 @@ def page(found: Found, address: str, with_key: bool, may_write: bool) -> bytes:
         results(found),
         *(_bring(address, may_write) if is_first else ()),
         *(_example(found.parts.items, address, with_key) if is_first else ()),
+        search=False,
     )
 
 
@@ -81,7 +82,10 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
     chosen = _pair(versions)
     if chosen is None:
         text = f"Nothing is stored yet: send a definition to POST {address}/v1/substructures."
-        return [tag("h2", "Couple two parts"), tag("p", text)]
+        return [
+            tag("h2", "Couple two parts"),
+            tag("p", text, " All requests: ", link("openapi.json", "/openapi.json"), "."),
+        ]
     key = ' -H "Authorization: Bearer $SUBSTRUCTURES_KEY"' if with_key else ""
     arm, hand, port = (json.dumps(name) for name in (chosen[0], chosen[1], f"arm.{chosen[2]}"))
     command = (
@@ -91,8 +95,18 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
         f'                {{"name": "hand", "substructure": {hand}, "at": {port}}}]}}\''
     )
     metric = f"{address}/v1/trees/cell/metric?format=text"
-    after = ("Then read its metric at ", tag("code", metric), " and see it at ", tag("code", f"{address}/trees/cell"))
-    return [tag("h2", "Couple two parts"), tag("pre", tag("code", command), tabindex="0"), tag("p", after, ".")]
+    after = (
+        "Then read its metric at ",
+        tag("code", metric),
+        " and see it at ",
+        tag("code", f"{address}/trees/cell"),
+        "; all requests: ",
+    )
+    return [
+        tag("h2", "Couple two parts"),
+        tag("pre", tag("code", command), tabindex="0"),
+        tag("p", after, link("openapi.json", "/openapi.json"), "."),
+    ]
 
 
 def _bring(address: str, may_write: bool) -> list[Html]:

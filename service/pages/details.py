@@ -2,23 +2,27 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from service.messages.addresses import tree_path, version_path
 from service.pages import words
-from service.pages.found import links, size
+from service.pages.found import links, proof, size
 from service.pages.html import Content, Html, facts, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.views.resources import part_warnings
 from substructures.documents import read_json
+from substructures.export import TARGETS
 from substructures.loads.kinds import acts_on
 from substructures.part.part import Part
 from substructures.tree.model import Model
 
 QUANTITIES = ("metric", "christoffel", "forces", "gravity", "coriolis", "kinematics")
+#: targets of exports that take no version of their own; parts alone have no forces, so that none of them moves
+OF_TREES = tuple(name for name in TARGETS if name != "fmu2")
+OF_PARTS = tuple(name for name in OF_TREES if name not in ("fmu", "simulink"))
 #: sections of a page, before and after those that are always there
 Notes = tuple[Sequence[Html], Sequence[Html]]
 OF_PART = "total: the whole stored program, with what coupling needs."
@@ -54,9 +58,12 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, 
             ("As data", joined([link("JSON", path), *links(version)], " · ")),
         ]
     )
+    certificate = {**read_json(version.certificate.encode()), "warnings": part_warnings(version)}
     return document(
         f"{reference} - substructures",
         tag("h1", version.title or version.name),
+        _first(reference, (version.dof, version.joints, version.mass), certificate),
+        _acts(path, link("Couple onto a tree", f"/trees?part={reference}"), exported=OF_PARTS if version.dof else ()),
         _withdrawn(version),
         *notes[0],
         work,
@@ -66,9 +73,10 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, 
             words.coordinates(part.coordinates, part.joints),
             words.parameters(read_json(version.parameters.encode())),
             words.operations(read_json(version.operations.encode()), OF_PART),
-            {**read_json(version.certificate.encode()), "warnings": part_warnings(version)},
+            certificate,
         ),
         *notes[1],
+        crumbs=[("catalogue", "/")],
     )
 
 
@@ -77,6 +85,8 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
     path, summary = tree_path(tree), read_json(tree.summary.encode())
     reference = f"{tree.name}@{tree.revision}"
     printed = [link(name, f"{path}/{name}?format=text") for name in QUANTITIES if tree.dof]
+    acts = [link("Couple, load, close loops", f"/trees/{reference}/edit")]
+    acts += [link("Simulate", f"/trees/{reference}/motion")] if tree.dof else []
     base = f"{tree.name}@{tree.based_on}" if tree.based_on else ""
     about = facts(
         [
@@ -91,12 +101,13 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
             ("Digest", tag("code", tree.digest, class_="small")),
             ("As data", link("JSON", path)),
             ("As text", joined(printed, " · ")),
-            ("Motion", link("simulate, and modes", f"/trees/{reference}/motion") if tree.dof else None),
         ]
     )
     return document(
         f"{reference} - substructures",
         tag("h1", f"Tree {tree.name}"),
+        _first(reference, (tree.dof, model.joints, tree.mass), summary["certificate"]),
+        _acts(path, *acts, exported=OF_TREES if tree.dof else ()),
         *notes[0],
         work,
         _split(path, reference, about),
@@ -110,7 +121,24 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
             summary["certificate"],
         ),
         *notes[1],
+        crumbs=[("trees", "/trees")],
     )
+
+
+def _first(reference: str, figures: tuple[int, str, float | None], certificate: Mapping[str, Any]) -> Html:
+    """What it is called, its size, mass and proof, in one line."""
+    dof, joints, mass = figures
+    kilograms = "" if mass is None else f"{mass:.4g} kg"
+    proved = tag("a", proof(certificate), href="#certificate")
+    return tag("p", joined(filter(None, (tag("code", reference), size(dof, joints), kilograms, proved)), " · "))
+
+
+def _acts(path: str, *acts: Html, exported: Iterable[str]) -> Html:
+    """What can be done with it."""
+    links = [link(target, f"{path}/export?target={target}") for target in exported]
+    report = link("Report", f"{path}/report?format=mathml"), link("JSON", path)
+    menu = tag("details", tag("summary", "Export as code"), tag("p", joined(links, " · "), class_="small"))
+    return tag("div", acts, menu if links else None, report, class_="acts")
 
 
 def _owner(shown: Version | Tree) -> str:

@@ -98,23 +98,23 @@ def card(version: Version) -> Html:
     )
     mass = "" if version.mass is None else f", {version.mass:.4g} kg"
     owner = f"private to {version.owner}" if not version.is_public else version.owner
-    about = [link("certificate", f"{own}#certificate"), link("used by", f"{path}/uses"), *links(version)]
+    couple = link("+ to tree", f"/trees?part={version.name}@{version.version}")
+    about = [couple, link("certificate", f"{own}#certificate"), link("used by", f"{own}#uses"), *links(version)]
     return tag(
         "article",
         link(picture, own),
         tag("h3", link(version.title or version.name, own)),
         tag("div", tag("code", f"{version.name}@{version.version}"), " ", tag("span", owner, class_="quiet small")),
         tag("div", size(version.dof, version.joints) + mass),
-        tag("div", proof(version), class_="small"),
+        tag("div", proof(orjson.loads(version.certificate)), class_="small"),
         tag("div", joined(tags), class_="quiet small"),
         tag("div", joined(about, " · "), class_="links small"),
         class_="card",
     )
 
 
-def proof(version: Version) -> Html:
-    """What its certificate says, in some words."""
-    told = orjson.loads(version.certificate)
+def proof(told: Mapping[str, Any]) -> Html:
+    """What a certificate says, in some words."""
     errors: Mapping[str, Any] = told.get("direct_form", {}).get("max_relative_error") or {}
     known = [float(error) for error in errors.values() if error is not None]
     if not known:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from base64 import b64encode
+from collections.abc import Sequence
 from pathlib import Path
 
 from fastapi import Request, Response
@@ -11,6 +12,7 @@ from fastapi import Request, Response
 from service.http.requests import store_of
 from service.http.responses import conditional
 from service.messages.answers import Answer, etag
+from service.messages.viewer import ANYBODY
 from service.pages.html import Html, html, joined, link, tag
 from service.queries import renewals
 
@@ -42,7 +44,9 @@ POLICY = "; ".join(
         "frame-ancestors 'none'",
     ]
 )
-PLACES = tuple((name, f"/{name}") for name in ("trees", "jobs", "docs", "account", "openapi.json"))
+ACCOUNT = link("account", "/account")
+PLACES = (link("catalogue", "/"), *(link(name, f"/{name}") for name in ("trees", "jobs", "docs")), ACCOUNT)
+MAIN = b'<main id="content">'
 HEADERS = {
     "Content-Type": "text/html; charset=utf-8",
     "Content-Security-Policy": POLICY,
@@ -51,8 +55,17 @@ HEADERS = {
 }
 
 
-def document(title: str, *content: Html, script: str = "", refresh: int | None = None) -> bytes:
-    """The bytes of a page, which is loaded again after ``refresh`` seconds where scripts do not run."""
+def document(
+    title: str,
+    *content: Html,
+    script: str = "",
+    refresh: int | None = None,
+    crumbs: Sequence[tuple[str, str]] = (),
+    search: bool = True,
+) -> bytes:
+    """The bytes of a page, which is loaded again after ``refresh`` seconds where scripts do not run; ``crumbs``: names
+    and addresses of what it is part of; ``search``: with a search of the catalogue.
+    """
     head = html(
         tag("meta", charset="utf-8"),
         tag("meta", name="viewport", content="width=device-width, initial-scale=1"),
@@ -64,19 +77,33 @@ def document(title: str, *content: Html, script: str = "", refresh: int | None =
     )
     top = tag(
         "header",
+        tag("a", "skip to the content", href="#content", class_="skip"),
         link("substructures", "/"),
-        tag("nav", joined([link(name, address) for name, address in PLACES], " · ")),
+        _search() if search else None,
+        tag("nav", joined(PLACES, " · "), aria_label="Pages"),
     )
-    body = tag("body", top, tag("main", *content), tag("script", Html(script)) if script else None)
+    path = tag("nav", joined([link(*each) for each in crumbs], " / "), " /", class_="crumbs", aria_label="Part of")
+    main = tag("main", path if crumbs else None, *content, id="content")
+    body = tag("body", top, main, tag("script", Html(script)) if script else None)
     return f"<!doctype html>\n{tag('html', tag('head', head), body, lang='en')}\n".encode()
 
 
+def _search() -> Html:
+    label = "Search the catalogue"
+    box = tag("input", type="search", name="q", aria_label=label, placeholder=label, autocomplete="off", id="find")
+    return tag("form", box, method="get", action="/", role="search", aria_label=label)
+
+
 def answer(request: Request, page: bytes) -> Response:
-    """The page, or 304 when the browser has it. While the store is derived anew, it says how far that is."""
+    """The page, with who is signed in, or 304 when the browser has it. While the store is derived anew, it says how far
+    that is."""
+    viewer = getattr(request.state, "viewer", ANYBODY)
+    if viewer != ANYBODY:
+        page = page.replace(ACCOUNT.encode(), link(viewer.owner, "/account").encode(), 1)
     with store_of(request).database.read() as connection:
         renewal = renewals.progress(connection)
     if renewal is not None and renewal[0] < renewal[1]:
         told = tag("p", "{} of {} parts and trees are derived anew".format(*renewal), class_="small")
-        page = page.replace(b"<main>", b"<main>" + str(told).encode(), 1)
+        page = page.replace(MAIN, MAIN + str(told).encode(), 1)
     tag_of_content = etag("page", hashlib.sha256(page).hexdigest())
     return conditional(request, tag_of_content, False, lambda: Answer(200, page, HEADERS))

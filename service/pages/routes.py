@@ -112,13 +112,15 @@ def all_trees(
     store: StoreOf,
     viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200)] = "",
+    part: Annotated[str, Query(max_length=200)] = "",
     after: Annotated[str | None, Query(max_length=2000)] = None,
 ) -> Response:
-    """Trees by relevance, or by name."""
+    """Trees by relevance, or by name; of a ``part`` those that it may be coupled onto."""
     wanted = TreeSearch(words_of(q), sort=RELEVANCE)
     with store.database.read() as connection:
         found = searches.trees(connection, viewer, wanted, TREES, after)
-    return answer(request, trees_page(found, q))
+    made = trees_page(found, q, part, viewer.has("write"))
+    return with_scripts(answer(request, scripted(made, "trees.js")), compiles=False)
 
 
 @router.get("/jobs")

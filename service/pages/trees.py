@@ -13,11 +13,12 @@ from service.pages.layout import document
 from service.queries.trees import Tree
 
 
-def trees_table(trees: Sequence[Tree]) -> Html:
-    """Latest revisions, with what is private marked."""
+def trees_table(trees: Sequence[Tree], part: str = "") -> Html:
+    """Latest revisions, with what is private marked; ``part``: that is to be coupled onto one of them."""
+    chosen = f"/edit?{urlencode({'substructure': part})}" if part else ""
     rows = [
         (
-            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}"),
+            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}{chosen}"),
             tree.dof,
             tree.owner if tree.visibility == PUBLIC else f"{tree.owner}, private",
             tree.created[:10],
@@ -28,19 +29,33 @@ def trees_table(trees: Sequence[Tree]) -> Html:
     return table(("latest revision", "dof", "owner", "created", ""), rows)
 
 
-def trees_page(page: Page[Tree], q: str) -> bytes:
-    """The bytes of the page of what was found for ``q``."""
+def trees_page(page: Page[Tree], q: str, part: str, may_write: bool) -> bytes:
+    """The bytes of the page of what was found for ``q``; ``part``: to be coupled onto one of them or a new one."""
     label = "Search by name"
     form = tag(
         "form",
         tag("input", type="search", name="q", value=q, placeholder=label, aria_label=label),
+        tag("input", type="hidden", name="part", value=part) if part else None,
         tag("button", "Search", type="submit"),
         method="get",
         action="/trees",
         class_="bar",
     )
     told = [tag("p", f"'{word}' is nowhere; this is '{other}'.") for word, other in page.instead.items()]
-    listed = trees_table(page.items) if page.items else tag("p", "None.", class_="quiet")
-    query = urlencode({"q": q, "after": page.next_token or ""})
+    told += [tag("p", "Choose the tree that ", tag("code", part), " is coupled onto, or begin one.")] if part else []
+    listed = trees_table(page.items, part) if page.items else tag("p", "None.", class_="quiet")
+    query = urlencode({name: x for name, x in (("q", q), ("part", part), ("after", page.next_token)) if x})
     more = tag("p", link("Next", f"/trees?{query}")) if page.next_token else Html()
-    return document("Trees - substructures", tag("h1", "Trees"), form, *told, listed, more)
+    new = _new(part) if may_write else Html()
+    return document("Trees - substructures", tag("h1", "Trees"), form, *told, listed, more, new)
+
+
+def _new(part: str) -> Html:
+    """A form that begins a tree, with a part on the world; a script sends it."""
+    fields = [
+        tag("label", "name ", tag("input", name="name", required="required", pattern=r"[a-z0-9][a-z0-9\-]*")),
+        tag("label", "first part ", tag("input", name="substructure", required="required", value=part)),
+        tag("label", "gravity in m/s^2 ", tag("input", name="gravity", value="0, 0, -9.81")),
+    ]
+    form = tag("form", fields, tag("button", "Begin", type="submit"), class_="bar", id="begin")
+    return tag("section", tag("h2", "Begin a tree"), form, tag("p", id="told", role="status"))

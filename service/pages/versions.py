@@ -59,7 +59,7 @@ def uses_section(uses: Sequence[Use], reference: str) -> list[Html]:
         for use in uses[:SHOWN]
     ]
     address = f"/v1/substructures/{reference}/uses"
-    return _section("Used by", ("", "as", "instances"), rows, len(uses) > SHOWN, address)
+    return _section("Used by", ("", "as", "instances"), rows, len(uses) > SHOWN, address, "uses")
 
 
 def withdrawn_section(withdrawn: Sequence[Withdrawn]) -> list[Html]:
@@ -89,6 +89,7 @@ def difference_page(kind: str, a: str, b: str, found: Mapping[str, Any]) -> byte
         *([tag("h2", "Fields"), table(("place", "change"), fields)] if fields else []),
         *([tag("h2", "Formulas"), table(COLUMNS, quantities)] if quantities else []),
         tag("p", "Entry by entry: ", link("JSON", address)),
+        crumbs=[("trees", "/trees") if kind == "trees" else ("catalogue", "/"), (a, f"/{kind}/{a}")],
     )
 
 
@@ -122,7 +123,12 @@ def _compared(kind: str, name: str, before: int, number: int) -> Content:
 
 
 def _section(
-    title: str, columns: Sequence[str], rows: Sequence[Sequence[Content]], more: bool, address: str
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[Content]],
+    more: bool,
+    address: str,
+    anchor: str | None = None,
 ) -> list[Html]:
     note = tag("p", "There are more: ", link("all", address), ".", class_="quiet") if more else Html()
-    return [tag("h2", title), table(columns, rows), note] if rows else []
+    return [tag("h2", title, id=anchor), table(columns, rows), note] if rows else []

@@ -60,6 +60,44 @@ def test_a_file_is_looked_at_before_it_is_stored(browser: Any, address: str, fil
 
 
 @in_browser
+def test_a_part_begins_a_tree_and_is_coupled_onto_one(browser: Any, address: str, filled: TestClient) -> None:
+    tab = Tab(browser, address, "/?q=slider")
+    tab.page.click("a:has-text('+ to tree')")
+    tab.page.fill("[name=name]", "begun")
+    tab.page.keyboard.press("Enter")
+    tab.page.wait_for_url("**/trees/begun@1/edit")
+    assert filled.get("/v1/trees/begun").json()["coordinates"] == ["slider.x"]
+    tab.page.goto(f"{address}/trees?q=begun&part=pendulum")
+    tab.page.click("a:has-text('begun@1')")
+    tab.page.wait_for_selector("#place[data-view]")
+    tab.page.fill("[data-action=couplings] [name=at]", "slider.top")
+    tab.until("document.querySelectorAll('#ahead tbody tr').length === 2")
+    tab.page.click("[data-action=couplings] button")
+    tab.page.wait_for_url("**/trees/begun@2/edit*")
+    tab.page.wait_for_selector("#place[data-view]")
+    tab.page.keyboard.press("/")
+    assert tab.page.evaluate("document.activeElement.id") == "find"
+    tab.page.keyboard.type("pendulum")
+    tab.page.keyboard.press("Enter")
+    tab.page.wait_for_url("**/?q=pendulum")
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_file_is_stored_for_its_owner_alone(browser: Any, address: str, filled: TestClient) -> None:
+    tab = Tab(browser, address, "/")
+    chosen(tab, ROBOT, "hidden.urdf")
+    tab.until("document.getElementById('store')")
+    tab.page.fill("#name", "hidden")
+    tab.page.select_option("#visibility", "private")
+    tab.page.click("#store")
+    tab.until("document.querySelector('#import a')?.textContent === 'hidden@1'")
+    assert filled.get("/v1/substructures/hidden/visibility").json()["visibility"] == "private"
+    tab.close()
+
+
+@in_browser
 @pytest.mark.deep
 def test_hostile_files_stay_texts(browser: Any, address: str) -> None:
     tab = Tab(browser, address, "/", 360)

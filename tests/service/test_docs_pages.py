@@ -21,7 +21,7 @@ def test_every_page_is_there_and_its_links_lead_somewhere(client: TestClient) ->
     pages = {name: shown(client, "/docs" if name == "index" else f"/docs/{name}") for name in names()}
     assert len(pages) == len(list(FOLDER.rglob("*.md"))) > 15
     for name, text in pages.items():
-        assert "<main>" in text
+        assert '<main id="content">' in text
         for address in re.findall(r'href="(/docs[^"]*)"', text):
             target, _, anchor = address.partition("#")
             found = pages[target.removeprefix("/docs").strip("/") or "index"]

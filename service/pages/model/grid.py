@@ -28,8 +28,7 @@ def tabs(shown: Shown, chosen: str) -> Html:
     ]
     if shown.kind == "trees":
         integrals = f"/v1/trees/{shown.reference}/first_integrals?format=mathml"
-        links += [tag("a", "first integrals", href=integrals), tag("a", "motion", href=f"{shown.path}/motion")]
-        links.append(tag("a", "workbench", href=f"{shown.path}/edit"))
+        links.append(tag("a", "first integrals", href=integrals))
     return tag("nav", links, class_="tabs", aria_label="Quantities")
 
 

@@ -95,21 +95,33 @@ def _default(x: float) -> str:
 
 
 def requests(shown: Shown, address: str) -> Html:
-    """The same numbers as requests, to be copied."""
-    pose = list(shown.pose or (0.0,) * len(shown.coordinates))
-    body = orjson.dumps({"q": pose, "quantities": ["metric"]}).decode()
-    url = f"{address}/v1/trees/{shown.reference}/evaluations"
-    texts = {
-        "curl": f"curl -s {url} -H 'Content-Type: application/json' -d '{body}'",
-        "Python": "from substructures.client import Client\n\n"
-        f'with Client("{address}") as client:\n'
-        f'    print(client.evaluate("{shown.reference}", q={pose}, quantities=["metric"]))',
-        "MATLAB": f'webwrite("{url}", struct("q", {pose}, "quantities", {{{{"metric"}}}}), '
-        'weboptions("MediaType", "application/json"))',
-    }
+    """The same as requests, to be copied: of a tree numbers in the pose, of a part the formula."""
+    texts = _numbers(shown, address) if shown.kind == "trees" else _formula(shown.reference, address)
     each = [
         tag("details", tag("summary", name), tag("pre", tag("code", text), tabindex="0"))
         for name, text in texts.items()
     ]
     json = link("JSON", f"/v1/{shown.kind}/{shown.reference}")
     return html(tag("h2", "As a request"), tag("p", json), tag("div", each, class_="copies", id="requests"))
+
+
+def _numbers(shown: Shown, address: str) -> dict[str, str]:
+    pose = list(shown.pose or (0.0,) * len(shown.coordinates))
+    body = orjson.dumps({"q": pose, "quantities": ["metric"]}).decode()
+    url = f"{address}/v1/trees/{shown.reference}/evaluations"
+    return {
+        "curl": f"curl -s {url} -H 'Content-Type: application/json' -d '{body}'",
+        "Python": _python(address, f'client.evaluate("{shown.reference}", q={pose}, quantities=["metric"])'),
+        "MATLAB": f'webwrite("{url}", struct("q", {pose}, "quantities", {{{{"metric"}}}}), '
+        'weboptions("MediaType", "application/json"))',
+    }
+
+
+def _formula(reference: str, address: str) -> dict[str, str]:
+    url = f"{address}/v1/substructures/{reference}/formulas/metric?format=text"
+    python = _python(address, f'client.part_formula("{reference}", "metric", "text")')
+    return {"curl": f"curl -s '{url}'", "Python": python, "MATLAB": f'webread("{url}")'}
+
+
+def _python(address: str, call: str) -> str:
+    return f'from substructures.client import Client\n\nwith Client("{address}") as client:\n    print({call})'

@@ -75,8 +75,9 @@ async def substructure(
             used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
         shown = of_part(version, part, pose, q)
         work = _place(shown, lambda: modules.of_version(store, version), worker, tab, slice_, entry, bool(q))
+        told = html(work, requests(shown, _address(request)) if shown.coordinates else None)
         notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, shown.reference)]
-        return _answer(request, part_page(version, names, part, work, notes))
+        return _answer(request, part_page(version, names, part, told, notes))
 
     return await in_time(request, shown_page, ADVICE)
 
@@ -105,7 +106,7 @@ async def tree(
         shown = of_tree(found, model, pose, q)
         subject = partial(modules.of_revision, store, found, has_parts=True)
         work = _place(shown, subject, worker, tab, slice_, entry, bool(q))
-        told = html(work, requests(shown, f"{request.url.scheme}://{request.headers['host']}"))
+        told = html(work, requests(shown, _address(request)))
         notes = withdrawn_section(gone), revisions_section(all_of_it)
         return _answer(request, tree_page(found, model, told, notes))
 
@@ -168,6 +169,10 @@ def one_grid(
     """The grid of a quantity alone."""
     shown, _ = _found(kind, ref, store, viewer, None)
     return answer(request, document(shown.reference, grid(shown, _tab(shown, tab), slice_, None)))
+
+
+def _address(request: Request) -> str:
+    return f"{request.url.scheme}://{request.headers['host']}"
 
 
 def of_part(version: Version, part: Part, pose: str | None, q: list[str] | None) -> Shown:

@@ -1,6 +1,7 @@
 // The catalogue: results while one types, facets and order without loading the page anew; the address follows.
 import { element, fragment } from "./fragments.js";
 import "./importing.js";
+import "./keys.js";
 
 const REST = 120; // ms without a key
 const form = document.getElementById("search");
@@ -48,10 +49,4 @@ addEventListener("popstate", () => {
     box.value = given.get("q") ?? "";
     form.elements.sort.value = given.get("sort") ?? "";
     show(location.pathname + location.search, "");
-});
-addEventListener("keydown", (event) => {
-    if (event.key !== "/" || event.target.closest("input, textarea, select")) return;
-    event.preventDefault();
-    box.focus();
-    box.select();
 });

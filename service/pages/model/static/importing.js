@@ -39,20 +39,23 @@ async function preview(file) {
     const image = element("img", { src: drawn, alt: `Picture of ${file.name}`, width: "320", height: "240" });
     image.addEventListener("load", () => URL.revokeObjectURL(drawn));
     const name = element("input", { id: "name", value: (told.tree ?? told.definition).name, "aria-label": "Name", maxlength: "64" });
+    const seen = element("select", { id: "visibility", "aria-label": "Who sees it" },
+        element("option", { value: "public" }, "everybody sees it"), element("option", { value: "private" }, "only its owner"));
     const button = element("button", { type: "button", id: "store" }, "Store");
     button.addEventListener("click", () => {
         button.disabled = true;
-        store(file, name.value.trim()).catch(failed);
+        store(file, name.value.trim(), seen.value).catch(failed);
     });
     const size = `${told.kind}: ${dof} dof ${joints}${mass === null ? "" : `, ${Number(mass.toPrecision(4))} kg`}`;
     const words = warnings.map(({ message }) => element("li", { class: "warn" }, message));
     const about = element("div", {}, element("p", {}, size), element("ul", {}, ...words),
-        element("p", {}, name, " ", button), element("p", { class: "quiet small" }, "Nothing is stored yet."));
+        element("p", {}, name, " ", seen, " ", button), element("p", { class: "quiet small" }, "Nothing is stored yet."));
     tell(element("div", { class: "split" }, element("div", { class: "picture" }, image), about), remarks(told.report));
 }
 
-async function store(file, name) {
-    const [status, told] = await sent(file, { store: "true", ...(name ? { name } : {}) });
+async function store(file, name, visibility) {
+    const more = { ...(name ? { name } : {}), ...(visibility === "private" ? { visibility } : {}) };
+    const [status, told] = await sent(file, { store: "true", ...more });
     if (status === 202) return tell(element("p", {}, "It became ", element("a", { href: `/jobs/${told.id}` }, "a job"), "."));
     const reference = `${told.stored.name}@${told.stored.version}`;
     const address = `${told.tree ? "/trees/" : "/substructures/"}${reference}`;

@@ -1,4 +1,5 @@
 // The page of a part or a tree: one state, which sliders and parameters change, and what is drawn of it.
+import "./keys.js";
 import { Grid } from "./grid.js";
 import { eigenvalues, short } from "./numbers.js";
 import { Panel } from "./panel.js";

@@ -1,4 +1,5 @@
 // The workbench: every step is a request of the interface and a new revision, whose page is shown then.
+import "./keys.js";
 import { Ahead } from "./ahead.js";
 import { element, fragment } from "./fragments.js";
 import { load } from "./program.js";

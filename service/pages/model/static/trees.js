@@ -1,0 +1,35 @@
+// Begins a tree with one part on the world, and shows it in the workbench.
+import "./keys.js";
+
+const form = document.getElementById("begin");
+const told = document.getElementById("told");
+
+/** A number where it is one, else the expression. */
+const number = (text) => (text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim());
+
+async function begin() {
+    const value = (name) => form.elements.namedItem(name).value.trim();
+    const part = value("substructure");
+    const instance = part.split("@")[0].replaceAll("-", "_");
+    const body = {
+        name: value("name"),
+        gravity: value("gravity").split(",").map(number),
+        instances: [{ name: /^[A-Za-z]/.test(instance) ? instance : `part_${instance}`, substructure: part }],
+    };
+    const headers = { "Content-Type": "application/json" };
+    const answer = await fetch("/v1/trees", { method: "POST", headers, body: JSON.stringify(body) });
+    const found = await answer.json();
+    const faults = (found.errors ?? []).map(({ pointer, message }) => `${pointer}: ${message}`);
+    if (!answer.ok) throw new Error(faults.join("; ") || found.detail);
+    location.assign(answer.status === 202 ? `/jobs/${found.id}` : `/trees/${found.name}@${found.revision}/edit`);
+}
+
+form?.addEventListener("submit", (event) => {
+    event.preventDefault();
+    told.className = "quiet";
+    told.textContent = "deriving and proving ...";
+    begin().catch((error) => {
+        told.className = "warn";
+        told.textContent = error.message;
+    });
+});
