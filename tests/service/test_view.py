@@ -1,0 +1,61 @@
+"""The view in three dimensions: a shade of a part is dragged, and what is beside it turns the view."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+from .one_store import filled, store
+from .test_model_pages import READY, Tab, address, browser, in_browser
+
+__all__ = ["address", "browser", "filled", "store"]
+#: a view of its own over the page, whose shade in the frame arm.tip follows what is told
+OPEN = """async (root) => {
+    const [{ View }, { load }] = await Promise.all([import(root + "view.js"), import(root + "program.js")]);
+    const place = document.getElementById("view");
+    const [program] = await load("/v1/trees/cell@2");
+    const view = new View(place, await (await fetch("/v1/trees/cell@2/scene")).json());
+    program.vectors.q.set([0.4, 0.7]);
+    view.pose(program);
+    const shown = (shift) => {
+        const line = [[0, 0, 0], [0.5, 0.2, 0.1]];
+        view.ghost([line.map((point) => point.map((x, i) => x + shift[i]))], "arm.tip");
+    };
+    shown([0, 0, 0]);
+    window.told = [];
+    view.drag((shift) => {
+        window.told.push(shift);
+        if (shift) shown(shift);
+    });
+    window.end = () => view.camera.pixel(view.shade.ends()[1]);
+    window.seen = () => view.camera.seen.position.toArray();
+}"""
+
+
+@in_browser
+def test_the_ghost_follows_the_pointer(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    script = tab.page.get_attribute("script[type=module]", "src")
+    tab.page.evaluate(OPEN, script.rpartition("/")[0] + "/")
+    box = tab.page.query_selector("#view canvas").bounding_box()
+    x, y = tab.page.evaluate("end()")
+    seen = tab.page.evaluate("seen()")
+    mouse = tab.page.mouse
+    mouse.move(box["x"] + x + 5, box["y"] + y - 3)
+    mouse.down()
+    mouse.move(box["x"] + x - 60, box["y"] + y + 37, steps=4)
+    assert tab.page.evaluate("end()") == pytest.approx([x - 65, y + 40], abs=1)
+    mouse.up()
+    told = tab.page.evaluate("told")
+    assert told[-1] is None
+    assert len(told) == 5
+    assert tab.page.evaluate("seen()") == seen, "the view was turned"
+    mouse.move(box["x"] + 20, box["y"] + 20)
+    mouse.down()
+    mouse.move(box["x"] + 80, box["y"] + 60, steps=4)
+    mouse.up()
+    assert tab.page.evaluate("told") == told, "beside the shade nothing is dragged"
+    assert tab.page.evaluate("seen()") != seen
+    tab.close()
