@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from typing import Any
 
 import numpy as np
@@ -85,4 +86,32 @@ def test_m_before_anything_is_stored(
     told = np.array(filled.post(f"/v1/trees/{whole}/evaluations", json=asked).json()["metric"])
     shown = np.array(tab.page.evaluate(SHOWN))
     assert np.max(np.abs(shown - told)) <= 1e-12 * np.max(np.abs(told))
+    tab.close()
+
+
+@in_browser
+def test_m_follows_while_a_part_is_dragged(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit?substructure=pendulum")
+    tab.until(READY)
+    tab.page.fill("[data-action=couplings] [name=at]", "arm.tip")
+    tab.until("document.getElementById('view').dataset.ghost === 'arm.tip'")
+    tab.until(f"{ROWS}.length === 2")
+    before = tab.page.evaluate(SHOWN)
+    given = "['x', 'y', 'z'].map((name) => Number(document.querySelector(`form [name=${name}]`).value))"
+    box = tab.page.query_selector("#view canvas").bounding_box()
+    for x, y in ((i / 14, j / 14) for j in range(1, 13) for i in range(2, 13)):
+        tab.page.mouse.move(box["x"] + x * box["width"], box["y"] + y * box["height"])
+        tab.page.mouse.down()
+        tab.page.mouse.move(box["x"] + (x + 0.05) * box["width"], box["y"] + (y + 0.02) * box["height"], steps=4)
+        tab.page.mouse.up()
+        if any(tab.page.evaluate(given)):
+            break
+    position = tab.page.evaluate(given)
+    assert any(position)
+    tab.until(f"JSON.stringify({SHOWN}) !== {json.dumps(json.dumps(before, separators=(',', ':')))}")
+    body = {"name": "more", "substructure": "pendulum", "at": "arm.tip", "placement": {"position": position}}
+    stored = filled.post(f"/v1/trees/{bench}/couplings", json=body).json()
+    asked = {"q": [0, 0], "quantities": ["metric"]}
+    told = filled.post(f"/v1/trees/{bench}@{stored['revision']}/evaluations", json=asked).json()["metric"]
+    assert np.allclose(tab.page.evaluate(SHOWN), told, rtol=0, atol=1e-12)
     tab.close()

@@ -1,10 +1,8 @@
 // The workbench: every step is a request of the interface and a new revision, whose page is shown then.
 import "./keys.js";
-import { Ahead } from "./ahead.js";
-import { element, fragment } from "./fragments.js";
-import { load } from "./program.js";
+import { fragment } from "./fragments.js";
+import { Placing } from "./placing.js";
 import { filled, request, texts } from "./steps.js";
-import { ghost, sceneOf } from "./ghost.js";
 
 const JSON_TYPE = { "Content-Type": "application/json" };
 const REST = 120; // ms without a key
@@ -15,7 +13,7 @@ const given = new URL(location.href).searchParams;
 const revision = Number(bench.reference.split("@")[1]);
 const of = Number(given.get("of") ?? revision); // the revision that this one is like, after undo and redo
 const top = Number(given.get("top") ?? of);
-let [picked, waiting, view, ahead] = [document.querySelector("[data-pick]"), 0, null, null];
+let [picked, waiting] = [document.querySelector("[data-pick]"), 0];
 
 function tell(words, kind = "quiet") {
     told.replaceChildren(words);
@@ -34,6 +32,7 @@ async function step(method, address, body, more = "") {
     else location.assign(`/trees/${found.name}@${found.revision}/edit${more}`);
 }
 
+const placing = new Placing(path, document.querySelector("[data-action]"), (form) => show(form));
 const tried = (work) => work.catch((error) => tell(error.message, "warn"));
 
 /** Makes an earlier revision the newest one: its document is sent letter by letter. */
@@ -92,7 +91,7 @@ for (const form of document.querySelectorAll("[data-action]")) {
         chosen(form);
         show(form);
         clearTimeout(waiting);
-        waiting = setTimeout(() => tried(rested(form)), REST);
+        waiting = setTimeout(() => tried(placing.rested(form)), REST);
     });
     form.addEventListener("submit", (event) => {
         event.preventDefault();
@@ -107,43 +106,5 @@ function show(form) {
     }
 }
 
-/** Parts whose names, titles or words are like what was typed. */
-async function search(words) {
-    const answer = await fetch(`/v1/substructures?${new URLSearchParams({ q: words, page_size: "12" })}`);
-    if (!answer.ok) return;
-    const { items } = await answer.json();
-    const options = items.map(({ name, title, dof }) => element("option", { value: name, label: `${title}, ${dof} dof` }));
-    document.getElementById("parts").replaceChildren(...options);
-}
-
-/** The part where it would be, and M of the whole, before it is stored. */
-async function rested(form) {
-    const coupling = filled(form);
-    const { substructure, at, placement } = coupling;
-    if (form.dataset.action !== "couplings") return;
-    const found = () => [...document.getElementById("parts").options].some(({ value }) => value === substructure.split("@")[0]);
-    if (substructure && !found()) await search(substructure);
-    if (form.dataset.method) return;
-    const part = found() && at ? await sceneOf(substructure) : null;
-    view?.ghost(part && ghost(part, placement), at);
-    await ahead?.show(coupling, part?.scene.poses.home);
-}
-
-async function start() {
-    show(document.querySelector("[data-action]"));
-    try {
-        const [program] = await load(path);
-        const scene = await (await fetch(`${path}/scene`)).json();
-        ahead = new Ahead(path, scene.poses.home);
-        const { View } = await import("./view.js");
-        view = new View(document.getElementById("view"), scene);
-        program.vectors.q?.set(scene.poses.home);
-        view.pose(program);
-        view.picks(pick);
-    } catch {
-        // the picture of the server stays
-    }
-    document.getElementById("place").dataset.view = view ? "3d" : "picture";
-    tried(rested(document.querySelector("[data-action]"))); // a part that came with the address
-}
-start();
+show(document.querySelector("[data-action]"));
+tried(placing.start(pick));
