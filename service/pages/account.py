@@ -151,7 +151,17 @@ def _form(target: str, told: str) -> bytes:
         tag(
             "form",
             tag("input", type="hidden", name="next", value=target),
-            tag("input", type="password", name="key", aria_label="API key", placeholder="sub_...", required="required"),
+            # for those who keep keys as passwords
+            tag("input", name="username", autocomplete="username", value="API key", hidden="hidden", aria_label="user"),
+            tag(
+                "input",
+                type="password",
+                name="key",
+                aria_label="API key",
+                placeholder="sub_...",
+                required="required",
+                autocomplete="current-password",
+            ),
             tag("button", "Sign in", type="submit"),
             method="post",
             action="/sign-in",

@@ -179,7 +179,7 @@ def _withdrawn(version: Version) -> Html:
 def _split(path: str, reference: str, about: Html) -> Html:
     picture = tag("img", src=f"{path}/picture", alt=f"Picture of {reference}", width="320", height="240")
     report = link("Report: structure, derivation and formulas", f"{path}/report?format=mathml")
-    return tag("div", tag("div", picture, tag("p", report), class_="picture"), about, class_="split")
+    return tag("div", tag("div", picture, tag("p", report), class_="picture"), about, class_="split", id="about")
 
 
 def _sections(coordinates: Html, parameters: Html, operations: Html, certificate: Mapping[str, Any]) -> list[Html]:

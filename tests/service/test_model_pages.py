@@ -156,6 +156,22 @@ def test_pages_with_hostile_words_stay_silent(browser: Any, address: str, scheme
 
 @in_browser
 @pytest.mark.deep
+def test_poses_at_the_limits(browser: Any, address: str, filled: TestClient) -> None:
+    joint = {"type": "revolute", "coordinate": "q", "limits": [-0.5, 1.25]}
+    body = {**PENDULUM["bodies"][0], "joint": joint}
+    assert filled.post("/v1/substructures", json={**PENDULUM, "name": "limited", "bodies": [body]}).status_code == 201
+    tab = Tab(browser, address, "/substructures/limited@1", 360)
+    tab.until(READY)
+    for name, value in (("lower limits", -0.5), ("upper limits", 1.25)):
+        tab.page.click(f"[data-pose='{name}']")
+        tab.until(f"{HERE} === '{value}'")
+    tab.page.click(".jumps a:has-text('about')")
+    assert tab.page.evaluate("document.getElementById('about').getBoundingClientRect().top < innerHeight / 2")
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_parameters_that_differ_come_first_and_count(browser: Any, address: str, filled: TestClient) -> None:
     tab = Tab(browser, address, "/trees/cell@2?entry=metric,1,1&pose=0.3,0.4")
     tab.until(READY)

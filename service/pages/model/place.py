@@ -18,8 +18,16 @@ def place(shown: Shown, quantity: str, slice_: int, numbers: Array | None, entry
     formulas = tag("div", tabs(shown, quantity), grid(shown, quantity, slice_, numbers), class_="formulas")
     panel = entry or tag("section", tag("p", ENTRY, class_="quiet"), id="entry")
     left = tag("div", view(shown, picture), sliders(shown), class_="left")
-    right = tag("div", formulas, panel, _parameters(shown), class_="right")
-    return tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
+    right = tag("div", formulas, panel, _parameters(shown), class_="right", id="formulas")
+    work = tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
+    return html(_jumps(shown), work)
+
+
+def _jumps(shown: Shown) -> Html:
+    """To what is below each other where the screen is narrow."""
+    places = [("model", "#view"), ("state", "#sliders"), ("formulas", "#formulas"), ("about", "#about")]
+    places += [("motion", f"{shown.path}/motion")] if shown.kind == "trees" else []
+    return tag("nav", [link(*each) for each in places], class_="jumps", aria_label="On this page")
 
 
 def model_data(shown: Shown) -> str:

@@ -8,7 +8,7 @@ export async function shown(kind, reference, sliders) {
         const scene = await answer.json();
         const { View } = await import("./view.js");
         const view = new View(document.getElementById("view"), scene);
-        sliders.offer(scene.poses);
+        sliders.offer({ ...scene.poses, ...limits(scene) });
         if (!new URL(location.href).searchParams.has("pose")) {
             sliders.set(scene.poses.home);
         }
@@ -16,4 +16,11 @@ export async function shown(kind, reference, sliders) {
     } catch {
         return null;
     }
+}
+
+/** Poses at the limits of the coordinates that have some, the others at home; joints come by coordinate. */
+function limits({ joints, poses }) {
+    if (!joints.some((joint) => joint.limits)) return {};
+    const at = (side) => poses.home.map((x, k) => joints[k].limits?.[side] ?? x);
+    return { "lower limits": at(0), "upper limits": at(1) };
 }
