@@ -13,14 +13,26 @@ from statistics import median, quantiles
 from time import perf_counter
 from typing import Any
 
-import httpx2
 from playwright.sync_api import sync_playwright
 
-from benchmarks.http import serving
+from benchmarks.http import cpu_seconds, serving
 from substructures.catalogue import load_tree
 
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-MOVES = 100
+MOVES, ASKED = 100, 30
+#: pages whose work in the server is measured
+PAGES = (
+    "/",
+    "/?q=gripper",
+    "/substructures/puma560@1",
+    "/trees",
+    "/trees/shown@1",
+    "/trees/shown@1?entry=metric,0,1",
+    "/trees/shown@1/edit",
+    "/trees/shown@1/motion",
+    "/jobs",
+    "/docs/explanation/notation",
+)
 READY = "document.getElementById('place').dataset.{}"
 #: milliseconds from an input event to the frame that has drawn it
 MOVE = """(k) => new Promise((done) => {
@@ -72,14 +84,13 @@ def main(name: str) -> None:
         script = [float(page.evaluate(READY.format("milliseconds")))]
         print(f"slider to drawing: median {median(times):.1f} ms, p95 {quantiles(times, n=20)[-1]:.1f} ms")
         print(f"script of a frame: {script[0]:.2f} ms (grid, panel, view; software rendering comes on top)")
-        asked = stack.enter_context(httpx2.Client())
-        asked.get(address)
-        before = perf_counter()
-        for _ in range(20):
-            asked.get(address).raise_for_status()
-        print(
-            f"page over HTTP: {(perf_counter() - before) / 20 * 1000:.1f} ms, {len(asked.get(address).content):,} bytes"
-        )
+        for path in PAGES:
+            asked = [client.request("GET", path) for _ in range(2)][-1]
+            before = cpu_seconds(client)
+            for _ in range(ASKED):
+                client.request("GET", path)
+            used = (cpu_seconds(client) - before) / ASKED * 1e3
+            print(f"{path:40} {used:6.1f} ms of CPU, {len(asked.content):,} bytes")
         browser.close()
 
 

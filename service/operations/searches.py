@@ -6,13 +6,15 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, Generic, TypeVar
 
+from service.content.cache import Cache
 from service.database.connections import Connection
 from service.messages.paging import is_of, of_no_page, read_token, write_token
 from service.messages.refusals import unprocessable
 from service.messages.viewer import Viewer
+from service.queries import audit
 from service.queries.catalogue import Version
 from service.queries.searching import part_search, tree_search
-from service.queries.searching.part_search import CatalogueSearch
+from service.queries.searching.part_search import CatalogueSearch, Facets
 from service.queries.searching.search import RELEVANCE, SORTS, Search, number_of
 from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import corrected
@@ -31,7 +33,7 @@ class Page(Generic[Found]):
 
     items: Sequence[Found]
     next_token: str | None
-    facets: Mapping[str, Mapping[str, int]] | None = None
+    facets: Facets | None = None
     instead: Mapping[str, str] = field(default_factory=dict)
 
 
@@ -53,13 +55,21 @@ def checked(wanted: Wanted) -> Wanted:
 
 
 def parts(
-    connection: Connection, viewer: Viewer, wanted: CatalogueSearch, size: int, token: str | None, facets: bool = False
+    connection: Connection,
+    viewer: Viewer,
+    wanted: CatalogueSearch,
+    size: int,
+    token: str | None,
+    facets: Cache[Facets] | None = None,
 ) -> Page[Version]:
-    """A page of the latest versions. ``facets``: also counts of the whole search. Raises Refused 422 for a token of
-    another search.
+    """A page of the latest versions. ``facets``: also counts of the whole search, kept there. Raises Refused 422 for a
+    token of another search.
     """
     found, wanted = _found(connection, viewer, wanted, size, token, part_search.page)
-    return replace(found, facets=part_search.facets(connection, viewer, wanted)) if facets else found
+    if facets is None:
+        return found
+    key = (audit.state(connection), viewer.owner, viewer.is_admin, replace(wanted, sort=""))
+    return replace(found, facets=facets.once(key, lambda: part_search.facets(connection, viewer, wanted)))
 
 
 def trees(connection: Connection, viewer: Viewer, wanted: TreeSearch, size: int, token: str | None) -> Page[Tree]:

@@ -63,7 +63,7 @@ def first_page(
     both |= {"joints": joints.upper() or None, "owner": owner or None}
     wanted = searches.checked(CatalogueSearch(**both, tags=(tag,) if tag else ()))
     with store.database.read() as connection:
-        found = searches.parts(connection, viewer, wanted, CARDS, after, facets=True)
+        found = searches.parts(connection, viewer, wanted, CARDS, after, store.caches.facets)
         total = part_search.count(connection, viewer)
         # parts alone have tags; of trees there is one page
         some = (

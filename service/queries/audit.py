@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import orjson
-from sqlalchemy import Connection, insert, select
+from sqlalchemy import Connection, func, insert, select
 
 from service.database.tables import audit
 from service.messages.viewer import Viewer
@@ -33,6 +33,14 @@ def note(connection: Connection, viewer: Viewer, action: str, subject: str, **de
     connection.execute(_NEW, {**row, "detail": orjson.dumps(detail).decode()})
 
 
+def state(connection: Connection) -> tuple[int, int]:
+    """What is another one after every act: the number of the last one, and how many of those shortly before there are,
+    since one may be committed later than one with a greater number.
+    """
+    last, count = connection.execute(_STATE).one()
+    return last or 0, count
+
+
 def page(connection: Connection, wanted: Mapping[str, str], before: int | None, size: int) -> list[AuditEntry]:
     """Up to ``size`` acts, the latest first; ``wanted``: values that columns have to have."""
     query = select(*(audit.c[name] for name in AuditEntry.__slots__))
@@ -44,4 +52,6 @@ def page(connection: Connection, wanted: Mapping[str, str], before: int | None, 
 
 
 # Built once: to build a statement takes longer than to execute it.
+_LAST = select(func.max(audit.c.seq)).scalar_subquery()
+_STATE = select(_LAST, func.count()).select_from(audit).where(audit.c.seq > _LAST - 1000)
 _NEW = insert(audit)

@@ -97,7 +97,7 @@ def search(
     chosen = CatalogueSearch(words_of(q), **narrow, tags=tuple(tag), ports=tuple(port), source=words_of(source))
     wanted, size = searches.checked(chosen), limited(page_size, store.settings.limits)
     with store.database.read() as connection:
-        page = searches.parts(connection, viewer, wanted, size, page_token, facets)
+        page = searches.parts(connection, viewer, wanted, size, page_token, store.caches.facets if facets else None)
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.items))
     link = next_link(request, page.next_token)
     return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))

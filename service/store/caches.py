@@ -8,6 +8,7 @@ from typing import Any
 
 from service.content.cache import Cache
 from service.messages.answers import Answer
+from service.queries.searching.part_search import Facets
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
@@ -17,6 +18,7 @@ from substructures.tree.plausibility import Plausibility
 TREES = 1000  # with what judges their values
 PICTURES = 16 * 2**20  # characters
 BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
+FACETS = 20_000  # values of facets
 PRINTED = 32 * 2**20  # bytes of formulas as they were sent
 
 
@@ -25,7 +27,8 @@ class Caches:
     """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
     model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
     digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
-    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers compute with.
+    by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers compute with, ``facets`` of
+    searches by the last act that was noted.
     """
 
     parts: Cache[Part]
@@ -38,6 +41,7 @@ class Caches:
     pictures: Cache[str]
     blobs: Cache[bytes]
     printed: Cache[Answer]
+    facets: Cache[Facets]
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
@@ -53,4 +57,5 @@ class Caches:
             pictures=Cache(PICTURES, len),
             blobs=Cache(BLOBS, len),
             printed=Cache(PRINTED, lambda answer: len(answer.body)),
+            facets=Cache(FACETS, lambda found: sum(map(len, found.values())) + 1),
         )

@@ -3,9 +3,9 @@ or by the server where the pose was sent as a form."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Sequence
 
-from service.pages.html import Content, Html, tag
+from service.pages.html import Html, html, tag
 from service.pages.model.shown import LETTERS, TITLES, Shown
 from substructures.array import Array
 
@@ -49,6 +49,7 @@ def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Htm
         "tr", tag("td"), [tag("th", _short(name, is_small, k), scope="col", title=name) for k, name in _n(columns)]
     )
     width = len(columns)
+    write = _cells(shown, quantity)
     body = []
     for i, row in _n(rows):
         cells = []
@@ -56,8 +57,8 @@ def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Htm
             index = (*lead, i, j) if is_matrix else (*lead, i)
             at = ((lead[0] if lead else 0) * len(rows) + i) * width + j
             value = None if numbers is None else float(numbers[index])
-            cells.append(_cell(shown, quantity, index, index in there, at, value))
-        body.append(tag("tr", tag("th", _short(row, is_small, i), scope="row", title=row), cells))
+            cells.append(write(index, index in there, at, value))
+        body.append(tag("tr", tag("th", _short(row, is_small, i), scope="row", title=row), Html("".join(cells))))
     kind = "grid small" if is_small else "grid"
     table = tag("table", tag("thead", head), tag("tbody", body), class_=kind, data_quantity=quantity)
     return tag(
@@ -88,14 +89,22 @@ def _chooser(shown: Shown, quantity: str, names: Sequence[str], chosen: int) -> 
     return tag("p", tag("span", letter, class_="quiet"), links, class_="chooser")
 
 
-def _cell(shown: Shown, quantity: str, index: tuple[int, ...], is_there: bool, at: int, value: float | None) -> Html:
-    name = f"{quantity},{','.join(map(str, index))}"
-    address = f"{shown.path}?entry={name}{_pose(shown)}"
-    text: Content = "" if value is None or not is_there else f"{value:.3g}"
-    label = f"{LETTERS[quantity]} {' '.join(str(i + 1) for i in index)}"
-    attributes: Mapping[str, str | int | None] = {"data_at": at, "data_entry": name, "aria_label": label}
-    link = tag("a", text, href=address, title=None if is_there else ZERO, **attributes)
-    return tag("td", link, class_=None if is_there else "zero")
+def _cells(shown: Shown, quantity: str) -> Callable[[tuple[int, ...], bool, int, float | None], str]:
+    """What writes a cell: of index, whether it is there, place in the array and value. There may be thousands, and but
+    for what is escaped here all of them is numbers.
+    """
+    before, after = html(f"{shown.path}?entry={quantity},"), html(_pose(shown))
+    entry, letter = html(f"{quantity},"), html(LETTERS[quantity])
+
+    def write(index: tuple[int, ...], is_there: bool, at: int, value: float | None) -> str:
+        """The cell."""
+        name, places = ",".join(map(str, index)), " ".join([str(i + 1) for i in index])
+        text = "" if value is None or not is_there else f"{value:.3g}"
+        start = "<td><a" if is_there else f'<td class="zero"><a title="{ZERO}"'
+        data = f'data-at="{at}" data-entry="{entry}{name}" aria-label="{letter} {places}"'
+        return f'{start} href="{before}{name}{after}" {data}>{text}</a></td>'
+
+    return write
 
 
 def _pose(shown: Shown) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -18,6 +18,8 @@ from service.queries.searching.search import Position, Search, in_order, matchin
 from service.queries.searching.terms import PORT, TAG, names_with
 from service.queries.searching.words import PARTS, Shelf
 
+#: by kind (tags, joints, dof) how many of what was found have each value
+Facets = Mapping[str, Mapping[str, int]]
 _IS_LATEST = substructures.c.latest == versions.c.version
 
 
@@ -63,7 +65,7 @@ def count(connection: Connection, viewer: Viewer) -> int:
     return connection.execute(_COUNT, seen_by(viewer)).scalar_one()
 
 
-def facets(connection: Connection, viewer: Viewer, search: CatalogueSearch) -> dict[str, dict[str, int]]:
+def facets(connection: Connection, viewer: Viewer, search: CatalogueSearch) -> Facets:
     """How many of the versions found there are for every tag, joint sequence and number of degrees of freedom."""
     joints, name = (scanned(connection, each) for each in (substructures.c.joints, search_terms.c.name))
     tag = search_terms.c.term
