@@ -8,7 +8,6 @@ from typing import Any
 
 from service.content.cache import Cache
 from service.messages.answers import Answer
-from service.queries.searching.part_search import Facets
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.from_parts import NumericTree
@@ -41,7 +40,7 @@ class Caches:
     pictures: Cache[str]
     blobs: Cache[bytes]
     printed: Cache[Answer]
-    facets: Cache[Facets]
+    facets: Cache[Any]  # of service.queries.searching.part_search
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
