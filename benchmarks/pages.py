@@ -1,4 +1,4 @@
-"""The page of a tree in Chromium: seconds until it can be used, from slider to drawing, bytes, CPU time of the server.
+"""The pages of a tree in Chromium: seconds until it can be used, from slider to drawing, frames of a motion, bytes.
 
 python -m benchmarks.pages [TREE] (default: humanoid; any other name is a part, alone)
 """
@@ -17,9 +17,10 @@ from playwright.sync_api import sync_playwright
 
 from benchmarks.http import cpu_seconds, serving
 from substructures.catalogue import load_tree
+from substructures.client import Client
 
 FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
-MOVES, ASKED = 100, 30
+MOVES, FRAMES, ASKED = 100, 60, 30
 #: pages whose work in the server is measured
 PAGES = (
     "/",
@@ -64,6 +65,31 @@ def opened(page: Any, address: str) -> tuple[float, float, int]:
     return usable, perf_counter() - start, sum(sizes)
 
 
+def played(page: Any, address: str) -> list[float]:
+    """Milliseconds of the script in frames of a motion of a second."""
+    page.goto(address)
+    until(page, READY.format("ready"))
+    page.fill("#span", "1")
+    page.click("#run")
+    until(page, READY.format("run"))
+    found = []
+    for _ in range(FRAMES):
+        page.wait_for_timeout(30)
+        found.append(float(page.evaluate(READY.format("milliseconds"))))
+    return found
+
+
+def works(client: Client) -> None:
+    """CPU of the server for every page."""
+    for path in PAGES:
+        asked = [client.request("GET", path) for _ in range(2)][-1]
+        before = cpu_seconds(client)
+        for _ in range(ASKED):
+            client.request("GET", path)
+        used = (cpu_seconds(client) - before) / ASKED * 1e3
+        print(f"{path:40} {used:6.1f} ms of CPU, {len(asked.content):,} bytes")
+
+
 def main(name: str) -> None:
     with ExitStack() as stack:
         client, port = stack.enter_context(serving(stack.enter_context(tempfile.TemporaryDirectory())))
@@ -84,13 +110,9 @@ def main(name: str) -> None:
         script = [float(page.evaluate(READY.format("milliseconds")))]
         print(f"slider to drawing: median {median(times):.1f} ms, p95 {quantiles(times, n=20)[-1]:.1f} ms")
         print(f"script of a frame: {script[0]:.2f} ms (grid, panel, view; software rendering comes on top)")
-        for path in PAGES:
-            asked = [client.request("GET", path) for _ in range(2)][-1]
-            before = cpu_seconds(client)
-            for _ in range(ASKED):
-                client.request("GET", path)
-            used = (cpu_seconds(client) - before) / ASKED * 1e3
-            print(f"{path:40} {used:6.1f} ms of CPU, {len(asked.content):,} bytes")
+        times = played(page, f"{address}/motion")
+        print(f"script of a frame of a motion: median {median(times):.2f} ms (pose, plots, values at the cursor, view)")
+        works(client)
         browser.close()
 
 

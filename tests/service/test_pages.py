@@ -166,7 +166,7 @@ def test_scripts_are_kept_for_ever_under_their_digest(filled: TestClient) -> Non
         assert answer.status_code == 200
         assert "immutable" in answer.headers["cache-control"]
     assert filled.get("/assets/0/main.js").headers["cache-control"] == "no-store"
-    problem(filled.get("/assets/0/..%2f..%2fshown.py"), 404, "not-found")
+    problem(filled.get("/assets/0/..%2f..%2fshown.py"), 404, "unknown-asset")
 
 
 @pytest.mark.parametrize("text", HOSTILE)

@@ -6,6 +6,8 @@ from typing import Any
 
 import pytest
 
+from service.pages.model import assets
+
 from .one_store import filled, store
 from .test_model_pages import READY, Tab, address, browser, in_browser
 
@@ -59,3 +61,11 @@ def test_the_ghost_follows_the_pointer(browser: Any, address: str) -> None:
     assert tab.page.evaluate("told") == told, "beside the shade nothing is dragged"
     assert tab.page.evaluate("seen()") != seen
     tab.close()
+
+
+def test_modules_are_short() -> None:
+    """Own ones; those that are built come of them."""
+    folders = assets.FOLDER, assets.FOLDER.with_name("source")
+    own = [path for folder in folders for path in folder.rglob("*.js") if "node_modules" not in path.parts]
+    long = [path.name for path in own if path != assets.FOLDER / "view.js" and path.read_text().count("\n") >= 150]
+    assert long == []

@@ -19,14 +19,14 @@ MEDIA = {
     ".css": "text/css; charset=utf-8",
     ".txt": "text/plain; charset=utf-8",
 }
-FILES = {path.name: path for path in sorted(FOLDER.iterdir()) if path.suffix in MEDIA}
+FILES = {path.relative_to(FOLDER).as_posix(): path for path in sorted(FOLDER.rglob("*")) if path.suffix in MEDIA}
 DIGEST = hashlib.sha256(b"".join(path.read_bytes() for path in FILES.values())).hexdigest()[:16]
 ROOT = f"/assets/{DIGEST}"
 
 router = APIRouter(include_in_schema=False)
 
 
-@router.get("/assets/{digest}/{name}")
+@router.get("/assets/{digest}/{name:path}")
 def asset(digest: str, name: str) -> Response:
     """A file; of another digest, which is that of an older or newer server, too, to be asked for again."""
     path = FILES.get(name)

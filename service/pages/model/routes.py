@@ -40,6 +40,7 @@ Text = Annotated[str, Query(max_length=50_000)]
 Poses = Annotated[str | None, Query(max_length=50_000)]
 Numbers = Annotated[list[str] | None, Query(alias="q", max_length=2_000)]
 Time = Annotated[str, Query(alias="t", max_length=40)]
+Fields = Annotated[str, Query(alias="run", max_length=50_000)]
 #: revisions that a newer one is like after undo, and as far as can be done again; read by scripts
 Like = Annotated[int, Query(alias="of", ge=0)]
 Newest = Annotated[int, Query(alias="top", ge=0)]
@@ -114,13 +115,21 @@ async def tree(
 
 
 @router.get("/trees/{ref}/motion")
-def motion(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, pose: Poses = None, _t: Time = "") -> Response:
-    """Motions of a tree; the time that is shown is read by scripts."""
+def motion(
+    ref: str,
+    request: Request,
+    store: StoreOf,
+    viewer: ViewerOf,
+    pose: Poses = None,
+    _t: Time = "",
+    _run: Fields = "",
+) -> Response:
+    """Motions of a tree; what is run and the time that is shown are read by scripts."""
     with store.database.read() as connection:
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)
     shown = of_tree(found, model, pose, None)
-    return _answer(request, motion_page(shown, _picture(shown)), "motion.js")
+    return _answer(request, motion_page(shown, _picture(shown)), "motion/motion.js")
 
 
 @router.get("/trees/{ref}/edit")

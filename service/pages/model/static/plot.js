@@ -1,15 +1,9 @@
 // An entry over one coordinate as a line, over two as a map.
-const SVG = "http://www.w3.org/2000/svg";
+import { svg } from "./svg.js";
+
 const [WIDTH, HEIGHT, LEFT, BOTTOM] = [480, 160, 56, 20];
 const POINTS = 240;
 const CELLS = 64;
-
-function svg(name, attributes, text = "") {
-    const made = document.createElementNS(SVG, name);
-    for (const [key, value] of Object.entries(attributes)) made.setAttribute(key, value);
-    made.textContent = text;
-    return made;
-}
 
 /** A line of value(x) over [low, high], with a mark at x = here. */
 export function line(value, [low, high], here, format) {

@@ -59,10 +59,11 @@ export class Sliders {
     tell() {
         this.changed();
         clearTimeout(this.waiting);
+        const pose = [...this.state.q].join(",");
         this.waiting = setTimeout(() => {
             const address = new URL(location.href);
             address.searchParams.delete("q");
-            address.searchParams.set("pose", [...this.state.q].join(","));
+            address.searchParams.set("pose", pose);
             history.replaceState(null, "", address);
             this.rested();
         }, 150);

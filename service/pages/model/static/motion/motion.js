@@ -1,0 +1,123 @@
+// The page of motions: runs from the state of the sliders, plays it, plots it; modes and roots about a state.
+import { element } from "../fragments.js";
+import { load } from "../program.js";
+import { Sliders } from "../sliders.js";
+import { shown } from "../viewing.js";
+import { post } from "./asked.js";
+import { table, verdict } from "./checks.js";
+import { Curves } from "./curves.js";
+import { locus } from "./locus.js";
+import { Modes } from "./modes.js";
+import { Player } from "./player.js";
+import { keep, request, restore, time } from "./request.js";
+import { save } from "./saving.js";
+import { groups, index, interpolated } from "./trajectory.js";
+
+const place = document.getElementById("place");
+const get = (id) => document.getElementById(id);
+const tried = (work) => work.catch((error) => tell(error.message, "warn"));
+tried(start(JSON.parse(place.dataset.model)));
+
+async function start({ kind, reference, ranges, joints }) {
+    const path = `/v1/${kind}/${reference}`;
+    const [program, layout] = await load(path);
+    const state = program.vectors;
+    let [motion, found, plots, view, running, asked] = [null, null, [], null, null, null];
+    get("without").hidden = true;
+    const draw = () => {
+        view?.pose(program);
+        place.dataset.pose = [...state.q].join(",");
+    };
+    const sliders = new Sliders(state, ranges, () => {
+        player.stop(); // what is moved is seen
+        for (const [k, values] of sliders.given().entries()) [state.q, state.qd][k].set(values);
+        requestAnimationFrame(draw);
+    }, () => {});
+    const player = new Player((t) => {
+        const before = performance.now();
+        motion(t);
+        if (found) for (const plot of plots) plot.mark(t, index(found.t, t));
+        draw();
+        place.dataset.milliseconds = (performance.now() - before).toFixed(3);
+    }, (t) => found && keep(t));
+
+    const run = async () => {
+        player.stop();
+        running = new AbortController();
+        const body = request(sliders.given());
+        tell("computing ...");
+        busy(true);
+        try {
+            found = await post(`${path}/simulations`, body, { told: followed, signal: running.signal });
+        } finally {
+            busy(false);
+        }
+        asked = body;
+        const width = Math.min(560, Math.max(280, get("plots").clientWidth));
+        plots = groups(found, layout, program).map((group) => new Curves(group, found.t, width, (t) => player.choose(t)));
+        get("plots").replaceChildren(table(found), ...plots.map((plot) => plot.element));
+        tell(...verdict(found));
+        get("saves").hidden = false;
+        motion = (t) => interpolated(found, t, state);
+        place.dataset.run = JSON.stringify(body);
+        const named = found.events.map(({ name, t }) => ({ t, name: body.events[Number(name.slice(5)) - 1].quantity }));
+        const until = found.t[found.t.length - 1];
+        player.load(until, time() ?? 0, named);
+        keep(player.t, body);
+    };
+    const play = (length, at) => {
+        player.stop();
+        [plots, found] = [[], null];
+        get("plots").replaceChildren();
+        get("saves").hidden = true;
+        motion = (t) => state.q.set(at(t));
+        player.load(length);
+        player.play();
+    };
+    get("motion").addEventListener("submit", (event) => {
+        event.preventDefault();
+        forget();
+        tried(run().then(() => player.play()));
+    });
+    get("cancel").addEventListener("click", () => running?.abort(new Error("cancelled")));
+    get("reactions").addEventListener("change", () => found && tried(run()));
+    for (const button of document.querySelectorAll("[data-media]")) {
+        const name = `${reference.replace("@", "-")}.${button.dataset.media.match(/csv|npz|svg/)[0]}`;
+        button.addEventListener("click", () =>
+            tried(save(`${path}/simulations`, asked, button.dataset.media, name, followed).then(() => tell(...verdict(found)))));
+    }
+    new Modes(path, { joints }, {
+        play, given: () => sliders.given()[0], found: (q) => sliders.set(q), size: () => view?.told.sphere.radius ?? 1,
+    });
+    locus(path, () => sliders.given()[0]);
+    restore();
+    view = await shown(kind, reference, sliders);
+    draw();
+    place.dataset.view = view ? "3d" : "picture";
+    if (time() !== null) await run();
+    place.dataset.ready = "1";
+}
+
+function busy(is) {
+    get("cancel").hidden = !is;
+    get("run").disabled = get("reactions").disabled = is;
+}
+
+/** A new motion begins at its beginning. */
+function forget() {
+    const address = new URL(location.href);
+    address.searchParams.delete("t");
+    history.replaceState(null, "", address);
+}
+
+/** How far the job is that a motion became. */
+function followed({ id, state, progress }) {
+    const share = progress.fraction ?? 0;
+    const bar = element("progress", { ...(share ? { value: String(share) } : {}), max: "1", "aria-label": "progress" });
+    tell(bar, "quiet", ` job ${state}, ${Math.round(100 * share)} %: `, element("a", { href: `/jobs/${id}` }, "its page"));
+}
+
+function tell(words, kind = "quiet", ...more) {
+    get("verdict").replaceChildren(words, ...more);
+    get("verdict").className = kind;
+}
