@@ -22,7 +22,7 @@ PATHS = {
     "/account": False,
     "/substructures/pendulum@1": True,
     "/trees/cell@2?entry=metric,0,1&pose=0.3,-0.8": True,
-    "/trees/cell@2/motion": True,
+    "/trees/cell@2/motion?pose=0.3,-0.8&t=1.25": True,
     "/trees/cell@2/edit": True,
     "/trees/cell@1/difference?to=cell@2": False,
     "/v1/trees/cell@2/report?format=mathml": False,

@@ -17,6 +17,7 @@ from substructures.client import Client
 from .conftest import PENDULUM
 from .farm import Server
 from .one_store import filled, store
+from .test_accessible_pages import faults
 from .test_model_pages import Tab, address, browser, in_browser
 
 __all__ = ["address", "browser", "filled", "store"]
@@ -68,6 +69,7 @@ def ran(tab: Tab) -> Any:
 
 
 @in_browser
+@pytest.mark.deep
 def test_a_motion_with_inputs_events_and_reactions(browser: Any, address: str, trees: TestClient) -> None:
     tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4")
     tab.page.fill("[data-rate='0']", "0.5")
@@ -92,6 +94,10 @@ def test_a_motion_with_inputs_events_and_reactions(browser: Any, address: str, t
     again = opened(browser, address, tab.page.url.removeprefix(address))
     assert ran(again) == request, "the address holds the motion"
     assert again.page.evaluate(POSE) == pytest.approx(shown, abs=1e-4), "and its time"
+    again.page.check("#stop")
+    again.page.click("#run")
+    first = told["events"][0]["t"]
+    again.until(f"Math.abs(Number(document.getElementById('time').max) - {first}) < 1e-6")
     again.close()
     tab.close()
 
@@ -176,6 +182,7 @@ def test_modes_and_roots_of_the_nearest_equilibrium(browser: Any, address: str, 
     tab.page.wait_for_selector("#roots svg")
     assert tab.page.locator("#roots svg > :is(circle, path)").count() == 12
     assert "arm.l from 0.5 (cross) to 3 (circle) m: asymptotically stable" in tab.page.inner_text("#roots")
+    assert faults(tab) == []
     tab.page.fill("#locus [name=from]", "")
     tab.page.click("#locus button")
     tab.page.wait_for_selector("#roots .warn")

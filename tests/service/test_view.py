@@ -31,6 +31,11 @@ OPEN = """async (root) => {
         if (shift) shown(shift);
     });
     window.end = () => view.camera.pixel(view.shade.ends()[1]);
+    window.posed = (...q) => {
+        program.vectors.q.set(q);
+        view.pose(program);
+        return view.camera.pixel(view.middle);
+    };
     window.seen = () => view.camera.seen.position.toArray();
 }"""
 
@@ -60,6 +65,20 @@ def test_the_ghost_follows_the_pointer(browser: Any, address: str) -> None:
     mouse.up()
     assert tab.page.evaluate("told") == told, "beside the shade nothing is dragged"
     assert tab.page.evaluate("seen()") != seen
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_moves_away_is_followed(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    script = tab.page.get_attribute("script[type=module]", "src")
+    tab.page.evaluate(OPEN, script.rpartition("/")[0] + "/")
+    first, away = tab.page.evaluate("[posed(0, 0), posed(1, 0.5)]")
+    assert abs(away[0] - first[0]) + abs(away[1] - first[1]) > 20
+    tab.page.check("label:has-text('follow') input")
+    assert tab.page.evaluate("posed(-1, 0.5)") == pytest.approx(away, abs=0.01)
     tab.close()
 
 

@@ -24,6 +24,13 @@ export class Camera {
         this.controls.target.copy(middle);
     }
 
+    /** Goes along with what is seen. */
+    shift(way) {
+        this.seen.position.add(way);
+        this.controls.target.add(way);
+        this.seen.updateMatrixWorld();
+    }
+
     resize(width, height) {
         this.seen.aspect = width / height;
         this.seen.updateProjectionMatrix();

@@ -8,7 +8,11 @@ export class Shade {
 
     /** Lines between points of a frame that is there, told by its matrix; none without lines. */
     show(lines, frame) {
-        if (this.lines) this.scene.remove(this.lines);
+        if (this.lines) {
+            this.scene.remove(this.lines);
+            this.lines.geometry.dispose();
+            this.lines.material.dispose();
+        }
         this.lines = null;
         this.points = [];
         if (!lines) return;

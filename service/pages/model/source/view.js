@@ -45,9 +45,13 @@ export class View {
             bar.append(label);
             this.groups[name].visible = on;
         }
+        const box = made("input", { type: "checkbox" });
+        box.addEventListener("change", () => (this.followed = box.checked));
+        const follow = document.createElement("label");
+        follow.append(box, "follow");
         const fit = made("button", { type: "button", textContent: "fit" });
         fit.addEventListener("click", () => this.fit());
-        bar.append(fit);
+        bar.append(follow, fit);
         return bar;
     }
 
@@ -71,6 +75,10 @@ export class View {
             frame.set(m[0], m[1], m[2], p[0], m[3], m[4], m[5], p[1], m[6], m[7], m[8], p[2], 0, 0, 0, 1);
         });
         if (!this.fitted) this.measure();
+        const middle = this.frames.reduce((sum, _, frame) => sum.add(at(this.frames, { frame })), new THREE.Vector3());
+        middle.divideScalar(this.frames.length);
+        if (this.followed) this.camera.shift(middle.clone().sub(this.middle));
+        this.middle = middle;
         this.shapes.place(this.frames, this.size);
         if (!this.fitted) this.fit();
         this.draw();
