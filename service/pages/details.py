@@ -84,11 +84,35 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
     """The bytes of the page of a revision of a tree; arguments as of :func:`part_page`."""
     path, summary = tree_path(tree), read_json(tree.summary.encode())
     reference = f"{tree.name}@{tree.revision}"
-    printed = [link(name, f"{path}/{name}?format=text") for name in QUANTITIES if tree.dof]
     acts = [link("Couple, load, close loops", f"/trees/{reference}/edit")]
     acts += [link("Simulate", f"/trees/{reference}/motion")] if tree.dof else []
+    return document(
+        f"{reference} - substructures",
+        tag("h1", f"Tree {tree.name}"),
+        _first(reference, (tree.dof, model.joints, tree.mass), summary["certificate"]),
+        _acts(path, *acts, exported=OF_TREES if tree.dof else ()),
+        *notes[0],
+        work,
+        _split(path, reference, _about_tree(tree, model, summary)),
+        tag("h2", "Instances"),
+        table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
+        *_loads(summary.get("loads", ())),
+        *_sections(
+            words.coordinates(model.coordinates, model.joints),
+            words.parameters(summary["parameters"]),
+            words.operations(summary["operations"], OF_TREE),
+            summary["certificate"],
+        ),
+        *notes[1],
+        crumbs=[("trees", "/trees")],
+    )
+
+
+def _about_tree(tree: Tree, model: Model, summary: Mapping[str, Any]) -> Html:
+    path, reference = tree_path(tree), f"{tree.name}@{tree.revision}"
+    printed = [link(name, f"{path}/{name}?format=text") for name in QUANTITIES if tree.dof]
     base = f"{tree.name}@{tree.based_on}" if tree.based_on else ""
-    about = facts(
+    return facts(
         [
             ("Reference", tag("code", reference)),
             ("Size", size(tree.dof, model.joints)),
@@ -102,26 +126,6 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
             ("As data", link("JSON", path)),
             ("As text", joined(printed, " · ")),
         ]
-    )
-    return document(
-        f"{reference} - substructures",
-        tag("h1", f"Tree {tree.name}"),
-        _first(reference, (tree.dof, model.joints, tree.mass), summary["certificate"]),
-        _acts(path, *acts, exported=OF_TREES if tree.dof else ()),
-        *notes[0],
-        work,
-        _split(path, reference, about),
-        tag("h2", "Instances"),
-        table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
-        *_loads(summary.get("loads", ())),
-        *_sections(
-            words.coordinates(model.coordinates, model.joints),
-            words.parameters(summary["parameters"]),
-            words.operations(summary["operations"], OF_TREE),
-            summary["certificate"],
-        ),
-        *notes[1],
-        crumbs=[("trees", "/trees")],
     )
 
 
