@@ -113,7 +113,7 @@ def checked(tab: Tab, client: TestClient, tree: str, entries: list[str]) -> None
         q = pose_of(tab)
         told = client.post(f"/v1/trees/{tree}/evaluations", json={"q": q, "quantities": [quantity]}).json()[quantity]
         expected = np.array(told)[tuple(map(int, index))]
-        assert float(tab.page.evaluate(VALUE)) == pytest.approx(expected, rel=1e-9, abs=1e-12)
+        tab.until(f"Math.abs(Number({VALUE}) - {expected}) <= {1e-12 + 1e-9 * abs(expected)}")
 
 
 @in_browser

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from service.pages.html import Html, link, tag
+from service.pages.html import Html, tag
 from service.pages.layout import document
 from service.pages.model.place import model_data, sliders, view
 from service.pages.model.shown import Shown
@@ -34,8 +34,9 @@ def motion_page(shown: Shown, picture: str) -> bytes:
         class_="right",
     )
     place = tag("div", left, right, class_="place motion", id="place", data_model=model_data(shown))
-    title = tag("h1", link(f"Tree {shown.reference}", shown.path), ": motion")
-    return document(f"Motion of {shown.reference} - substructures", title, place)
+    crumbs = [("trees", "/trees"), (shown.reference, shown.path)]
+    title = tag("h1", f"Motion of {shown.reference}")
+    return document(f"Motion of {shown.reference} - substructures", title, place, crumbs=crumbs)
 
 
 def _player() -> Html:

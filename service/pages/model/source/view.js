@@ -84,14 +84,18 @@ export class View {
         this.draw();
     }
 
-    measure() {
-        const box = this.shapes.box(this.frames);
+    /** What is drawn lies within it. */
+    box() {
+        return this.shapes.box(this.frames);
+    }
+
+    measure(box = this.box()) {
         this.size = box.getSize(new THREE.Vector3()).length() || 1;
         return box;
     }
 
-    fit() {
-        this.camera.fit(this.measure(), this.size);
+    fit(box) {
+        this.camera.fit(this.measure(box), this.size);
         this.fitted = true;
         this.resize();
         this.camera.controls.update();

@@ -1,4 +1,5 @@
 // The page of motions: runs from the state of the sliders, plays it, plots it; modes and roots about a state.
+import "../keys.js";
 import { element } from "../fragments.js";
 import { load } from "../program.js";
 import { Sliders } from "../sliders.js";
@@ -15,6 +16,8 @@ import { groups, index, interpolated } from "./trajectory.js";
 
 const place = document.getElementById("place");
 const get = (id) => document.getElementById(id);
+const [SEEN, FAR] = [21, 4]; // poses that the view is fitted to, unless they take so many times the room of one
+const size = ({ min, max }) => max.distanceTo(min);
 const tried = (work) => work.catch((error) => tell(error.message, "warn"));
 tried(start(JSON.parse(place.dataset.model)));
 
@@ -62,8 +65,20 @@ async function start({ kind, reference, ranges, joints }) {
         place.dataset.run = JSON.stringify(body);
         const named = found.events.map(({ name, t }) => ({ t, name: body.events[Number(name.slice(5)) - 1].quantity }));
         const until = found.t[found.t.length - 1];
+        if (view) within(until);
         player.load(until, time() ?? 0, named);
         keep(player.t, body);
+    };
+    /** All of the motion is seen, unless it goes far away. */
+    const within = (until) => {
+        const boxes = Array.from({ length: SEEN }, (_, k) => {
+            motion((until * k) / (SEEN - 1));
+            view.pose(program);
+            return view.box();
+        });
+        const far = FAR * size(boxes[0]);
+        const all = boxes.reduce((sum, box) => sum.union(box));
+        if (size(all) <= far) view.fit(all);
     };
     const play = (length, at) => {
         player.stop();
