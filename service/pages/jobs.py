@@ -52,10 +52,16 @@ def _row(job: Job, progress: Progress) -> list[Content]:
 
 
 def job_page(
-    job: Job, progress: Progress, bad: Sequence[JobItem], more: bool, may_change: bool, rows: Html | None = None
+    job: Job,
+    progress: Progress,
+    bad: Sequence[JobItem],
+    more: bool,
+    may_change: bool,
+    results: Sequence[Html] = (),
+    rows: Html | None = None,
 ) -> bytes:
     """The bytes of the page of one job; ``bad``: items that failed, ``more``: there are others; ``may_change``: it can
-    be cancelled, tried again and removed; ``rows``: of a sweep.
+    be cancelled, tried again and removed; ``results``: of its items; ``rows``: of a sweep.
     """
     path = job_path(job.id)
     live = tag(
@@ -64,6 +70,7 @@ def job_page(
         _buttons(job, path) if may_change else None,
         _about(job, progress, path),
         *_problems(bad, more, path),
+        *results,
         id="live",
         data_events=f"{path}/events",
     )
@@ -76,6 +83,7 @@ def job_page(
         *([rows] if rows is not None else []),
         script=LIVE,
         refresh=None if job.is_final else AGAIN,
+        crumbs=[("jobs", "/jobs")],
     )
 
 

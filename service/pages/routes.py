@@ -20,12 +20,14 @@ from service.pages.html import Html
 from service.pages.jobs import job_page, jobs_page
 from service.pages.layout import answer
 from service.pages.model.assets import scripted, with_scripts
+from service.pages.results import PREVIEWED, results_section
 from service.pages.sweeps import sweep_section
 from service.pages.trees import trees_page
 from service.pages.versions import (
     difference_page,
 )
 from service.queries.jobs import jobs as job_rows
+from service.queries.jobs import results
 from service.queries.searching import part_search
 from service.queries.searching.part_search import CatalogueSearch
 from service.queries.searching.search import RELEVANCE
@@ -153,15 +155,18 @@ def one_job(
     y: Filter = "",
 ) -> Response:
     """A job with its progress; of a sweep its table, of which the query says what is shown."""
+    query = {"where": where, "sort": sort, "x": x, "y": y}
     with store.database.read() as connection:
         found = jobs.find(connection, viewer, job)
         bad = job_rows.page_items(connection, job, "failed", -1, BAD + 1)
         progress = jobs.progress(connection, found)
         whole = tables.table_of(connection, found) if found.kind == tables.KIND and found.done else None
-    query = {"where": where, "sort": sort, "x": x, "y": y}
+        good = [] if whole is not None else job_rows.page_items(connection, job, "succeeded", -1, PREVIEWED + 1)
+        files = results.list_files(connection, [item.key for item in good])
+    made = results_section(found, good, files)
     rows = None if whole is None else _rows(whole, job_path(job), query, viewer.has("write"))
     may_change = viewer.has("jobs") and (viewer.key == found.principal or viewer.may_change(found.owner))
-    return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD, may_change, rows))
+    return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD, may_change, made, rows))
 
 
 def _rows(whole: tables.Table, path: str, query: dict[str, str], may_write: bool) -> Html:

@@ -43,3 +43,20 @@ def test_pages_of_jobs(filled: TestClient, store: Store) -> None:
     assert EVIL not in page
     assert "refresh" not in filled.get("/jobs").text
     assert filled.get("/jobs/none").status_code == 404
+
+
+def test_what_the_items_became(filled: TestClient, store: Store) -> None:
+    """Links to what was stored, a picture of a motion, figures and files."""
+    motion = {"tree": "cell", "request": {"q": [0.2], "span": [0, 1]}, "format": "svg"}
+    tree = {"name": "made", "instances": [{"name": "a", "substructure": "pendulum"}]}
+    with running(store, FakeEngine()):
+        for kind, item, said, links in (
+            ("simulate", motion, "is_right yes, status finished", ["files/result"]),
+            ("assemble", tree, "dof 1, joints R", ["/trees/made@1"]),
+        ):
+            job = submitted(filled, {"kind": kind, "items": [item]})
+            finished(filled, job)
+            page = read(filled, f"/jobs/{job}")
+            assert said in page.text
+            for end in links:
+                assert any(each.endswith(end) for each in page.links), page.links
