@@ -75,8 +75,8 @@ ROUTES = (
     system,
     audit,
     account,
+    pages,  # before the documents, whose addresses begin with one of theirs
     documents,
-    pages,
     assets,
     model_pages,
 )

@@ -58,8 +58,12 @@ def _page(name: str, words: str) -> bytes:
     field = tag("input", name="q", value=words, placeholder="search the documentation", aria_label="Search")
     search = tag("form", field, tag("button", "Search", type="submit"), action="/docs", class_="bar", role="search")
     inside = tag("ul", here, class_="plain") if len(here) > 2 and not words.strip() else None
-    nav = None if name == INDEX else tag("p", link("Documentation", "/docs"), class_="quiet")
-    return document(f"{title} - substructures", search, *filter(None, (nav,)), *filter(None, (inside,)), shown)
+    nav = tag("p", link("Documentation", "/docs"), class_="quiet")
+    if name == INDEX:
+        nav = tag(
+            "p", "Every request, filled in, to be sent: ", link("the interface by example", "/docs/interface"), "."
+        )
+    return document(f"{title} - substructures", search, nav, *filter(None, (inside,)), shown)
 
 
 def _found(words: str) -> Html:

@@ -17,6 +17,7 @@ from service.pages.account import PageRoute
 from service.pages.catalogue import page
 from service.pages.found import Found
 from service.pages.html import Html
+from service.pages.interface import Stored, interface_page
 from service.pages.jobs import job_page, jobs_page
 from service.pages.layout import answer
 from service.pages.model.assets import scripted, with_scripts
@@ -167,6 +168,21 @@ def one_job(
     rows = None if whole is None else _rows(whole, job_path(job), query, viewer.has("write"))
     may_change = viewer.has("jobs") and (viewer.key == found.principal or viewer.may_change(found.owner))
     return answer(request, job_page(found, progress, bad[:BAD], len(bad) > BAD, may_change, made, rows))
+
+
+@router.get("/docs/interface")
+def interface(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+    """Every request, filled in with the newest tree, a part and a job that the viewer sees."""
+    none = dict.fromkeys(("state", "kind", "label"))
+    with store.database.read() as connection:
+        newest = searches.trees(connection, viewer, TreeSearch((), sort="-created"), 1, None).items
+        some = searches.parts(connection, viewer, CatalogueSearch((), sort="-created", dof_min=1), 1, None).items
+        latest = job_rows.page_jobs(connection, viewer, none, None, 1)
+    part = f"{some[0].name}@{some[0].version}" if some else ""
+    job = latest[0].id if latest else ""
+    stored = Stored(newest[0] if newest else None, part, job, _address(request))
+    made = scripted(interface_page(request.app.openapi(), stored), "send.js")
+    return with_scripts(answer(request, made), compiles=False)
 
 
 def _rows(whole: tables.Table, path: str, query: dict[str, str], may_write: bool) -> Html:

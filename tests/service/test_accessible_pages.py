@@ -19,6 +19,7 @@ PATHS = {
     "/jobs": False,
     "/docs": False,
     "/docs/explanation/notation": False,
+    "/docs/interface": False,
     "/account": False,
     "/substructures/pendulum@1": True,
     "/trees/cell@2?entry=metric,0,1&pose=0.3,-0.8": True,

@@ -20,6 +20,7 @@ def shown(client: TestClient, path: str) -> str:
 def test_every_page_is_there_and_its_links_lead_somewhere(client: TestClient) -> None:
     pages = {name: shown(client, "/docs" if name == "index" else f"/docs/{name}") for name in names()}
     assert len(pages) == len(list(FOLDER.rglob("*.md"))) > 15
+    pages["interface"] = shown(client, "/docs/interface")
     for name, text in pages.items():
         assert '<main id="content">' in text
         for address in re.findall(r'href="(/docs[^"]*)"', text):

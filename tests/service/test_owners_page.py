@@ -61,6 +61,14 @@ def signed_in(tab: Tab, key: str) -> None:
     tab.page.click("button:has-text('Sign in')")
 
 
+def test_examples_of_the_interface_name_nothing_private(filled: TestClient, store: Store) -> None:
+    one, two = (new_key(store, "read", "write", owner=owner) for owner in ("one", "two"))
+    assert filled.post("/v1/trees", json=SECRET, headers=one).status_code == 201
+    assert "secret@1" in filled.get("/docs/interface", headers=one).text
+    assert "secret@1" not in filled.get("/docs/interface", headers=two).text
+    assert filled.get("/docs/interface").status_code == 401
+
+
 @in_browser
 def test_two_owners(browser: Any, filled: TestClient, served: tuple[str, dict[str, str]]) -> None:
     address, keys = served

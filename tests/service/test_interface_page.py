@@ -1,0 +1,45 @@
+"""The interface by example: requests filled in with what is stored, and answers as they are sent."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+
+from .one_store import filled, store
+from .test_model_pages import Tab, address, browser, in_browser
+
+__all__ = ["address", "browser", "filled", "store"]
+EVALUATIONS = "form.send:has([name=path][value='/v1/trees/cell@2/evaluations'])"
+
+
+def test_every_request_is_there(client: TestClient) -> None:
+    """Also where nothing is stored: then nothing of a tree can be sent."""
+    text = client.get("/docs/interface").text
+    openapi = client.get("/openapi.json").json()
+    for path, operations in openapi["paths"].items():
+        for method in operations:
+            assert f"{method.upper()} {path}" in text
+    assert "/trees/{ref}/evaluations&quot;" not in text
+    assert 'name="path" value="/v1/trees"' in text
+    assert 'href="/docs/interface"' in client.get("/docs").text
+
+
+@in_browser
+@pytest.mark.parametrize("width", [1280, *[pytest.param(360, marks=pytest.mark.deep)]])
+def test_what_is_sent_is_answered(browser: Any, address: str, filled: TestClient, width: int) -> None:
+    tab = Tab(browser, address, "/docs/interface", width)
+    tab.page.click(f"details:has({EVALUATIONS}) > summary")
+    tab.page.fill(f"{EVALUATIONS} [name=body]", '{"q": [0.3, -0.8], "quantities": ["metric"]}')
+    tab.page.click(f"{EVALUATIONS} button")
+    answer = f'document.querySelector("{EVALUATIONS} + .answer pre")'
+    tab.until(answer)
+    told = filled.post("/v1/trees/cell@2/evaluations", json={"q": [0.3, -0.8], "quantities": ["metric"]}).json()
+    assert json.loads(tab.page.evaluate(f"{answer}.textContent")) == told
+    tab.page.fill(f"{EVALUATIONS} [name=body]", '{"q": [0.3]}')
+    tab.page.click(f"{EVALUATIONS} button")
+    tab.until(f"{answer}?.textContent.includes('urn:problem-type')")
+    tab.wrong = [each for each in tab.wrong if "422" not in each]
+    tab.close()
