@@ -11,6 +11,7 @@ from typing import Annotated, Any
 from fastapi import APIRouter, Query, Request, Response
 from markdown_it import MarkdownIt
 from markdown_it.token import Token
+from starlette.responses import FileResponse
 
 from service.messages.refusals import not_found
 from service.pages.html import Html, html, link, tag
@@ -24,6 +25,10 @@ INDEX = "index"
 MOST = 40  # places that a search shows
 _LINKED = re.compile(r"\]\(([\w/-]+)\.md\)")
 
+DRAWN = {
+    "X-Content-Type-Options": "nosniff",
+    "Content-Security-Policy": "default-src 'none'; style-src 'unsafe-inline'",
+}
 router = APIRouter(include_in_schema=False)
 #: around what may be wider than the screen
 SCROLLS = '<div class="scroll" tabindex="0" role="group" aria-label="Table">'
@@ -37,8 +42,15 @@ def docs(request: Request, q: Annotated[str, Query(max_length=200)] = "") -> Res
 
 @router.get("/docs/{name:path}")
 def one(name: str, request: Request) -> Response:
-    """A page. Raises Refused 404."""
+    """A page, or a drawing of one. Raises Refused 404."""
+    if name in _drawings():
+        return FileResponse(FOLDER / name, media_type="image/svg+xml", headers=DRAWN)
     return answer(request, _page(name.removesuffix(".md"), ""))
+
+
+@cache
+def _drawings() -> frozenset[str]:
+    return frozenset(path.relative_to(FOLDER).as_posix() for path in FOLDER.rglob("*.svg"))
 
 
 def names() -> list[str]:
@@ -115,6 +127,9 @@ def _rendered(name: str) -> tuple[str, Html, tuple[tuple[int, str, str], ...]]:
         for child in token.children or ():
             if child.type == "link_open":
                 child.attrSet("href", _target(name, str(child.attrGet("href"))))
+            if child.type == "image":
+                child.attrSet("src", f"/docs/{_resolved(name, str(child.attrGet('src')))}")
+                child.attrSet("class", "drawing")
     content = MarkdownIt("commonmark", {"html": False}).enable("table").renderer.render(tokens, _OPTIONS, {})
     content = content.replace("<table>", f"{SCROLLS}<table>").replace("</table>", "</table></div>")
     title = next((text for _, text, _ in headings), name)
@@ -153,8 +168,14 @@ def _target(name: str, address: str) -> str:
     path, mark, anchor = address.partition("#")
     if "://" in address or not path:
         return address
+    place = _resolved(name, path)
+    is_page = place and path.endswith(".md")
+    return _address(place.removesuffix(".md")) + mark + anchor if is_page else "/docs"
+
+
+def _resolved(name: str, path: str) -> str:
+    """The place in the folder of a path that a page names; empty where it leads out of it."""
     parts: list[str] = []
     for step in (PurePosixPath("docs") / name).parent.joinpath(path).parts:
         parts = parts[:-1] if step == ".." else [*parts, step]
-    is_page = parts[:1] == ["docs"] and path.endswith(".md")
-    return _address("/".join(parts[1:]).removesuffix(".md")) + mark + anchor if is_page else "/docs"
+    return "/".join(parts[1:]) if parts[:1] == ["docs"] else ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 
+from drawings import DRAWINGS
 from fastapi.testclient import TestClient
 
 from service.pages.documents import FOLDER, names
@@ -29,6 +30,14 @@ def test_every_page_is_there_and_its_links_lead_somewhere(client: TestClient) ->
             assert not anchor or f'id="{anchor}"' in found, (name, address)
     assert "<table>" in pages["reference/http/jobs"]
     assert 'id="5-jobs"' in pages["reference/http/jobs"]
+
+
+def test_drawings_are_those_of_their_script(client: TestClient) -> None:
+    text = shown(client, "/docs/explanation/notation")
+    for name, draw in DRAWINGS.items():
+        assert f'src="/docs/explanation/{name}"' in text
+        found = client.get(f"/docs/explanation/{name}")
+        assert (found.headers["content-type"], found.text) == ("image/svg+xml", draw().text())
 
 
 def test_a_search_finds_sections(client: TestClient) -> None:
