@@ -318,10 +318,10 @@ def test_preferences_that_were_followed_are_told(
 
 @pytest.mark.parametrize(
     ("path", "allowed"),
-    [("cell/evaluations", "POST"), ("cell/metric", "GET"), ("cell/couplings/arm", "DELETE"), ("cell", "DELETE, GET")],
+    [("cell/evaluations", "POST"), ("cell/metric", "GET"), ("cell/couplings/arm", "DELETE, PATCH"), ("cell", "DELETE, GET")],
 )
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
-    answer = filled.request("PATCH", f"/v1/trees/{path}")
+    answer = filled.request("PUT", f"/v1/trees/{path}")
     assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
 
 
