@@ -318,7 +318,12 @@ def test_preferences_that_were_followed_are_told(
 
 @pytest.mark.parametrize(
     ("path", "allowed"),
-    [("cell/evaluations", "POST"), ("cell/metric", "GET"), ("cell/couplings/arm", "DELETE, PATCH"), ("cell", "DELETE, GET")],
+    [
+        ("cell/evaluations", "POST"),
+        ("cell/metric", "GET"),
+        ("cell/couplings/arm", "DELETE, PATCH"),
+        ("cell", "DELETE, GET"),
+    ],
 )
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
     answer = filled.request("PUT", f"/v1/trees/{path}")
