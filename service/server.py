@@ -16,11 +16,13 @@ import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, nullcontext, suppress
 from functools import partial
+from pathlib import Path
 from typing import cast
 
 import uvicorn
 
 from service.app import create_app, open_store
+from service.following import followed
 from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engines.engine import Engine
 from service.operations.seed import Told
@@ -50,6 +52,7 @@ def serve(settings: Settings, told: Told = lambda _done, _all: None) -> None:
     """
     if kept.is_start:
         _require_free(settings)
+        _require_folder(settings)
     with open_store(settings, kept, _require, told) as store:
         signal.signal(signal.SIGTERM, _stop)  # raised again by uvicorn after its shutdown
         _prepare_to_answer()
@@ -59,6 +62,7 @@ def serve(settings: Settings, told: Told = lambda _done, _all: None) -> None:
         with (
             renewed(store) if is_first else nullcontext(),
             supervised(store, engine_of(settings) if is_first else None),
+            followed(store) if is_first else nullcontext(),
         ):
             _run(store)
 
@@ -70,6 +74,12 @@ def _require_free(settings: Settings) -> None:
             each.close()
     except OSError as error:
         raise _cannot_listen(settings, error) from None
+
+
+def _require_folder(settings: Settings) -> None:
+    """Raise SettingsError for a folder of parts that is none."""
+    if settings.folder and not Path(settings.folder).is_dir():
+        raise SettingsError(f"--folder: there is no folder '{settings.folder}'; it is that of definitions to be read")
 
 
 def _cannot_listen(settings: Settings, error: OSError) -> SettingsError:

@@ -95,6 +95,7 @@ class Settings(BaseModel):
     port: int = Field(8000, ge=0, le=65535, description="port to listen on; 0 takes a free one")
     allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
+    folder: str = Field("", description="folder of definitions, JSON and YAML, that the server reads; empty: none")
     cache_nodes: int = Field(2_000_000, ge=0, le=2**62, description="operations of decoded programs kept in memory")
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from pathlib import Path
@@ -11,14 +10,10 @@ from typing import IO, Any
 
 from service.schemas.entries import PartEntry
 from substructures.client.problems import ProblemError
-from substructures.documents import places, read_json, read_yaml, require_object
+from substructures.documents import DOCUMENTS, located, read_json, read_yaml, require_object
 from substructures.documents.tables import with_tables
 from substructures.errors import Fault, InvalidInput
 from substructures.part.definition import Definition
-
-#: endings of documents, in which places are found by line and column
-DOCUMENTS = (".yaml", ".yml", ".json")
-_TOLD = re.compile(r"\(line \d+, column \d+\)$")
 
 
 def is_document(given: str) -> bool:
@@ -64,22 +59,8 @@ def named(path: Path) -> Iterator[None]:
 
 
 def _placed(path: Path, faults: Sequence[Fault]) -> list[Fault]:
-    known = places(path.read_bytes()) if path.suffix in DOCUMENTS else {}
+    found = located(faults, path.read_bytes()) if path.suffix in DOCUMENTS else faults
     return [
-        replace(
-            fault,
-            pointer=f"{path}#{fault.pointer}" if fault.pointer.startswith("/") else fault.pointer or str(path),
-            message=fault.message + _where(fault, known),
-        )
-        for fault in faults
+        replace(each, pointer=f"{path}#{each.pointer}" if each.pointer.startswith("/") else each.pointer or str(path))
+        for each in found
     ]
-
-
-def _where(fault: Fault, known: Mapping[str, tuple[int, int]]) -> str:
-    """Line and column of the innermost place there is of a pointer; nothing where the fault says it itself."""
-    pointer = fault.pointer
-    while pointer and pointer not in known:
-        pointer = pointer.rpartition("/")[0]
-    if _TOLD.search(fault.message) or not fault.pointer or pointer not in known:
-        return ""
-    return " (line {}, column {})".format(*known[pointer])

@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from pathlib import Path
 
-from service.cli.documents import DOCUMENTS, definition_of, named, read_document
+from service.cli.documents import definition_of, named, read_document
 from service.cli.models import imported
 from service.cli.output import tell_warnings
 from service.models.source import Source
 from service.settings import Limits
 from substructures import catalogue
+from substructures.documents import DOCUMENTS
 from substructures.errors import InvalidDocument
 from substructures.interchange.content import is_foreign
 from substructures.part.definition import Definition

@@ -241,6 +241,13 @@ renewals = Table(  # which software has derived all of the store anew
     _text("ended"),
 )
 
+folders = Table(  # that servers read parts from
+    "folders",
+    metadata,
+    _text("path", primary_key=True),
+    _text("state"),  # what was read, as it is told
+)
+
 tree_parts = Table(
     "tree_parts",
     metadata,

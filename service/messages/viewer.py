@@ -55,5 +55,7 @@ class Viewer:
 
 #: whoever asks a server without keys: it listens on loopback only
 ANYBODY = Viewer(OPEN, OPEN, SCOPES)
+#: who stores what is in the folder of a server
+FOLDER = Viewer("folder", OPEN, ("write",))
 #: who imports what is shipped
 SHIPPED = Viewer(CATALOGUE, CATALOGUE, ("write",))

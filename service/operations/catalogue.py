@@ -14,7 +14,7 @@ from service.messages.refusals import Refused, not_found, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import owners
 from service.operations.sharing.provenance import Origin, derived_from, pinned, provenance
-from service.queries import aliases, audit, catalogue, content, uses
+from service.queries import aliases, audit, catalogue, content, folders, uses
 from service.queries.owners import is_version, ownership
 from service.queries.searching.formulas import FormulaRow
 from service.schemas.entries import PLAIN, PartEntry
@@ -185,3 +185,33 @@ def yank(
     told = {"reason": reason} | ({} if instead is None else {"successor": "{}@{}".format(*instead)})
     audit.note(connection, viewer, "substructure.yank", f"{version.name}@{version.version}", **told)
     return _resolved(connection, viewer, Reference(version.name, number=version.version))
+
+
+#: why a version of a file is withdrawn
+GONE, EARLIER = "its file is gone", "its file has the content of an earlier version again"
+
+
+def follow(connection: Connection, viewer: Viewer, name: str, version: int) -> str:
+    """Let the version that a file has become be the latest of its name, as far as only ``viewer`` has stored others; a
+    remark where another one is.
+    """
+    for each in folders.versions_of(connection, name, viewer.key):
+        if each.yank_reason == GONE or (each.yank_reason == EARLIER and each.version <= version):
+            catalogue.offer(connection, name, each.version)
+            audit.note(connection, viewer, "substructure.offer", f"{name}@{each.version}")
+        if each.version > version and each.yank_reason in (None, GONE):
+            catalogue.yank(connection, name, each.version, EARLIER, (name, version))
+            told = {"reason": EARLIER, "successor": f"{name}@{version}"}
+            audit.note(connection, viewer, "substructure.yank", f"{name}@{each.version}", **told)
+    latest = folders.latest(connection, name)
+    offered = "none is" if latest is None else f"{name}@{latest} is"
+    return "" if latest == version else f"others have withdrawn it, or stored a later one: {offered} offered"
+
+
+def withdraw(connection: Connection, viewer: Viewer, name: str) -> list[int]:
+    """Withdraw all versions of a file that is gone; only those that ``viewer`` stored, of which the numbers."""
+    found = [each.version for each in folders.versions_of(connection, name, viewer.key) if each.yanked is None]
+    for number in found:
+        catalogue.yank(connection, name, number, GONE)
+        audit.note(connection, viewer, "substructure.yank", f"{name}@{number}", reason=GONE)
+    return found

@@ -27,14 +27,15 @@ SORTS = {
 }
 
 
-def page(found: Found, address: str, with_key: bool, may_write: bool) -> bytes:
+def page(found: Found, address: str, with_key: bool, may_write: bool, refused: int = 0) -> bytes:
     """The bytes of the page; ``address`` is the server's own, ``with_key``: requests from elsewhere need an API key,
-    ``may_write``: whoever looks at it stores parts.
+    ``may_write``: whoever looks at it stores parts; ``refused``: so many files of its folder are.
     """
     is_first = not found.query
     return document(
         "substructures",
         tag("h1", "Equations of motion from stored parts"),
+        _refused(refused) if refused else Html(),
         tag(
             "p",
             "Every part is stored with its formulas, derived once and verified; coupling parts to a tree gives ",
@@ -47,6 +48,15 @@ def page(found: Found, address: str, with_key: bool, may_write: bool) -> bytes:
         *(_example(found.parts.items, address, with_key) if is_first else ()),
         search=False,
     )
+
+
+def _refused(count: int) -> Html:
+    told = (
+        "1 file of the folder of parts is refused"
+        if count == 1
+        else f"{count} files of the folder of parts are refused"
+    )
+    return tag("p", told, ": ", link("which, and why", "/v1/folder"), class_="warn")
 
 
 def _search(found: Found) -> Html:

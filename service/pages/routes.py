@@ -27,6 +27,7 @@ from service.pages.trees import trees_page
 from service.pages.versions import (
     difference_page,
 )
+from service.queries import folders
 from service.queries.jobs import jobs as job_rows
 from service.queries.jobs import results
 from service.queries.searching import part_search
@@ -72,8 +73,9 @@ def first_page(
         some = (
             searches.trees(connection, viewer, TreeSearch(**both), TREES, None) if not tag and after is None else NONE
         )
+        folder = folders.state(connection, store.settings) or {"refused": ()}
     shown = Found(found, total, some.items, some.next_token is not None, {x: y for x, y in query.items() if y})
-    made = page(shown, _address(request), viewer != ANYBODY, viewer.has("write"))
+    made = page(shown, _address(request), viewer != ANYBODY, viewer.has("write"), len(folder["refused"]))
     return with_scripts(answer(request, scripted(made, "catalogue.js")), compiles=False)
 
 

@@ -176,6 +176,15 @@ def yank(
     _set_latest(connection, name)
 
 
+def offer(connection: Connection, name: str, version: int) -> None:
+    """Take the mark of a version that is withdrawn away, as :func:`yank` sets it."""
+    connection.execute(_LOCKED, {"of_name": name})
+    marks = dict.fromkeys(("yanked", "yank_reason", "successor_name", "successor_version"))
+    chosen = and_(versions.c.name == name, versions.c.version == version)
+    connection.execute(update(versions).where(chosen).values(**marks))
+    _set_latest(connection, name)
+
+
 def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version | None:
     """The version that a reference means; None when the viewer sees none (or, for a bare name, all are yanked).
 

@@ -7,9 +7,11 @@ from fastapi import APIRouter, Response
 from service.http.requests import StoreOf, needs
 from service.http.responses import response_of
 from service.messages.answers import Answer, json_answer
-from service.messages.refusals import Refused
+from service.messages.refusals import Refused, not_found
 from service.metrics import CONTENT_TYPE
+from service.queries import folders
 from service.queries.jobs.jobs import counts
+from service.schemas.folder import FolderView
 from service.schemas.resources import Health, LimitsView
 from service.views.resources import dump
 from substructures.documents import MAX_DEPTH, MAX_DIGITS
@@ -49,3 +51,13 @@ def limits(store: StoreOf) -> Response:
     """Every limit with its value."""
     shown = store.settings.limits.model_dump() | FORMAT_LIMITS
     return response_of(json_answer(dump(shown)))
+
+
+@router.get("/v1/folder", response_model=FolderView, dependencies=READ)
+def folder(store: StoreOf) -> Response:
+    """What was read of the folder that this server follows, and what is refused."""
+    with store.database.read() as connection:
+        found = folders.state(connection, store.settings)
+    if found is None:
+        raise not_found("this server follows no folder; 'substructures serve --folder DIR' does", "no-folder")
+    return response_of(json_answer(dump(found), headers={"Cache-Control": "no-store"}))

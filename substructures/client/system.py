@@ -16,6 +16,10 @@ class SystemCaller(Caller):
         """Every limit with its value."""
         return self.told("GET", "/v1/limits")
 
+    def folder(self) -> Answer:
+        """What was read of the folder that the server follows. Raises ProblemError 404 where it follows none."""
+        return self.told("GET", "/v1/folder")
+
     def audit(self, **filters: Any) -> Iterator[Answer]:
         """Who did what, the latest first: of an ``owner``, a ``key``, an ``action``, a ``subject``; needs ``admin``."""
         return self._pages("/v1/audit", filters, Answer)

@@ -8,16 +8,19 @@ aliases, tags and several documents in one stream are refused.
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable, Mapping
+from dataclasses import replace
 from typing import Any, NoReturn
 
 import yaml
 
 from substructures.documents.numbers import INTEGER, REAL, RefusedNumberError, decimal, integer, not_finite
 from substructures.documents.text import MAX_DEPTH, SURROGATE, TOO_DEEP, decoded, encodes, fault_at, pointer_to
-from substructures.errors import InvalidDocument
+from substructures.errors import Fault, InvalidDocument
 
 _QUICK: Any = getattr(yaml, "CSafeLoader", yaml.SafeLoader)  # libyaml, where PyYAML was built with it
 _NOT_FINITE = re.compile(r"[-+]?\.(?:inf|Inf|INF)|\.(?:nan|NaN|NAN)")
+_TOLD = re.compile(r"\(line \d+, column \d+\)$")
 _WORDS: dict[str, bool | None] = {
     **dict.fromkeys(("", "~", "null", "Null", "NULL"), None),
     **dict.fromkeys(("true", "True", "TRUE"), True),
@@ -65,6 +68,26 @@ def places(data: bytes) -> dict[str, tuple[int, int]]:
     except (InvalidDocument, yaml.YAMLError, ValueError, OverflowError):
         pass
     return found
+
+
+def located(faults: Iterable[Fault], data: bytes) -> list[Fault]:
+    """Faults of a YAML or JSON document with line and column behind what they say.
+
+    >>> located([Fault("/a/b", "x", "wrong")], b"a: {b: 1}")[0].message
+    'wrong (line 1, column 8)'
+    """
+    known = places(data)
+    return [replace(fault, message=fault.message + _where(fault, known)) for fault in faults]
+
+
+def _where(fault: Fault, known: Mapping[str, tuple[int, int]]) -> str:
+    """Line and column of the innermost place there is of a pointer; nothing where the fault says it itself."""
+    pointer = fault.pointer
+    while pointer and pointer not in known:
+        pointer = pointer.rpartition("/")[0]
+    if _TOLD.search(fault.message) or not fault.pointer or pointer not in known:
+        return ""
+    return " (line {}, column {})".format(*known[pointer])
 
 
 def _place(mark: Any) -> tuple[int, int]:

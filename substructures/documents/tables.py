@@ -83,6 +83,8 @@ def _text(given: Any, pointer: str, folder: Path) -> Any:
     file = (folder / name).resolve()
     if not file.is_relative_to(folder.resolve()):
         raise InvalidDocument.at(place, "bad-file", f"'{name[:80]}' is not in the folder of the document")
+    if file.exists() and not file.is_file():
+        raise InvalidDocument.at(place, "bad-file", f"'{name[:80]}' cannot be read: it is no file")
     try:
         with file.open("rb") as opened:
             data = opened.read(MOST_BYTES + 1)

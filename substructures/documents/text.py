@@ -7,6 +7,8 @@ from collections.abc import Iterable
 from substructures.errors import InvalidDocument
 
 MAX_DEPTH = 64
+#: endings of files that are documents
+DOCUMENTS = (".yaml", ".yml", ".json")
 TOO_DEEP = f"nested deeper than {MAX_DEPTH} levels"
 SURROGATE = "a string holds a lone surrogate"
 

@@ -48,6 +48,7 @@ METHODS: dict[str, Callable[[Client], Any]] = {
     "POST /v1/bundles": lambda c: c.import_bundle(b"PK"),
     "POST /v1/equivalences": lambda c: c.compare("a", "b"),
     "POST /v1/imports": lambda c: c.import_file(b"<robot/>", cut=["a", "b"], store=True),
+    "GET /v1/folder": lambda c: c.folder(),
     "GET /v1/jobs": lambda c: list(c.jobs(state="queued")),
     "POST /v1/jobs": lambda c: c.submit_job({}),
     f"DELETE {JOB}": lambda c: c.remove_job("x"),

@@ -10,14 +10,14 @@ from urllib.parse import urlencode
 
 import typer
 
-from service.cli.documents import DOCUMENTS, named, read_document
+from service.cli.documents import named, read_document
 from service.cli.options import Json, Private, Server, with_server
 from service.cli.output import print_json
 from service.messages.viewer import PRIVATE
 from service.schemas.entries import PartEntry
 from substructures.client import Client, ProblemError
 from substructures.client.steps import step
-from substructures.documents import read_json, write_yaml
+from substructures.documents import DOCUMENTS, read_json, write_yaml
 from substructures.errors import InvalidInput
 from substructures.part.definition import Definition
 

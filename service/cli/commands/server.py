@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from pathlib import Path
+from typing import Annotated, Any, Literal
 
 import typer
 
@@ -24,13 +25,21 @@ def serve(
     engine: Engine = None,
     engine_address: EngineAddress = None,
     workers: Workers = None,
+    folder: Annotated[Path | None, typer.Option(help="Folder of definitions that are read, and followed.")] = None,
     database: Store = None,
 ) -> int:
     """Run the service until it is interrupted. Settings also come from SUBSTRUCTURES_* variables."""
     logs.configure()
-    given = {"host": host, "port": port, "processes": processes, "engine": engine, "engine_address": engine_address}
+    given: dict[str, Any] = {
+        "host": host,
+        "port": port,
+        "processes": processes,
+        "engine": engine,
+        "engine_address": engine_address,
+    }
+    given |= {"workers": workers, "folder": None if folder is None else str(folder), "database": database}
     with shipped() as told:
-        serve_with(settings(**given, workers=workers, database=database), told)
+        serve_with(settings(**given), told)
     return 0
 
 
