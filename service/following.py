@@ -11,7 +11,7 @@ from service.operations.sharing.folder import Folder
 from service.queries.common import is_outage
 from service.store.store import Store
 
-POLL, SHARE = 1.0, 4.0  # seconds between looks at the folder, at least so many times as long as to list it
+POLL, SHARE = 1.0, 20.0  # seconds between looks at the folder, at least so many times as long as to list it
 FIRST = 30.0  # seconds for which a server that starts waits until all is read
 PATIENCE = 2.0  # seconds for the file at hand when the server stops
 _log = logging.getLogger(__name__)

@@ -35,27 +35,30 @@ class Listing:
     others: list[str] = field(default_factory=list)
     is_whole: bool = True
 
-    def name(self, path: Path) -> str:
-        """Relative to the folder, with slashes."""
-        return path.relative_to(self.root).as_posix()
-
     def fail(self, error: OSError) -> None:
         """Note a folder that cannot be listed."""
-        self.refused[self.name(Path(error.filename))] = Fault("", "unreadable", f"cannot be read: {error.strerror}")
+        name = Path(error.filename).relative_to(self.root).as_posix()
+        self.refused[name] = Fault("", "unreadable", f"cannot be read: {error.strerror}")
         self.is_whole = False
 
-    def enter(self, path: Path) -> None:
-        """Note a file, or a link."""
-        name, is_link = self.name(path), path.is_symlink()
-        place = Path(os.path.realpath(path)) if is_link else path
-        is_document = path.suffix.lower() in DOCUMENTS
-        if place.is_relative_to(self.root):
-            if is_document and not (is_link and place.is_dir()):
-                self.files[name] = place
-            else:  # a folder that a link leads to is listed itself
-                self.others.append(name)
-        elif is_document or place.is_dir():
+    def enter(self, name: str, path: Path) -> None:
+        """Note a file, or a link to whatever it is."""
+        is_document = name.lower().endswith(DOCUMENTS)
+        if not path.is_symlink():
+            self._note(name, path, is_document)
+            return
+        file = Path(os.path.realpath(path))
+        is_folder = file.is_dir()
+        if file.is_relative_to(self.root):
+            self._note(name, file, is_document and not is_folder)  # what is in a folder is listed there
+        elif is_document or is_folder:
             self.refused[name] = Fault("", "leads-out", "a link that leads out of the folder is not followed")
+        else:
+            self.others.append(name)
+
+    def _note(self, name: str, file: Path, is_document: bool) -> None:
+        if is_document:
+            self.files[name] = file
         else:
             self.others.append(name)
 
@@ -64,11 +67,13 @@ def listed(folder: Path) -> Listing:
     """What is in a folder and in those within it."""
     found = Listing(folder.resolve())
     for place, folders, files in os.walk(found.root, onerror=found.fail):
+        here = Path(place)
+        prefix = "" if here == found.root else f"{here.relative_to(found.root).as_posix()}/"
         folders[:] = sorted(name for name in folders if not name.startswith(HIDDEN))
-        links = [name for name in folders if Path(place, name).is_symlink()]
+        links = [name for name in folders if (here / name).is_symlink()]
         for name in sorted((*files, *links)):
             if not name.startswith(HIDDEN):
-                found.enter(Path(place, name))
+                found.enter(prefix + name, here / name)
     own = {file for name, file in found.files.items() if found.root / name == file}
     for name, file in list(found.files.items()):
         if file in own and found.root / name != file:  # a second name of a file that is there

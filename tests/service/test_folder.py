@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import time
 from collections.abc import Callable, Iterator
@@ -16,6 +17,7 @@ import pytest
 from service import following
 from service.app import open_store
 from service.cli.main import main
+from service.messages.refusals import Refused
 from service.operations.sharing.folder import Folder
 from service.queries import folders
 from service.settings import Limits, Settings
@@ -153,6 +155,7 @@ def test_what_is_wrong_is_told_and_stops_nothing(one: Followed, caplog: pytest.L
     one.write("pendulum.yaml", {**PENDULUM, "bodies": [{**PENDULUM["bodies"][0], "mass": "mm"}]})
     one.write("tree.json", {"name": "cell", "instances": []})
     one.write("text.yml", b"\xff")
+    one.write("many.json", {"name": "many", **dict.fromkeys("abcdef", 1)})
     one.write("list.json", [1])
     one.write("slider.yaml", SLIDER)
     told = one.look()
@@ -166,13 +169,16 @@ def test_what_is_wrong_is_told_and_stops_nothing(one: Followed, caplog: pytest.L
     assert wrong["text.yml"].startswith(" encoding")
     assert wrong["list.json"].startswith(" object-expected")
     assert "refused: a.yaml#/bodies/0: expected the node content" in caplog.text
+    assert re.search(
+        r"refused: many.json#/\w+: .*; many.json#/\w+: .*; many.json#/\w+: .*; ... \(\d faults\)\n", caplog.text
+    )
     page = one.client.get("/").text
-    assert "5 files of the folder of parts are refused" in page
+    assert "6 files of the folder of parts are refused" in page
     assert 'href="/v1/folder"' in page
     caplog.clear()
     one.look()
     assert "refused" not in caplog.text  # once
-    for name in ("a.yaml", "tree.json", "text.yml", "list.json"):
+    for name in ("a.yaml", "tree.json", "text.yml", "list.json", "many.json"):
         (one.parts / name).unlink()
     assert "1 file of the folder of parts is refused" in (one.look() and one.client.get("/").text)
     one.write("pendulum.yaml", PENDULUM)
@@ -223,9 +229,18 @@ def test_a_file_may_be_renamed_and_a_part_too(one: Followed) -> None:
     (one.parts / "a.yaml").rename(one.parts / "b.yaml")
     assert files(one.look()) == {"b.yaml": "pendulum@1"}
     assert one.versions("pendulum") == {1: None}
-    one.write("b.yaml", {**PENDULUM, "name": "rod"})
+    one.write("slider.yaml", SLIDER)
+    one.look()
+    (one.parts / "b.yaml").unlink()
+    one.folder.look()
+    one.write("c.yaml", PENDULUM)  # which may still be being written when b.yaml is gone for good
+    one.folder.look()
+    assert one.versions("pendulum") == {1: None}
+    assert files(one.look()) == {"c.yaml": "pendulum@1", "slider.yaml": "slider@1"}
+    assert "substructure.yank" not in one.client.get("/v1/audit?key=folder").text
+    one.write("c.yaml", {**PENDULUM, "name": "rod"})
     told = one.look()
-    assert (files(told), told["gone"]) == ({"b.yaml": "rod@1"}, ["pendulum"])
+    assert (files(told), told["gone"]) == ({"c.yaml": "rod@1", "slider.yaml": "slider@1"}, ["pendulum"])
 
 
 def test_two_files_of_one_name_are_both_refused(one: Followed) -> None:
@@ -364,12 +379,39 @@ def test_a_folder_that_cannot_be_read_withdraws_nothing(one: Followed) -> None:
 
 
 def test_a_look_that_fails_is_made_again(one: Followed, monkeypatch: pytest.MonkeyPatch) -> None:
+    one.write("slider.yaml", SLIDER)
+    one.look()
     one.write("pendulum.yaml", PENDULUM)
+    one.folder.look()
     with monkeypatch.context() as patch:
         patch.setattr(folders, "note", lambda *_: 1 / 0)
         with pytest.raises(ZeroDivisionError):
             one.folder.look()
+    one.folder.look()
+    assert files(one.told()) == {"pendulum.yaml": "pendulum@1", "slider.yaml": "slider@1"}
+
+
+def test_what_may_pass_is_tried_again(one: Followed, monkeypatch: pytest.MonkeyPatch) -> None:
+    def busy(*_: object, **__: object) -> None:
+        raise Refused(503, "restarting", "the server is being stopped")
+
+    one.write("pendulum.yaml", PENDULUM)
+    with monkeypatch.context() as patch:
+        patch.setattr("service.operations.catalogue.prepare", busy)
+        assert refused(one.look()) == {"pendulum.yaml": " restarting: the server is being stopped"}
+        assert refused(one.look()) == {"pendulum.yaml": " restarting: the server is being stopped"}
     assert files(one.look()) == {"pendulum.yaml": "pendulum@1"}
+
+
+def test_what_takes_too_long_is_refused(one: Followed, monkeypatch: pytest.MonkeyPatch) -> None:
+    def late(*_: object, **__: object) -> None:
+        raise TimeoutError
+
+    one.write("pendulum.yaml", PENDULUM)
+    monkeypatch.setattr("service.operations.catalogue.derived", late)
+    assert refused(one.look()) == {
+        "pendulum.yaml": " took-too-long: to derive it takes longer than 600 s, the limit of a job"
+    }
 
 
 def test_errors_of_the_service_are_told_of_the_file(one: Followed, monkeypatch: pytest.MonkeyPatch) -> None:

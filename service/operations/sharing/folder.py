@@ -9,7 +9,7 @@ stored of it before stays.
 from __future__ import annotations
 
 import logging
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, dataclass
 from functools import partial
@@ -29,7 +29,7 @@ from substructures import errors
 from substructures.documents import located
 from substructures.errors import Fault, InvalidDocument
 
-LISTED = 100  # files that are no definitions, in what is told
+LISTED, FAULTS = 100, 3  # files that are no definitions, in what is told; faults of a file in the log
 UNKNOWN = "unknown-substructure"  # which may be in another file
 _log = logging.getLogger(__name__)
 
@@ -233,7 +233,7 @@ class Folder:
 
     def _tell_refused(self, refused: Iterable[Mapping[str, Any]]) -> None:
         """A line for every file that is refused, and again when that changes."""
-        lines = {each["file"]: "; ".join(_line(each["file"], fault) for fault in each["errors"]) for each in refused}
+        lines = {each["file"]: _line(each["file"], each["errors"]) for each in refused}
         for name, line in lines.items():
             if self._told.get(name) != line:
                 _log.warning("refused: %s", line)
@@ -242,8 +242,10 @@ class Folder:
         self._told = lines
 
 
-def _line(name: str, fault: Mapping[str, str]) -> str:
-    return _shown(f"{name}{'#' if fault['pointer'] else ''}{fault['pointer']}: {fault['message']}")
+def _line(name: str, faults: Sequence[Mapping[str, str]]) -> str:
+    """What is wrong with a file: the first faults with their places, and how many there are."""
+    words = [f"{name}{'#' if x['pointer'] else ''}{x['pointer']}: {x['message']}" for x in faults[:FAULTS]]
+    return _shown("; ".join(words) + (f"; ... ({len(faults)} faults)" if len(faults) > FAULTS else ""))
 
 
 def _shown(text: str) -> str:
