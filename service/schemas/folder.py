@@ -8,7 +8,7 @@ from service.schemas.resources import ProblemError
 from service.schemas.shapes import Shape, Time
 
 
-class FileView(Shape):
+class ReadFile(Shape):
     """A file that was read."""
 
     file: str = Field(description="relative to the folder")
@@ -37,7 +37,7 @@ class FolderView(Shape):
 
     folder: str = Field(description="its name")
     changed: Time | None = Field(description="when anything of this changed last; null while nothing was read")
-    files: list[FileView]
+    files: list[ReadFile]
     refused: list[RefusedFile]
     gone: list[str] = Field(description="parts whose file is gone: their versions are withdrawn")
     waiting: list[str] = Field(description="parts whose file is missing while a folder cannot be read")
