@@ -60,6 +60,7 @@ def test_a_file_is_looked_at_before_it_is_stored(browser: Any, address: str, fil
 
 
 @in_browser
+@pytest.mark.deep
 def test_a_part_begins_a_tree_and_is_coupled_onto_one(browser: Any, address: str, filled: TestClient) -> None:
     tab = Tab(browser, address, "/?q=slider")
     tab.page.click("a:has-text('+ to tree')")

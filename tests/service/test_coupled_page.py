@@ -90,6 +90,7 @@ def test_m_before_anything_is_stored(
 
 
 @in_browser
+@pytest.mark.deep
 def test_m_follows_while_a_part_is_dragged(browser: Any, address: str, filled: TestClient, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit?substructure=pendulum")
     tab.until(READY)

@@ -138,6 +138,7 @@ def test_loads_of_every_type_by_hand(browser: Any, address: str, filled: TestCli
 
 
 @in_browser
+@pytest.mark.deep
 def test_an_instance_is_replaced_and_revisions_are_compared(
     browser: Any, address: str, filled: TestClient, bench: str
 ) -> None:
@@ -162,6 +163,7 @@ def test_an_instance_is_replaced_and_revisions_are_compared(
 
 
 @in_browser
+@pytest.mark.deep
 def test_a_frame_is_picked_in_the_view(browser: Any, address: str, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit")
     tab.until(READY)
