@@ -11,6 +11,7 @@ from __future__ import annotations
 import hashlib
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
+from contextlib import suppress
 from dataclasses import replace
 from functools import partial, wraps
 from typing import Annotated, Any, TypeVar
@@ -92,6 +93,14 @@ class Act:
             return work()
         except TimeoutError:
             raise took_too_long(self._deadline.limit, "nothing was stored") from None
+
+    def afterwards(self, work: Callable[[Worker], object]) -> None:
+        """Do what a page here will ask for next, if one has asked; nobody waits for it."""
+        if self._request.headers.get("sec-fetch-site") != "same-origin":
+            return
+        worker = worker_of(self.store, self.viewer, deadline_of(self.store))
+        with suppress(RuntimeError):  # the server stops
+            self.store.runtime.threads["print"].submit(self.principal, partial(work, worker))
 
     def require(self, scope: str) -> None:
         """Raise Refused 403 unless whoever asks has this scope too."""

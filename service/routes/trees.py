@@ -15,7 +15,7 @@ from service.messages.addresses import tree_path
 from service.messages.answers import Answer, json_answer
 from service.messages.paging import limited
 from service.messages.refusals import unprocessable
-from service.operations import searches, trees
+from service.operations import modules, searches, trees
 from service.operations.jobs.job_results import BASE_REVISION, IS_EXACT
 from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
@@ -58,7 +58,16 @@ def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
         members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
         return deferred(act, "assemble", found.document, found.step, members)()
 
-    return act.run(revision(act, lambda: trees.prepare_change(act.store, act.viewer, act.worker, change())), later)
+    prepared = revision(act, lambda: trees.prepare_change(act.store, act.viewer, act.worker, change()))
+    return shown_soon(act, act.run(prepared, later))
+
+
+def shown_soon(act: Act, answer: Response) -> Response:
+    """The answer. Where a page has asked, it shows the tree now, and finds what it computes with."""
+    ref = answer.headers.get("location", "").rpartition("/")[2]
+    if answer.status_code == 201:
+        act.afterwards(lambda worker: modules.program(modules.of_tree(act.store, act.viewer, ref), worker, ()))
+    return answer
 
 
 @router.post(
@@ -74,7 +83,7 @@ def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     entry, document = Entry.parted(body)
     prepared = revision(act, lambda: trees.prepare(store, act.viewer, act.worker, document, entry))
-    return act.run(prepared, deferred(act, "assemble", body))
+    return shown_soon(act, act.run(prepared, deferred(act, "assemble", body)))
 
 
 @router.get("", response_model=TreePage, dependencies=READ)

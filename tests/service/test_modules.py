@@ -4,11 +4,15 @@ from __future__ import annotations
 
 import json
 import subprocess
+import time
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from fastapi.testclient import TestClient
 from run_code import tool
+
+from service.store.store import Store
 
 from .one_store import double, filled, store
 from .test_conventions import problem
@@ -30,6 +34,23 @@ def test_a_module_is_kept_for_ever_with_its_layout(double: TestClient) -> None:
         places += [o["at"] for f in layout["functions"] for o in f["outputs"]]
         assert min(places) >= layout["heap"]
         assert max(places) < 65536 * layout["pages"]
+
+
+def test_what_a_page_has_made_is_ready_before_it_is_asked_for(filled: TestClient, store: Store) -> None:
+    tree = {"name": "soon", "instances": [{"name": "a", "substructure": "pendulum"}]}
+
+    def is_kept(made: dict[str, Any]) -> bool:
+        key = made["digest"], made["program"], f"soon@{made['revision']}", "program"
+        return store.caches.printed.get(key) is not None
+
+    others = filled.post("/v1/trees", json=tree).json()
+    page = {"Sec-Fetch-Site": "same-origin"}
+    made = filled.post("/v1/trees", json={**tree, "gravity": [0, 1, 0]}, headers=page).json()
+    until = time.monotonic() + 20
+    while not is_kept(made) and time.monotonic() < until:
+        time.sleep(0.01)
+    assert is_kept(made)
+    assert not is_kept(others)
 
 
 def test_what_there_is_not(double: TestClient) -> None:
