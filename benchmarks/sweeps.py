@@ -46,7 +46,7 @@ TEN: dict[str, Any] = {
     "inertia3": {"quantity": "metric", "of": ["arm.q3", "arm.q3"], "over": AT},
     "energy": {"quantity": "kinetic_energy", "over": {"q": MOVING["q"], "qd": MOVING["qd"]}},
     "height": {"quantity": "mass_centre.position", "of": "z", "over": AT},
-    "reach": {"quantity": "mass_centre.position", "of": "x", "over": AT},
+    "forward": {"quantity": "mass_centre.position", "of": "x", "over": AT},
     "load": {"quantity": "gravity", "of": "arm.q2", "over": AT},
 }
 FREQUENCIES = {"lowest": {"analysis": "linearisation", "at": AT, "held": True, "take": "lowest_frequency"}}
@@ -132,7 +132,7 @@ def million(client: Client, address: str, figures: dict[str, float], count: int)
     """Rows of one shape with ten columns, and with a frequency."""
     of = {"hand.m": {"uniform": [0.1, 2]}, "arm.m2": {"normal": [17.4, 0.5]}, "g": {"uniform": [9.7, 9.9]}}
     samples = {"method": "sobol", "count": count, "of": of}
-    goal = {"minimise": ["mass", "torque"], "maximise": ["reach"]}
+    goal = {"minimise": ["mass", "torque"], "maximise": ["forward"]}
     for name, columns in (("rows", TEN), ("rows_with_frequency", {**TEN, **FREQUENCIES})):
         document = {"samples": samples, "columns": columns, "pareto": goal, "proof": 8}
         (found, job), reads, added = watched(address, lambda document=document: sweep(client, **document))

@@ -238,7 +238,6 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "kept": len(found.rows),
         "finite": sum(finite),
         "refused": refusals.by_code,
-        "shapes": len(prepared.shapes),
         "proven": proven,
         "media_type": "application/x-npz",
     }
