@@ -228,15 +228,21 @@ class MathML(Language):
 
     def formulas(self, listing: Listing) -> list[str]:
         """What symbols stand for, abbreviations, and a paragraph for every element."""
+        return [*self.steps(listing), *self.elements(listing)]
+
+    def steps(self, listing: Listing) -> list[str]:
+        """What elements are written with: definitions, abbreviations, values between, a paragraph for each."""
         lines: list[str] = []
         for left, text, note in listing.definitions:
             lines += [f"<p>{self.finished(left)} stands for {escape(comment(note))}:</p>"] if note else []
             lines.append(self._line(left, text))
         lines += [self._line(left, text) for left, text in listing.abbreviations]
-        lines += [self._line(self.step(n).text, text) for n, text in listing.temporaries]
-        for output, array in self.program.outputs.items():
-            lines += self._output(output, array, listing.entries[output])
-        return lines
+        return lines + [self._line(self.step(n).text, text) for n, text in listing.temporaries]
+
+    def elements(self, listing: Listing) -> list[str]:
+        """A heading for every output, and a paragraph for every element."""
+        outputs = self.program.outputs.items()
+        return [line for output, array in outputs for line in self._output(output, array, listing.entries[output])]
 
     def _described(self, n: int) -> str:
         symbol = self.program.symbols[n]

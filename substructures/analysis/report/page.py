@@ -23,6 +23,7 @@ from substructures.printers.render import LIMIT
 
 #: what scrolls sideways by itself where the screen is narrow, with the keyboard, too
 WIDE = '<div class="wide" tabindex="0" role="group">'
+FOLDED = 8  # steps of formulas that are shown at once
 MATH = "http://www.w3.org/1998/Math/MathML"
 _PAGE = """<?xml version="1.0" encoding="utf-8"?>
 <html xmlns="http://www.w3.org/1999/xhtml" lang="en"><head><title>{title}</title>
@@ -36,7 +37,9 @@ p, li {{ overflow-wrap: anywhere; }} math {{ font-size: 1.08em; }} .formulas p {
 .formulas p {{ padding-left: 2em; text-indent: -2em; }} .formulas h2 {{ display: none; }}
 .share {{ white-space: nowrap; font-variant-numeric: tabular-nums; }}
 .small {{ color: #667; }} @media (prefers-color-scheme: dark) {{ body {{ color: #e3e6e9; background: #14171a; }}
-.small {{ color: #9aa5af; }} }} .wide {{ overflow-x: auto; overflow-y: hidden; }}
+.small {{ color: #9aa5af; }} a {{ color: #7db9f2; }} }} nav ul {{ columns: 16em; padding-left: 1.2em; }}
+summary {{ cursor: pointer; }} .formulas {{ content-visibility: auto; contain-intrinsic-size: auto 20em; }}
+.wide {{ overflow-x: auto; overflow-y: hidden; }}
 </style></head><body><main>
 {body}
 </main></body></html>
@@ -49,21 +52,34 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
     """
     heading = found.heading
     title = heading.title or heading.name
-    lines = [f"<h1>{_e(title)}</h1>", *(f"<p>{_e(x)}</p>" for x in (heading.description, *heading.notes) if x), svg]
-    lines += ["<h2>Coordinates</h2>", *_coordinates(found), "<h2>Symbols</h2>", *_symbols(found)]
-    lines.append("<h2>Derivation</h2>")
+    top = [f"<h1>{_e(title)}</h1>", *(f"<p>{_e(x)}</p>" for x in (heading.description, *heading.notes) if x), svg]
+    lines = [*_headed("Coordinates"), *_coordinates(found), *_headed("Symbols"), *_symbols(found)]
+    lines += [*_headed("Derivation"), "<details><summary>From the kinematics to the equations of motion</summary>"]
     for words, _, equation in DERIVATION:
         lines += [f"<p>{_named(words)}</p>", f'{WIDE}<math xmlns="{MATH}" display="block">{equation}</math></div>']
+    lines.append("</details>")
     printed = {name: found.printed(name, MathML, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
-        lines += [f"<h2>{_e(QUANTITIES[name])}</h2>", *(f"<p>{_e(x)}.</p>" for x in each.said)]
+        lines += [*_headed(QUANTITIES[name]), *(f"<p>{_e(x)}.</p>" for x in each.said)]
         lines += [f'{WIDE}<div class="formulas">', *_formulas(each), "</div></div>", *_statements(found, name)]
     lines += _statements(found, "symmetries")
     lines += _sizes(found, printed["metric"])
-    lines += ["<h2>Sources</h2><ul>"]
+    lines += [*_headed("Sources"), "<ul>"]
     lines += [f"<li>{_e(f'{s.instance}: {s.title or s.name}. {s.source} {s.license}')}</li>" for s in found.sources]
     lines += [f"<li>{_e(REFERENCE)}.</li></ul>"]
-    return _PAGE.format(title=_e(title), body="\n".join(lines))
+    return _PAGE.format(title=_e(title), body="\n".join([*top, *_contents(lines), *lines]))
+
+
+def _headed(text: str) -> list[str]:
+    """A heading that can be linked to."""
+    return [f'<h2 id="{re.sub("[^a-z]+", "-", text.lower())}">{_e(text)}</h2>']
+
+
+def _contents(lines: Iterable[str]) -> list[str]:
+    """Links to the headings."""
+    found = filter(None, (re.fullmatch(r'<h2 id="([a-z-]+)">(.*)</h2>', line) for line in lines))
+    items = [f'<li><a href="#{each[1]}">{each[2]}</a></li>' for each in found]
+    return ['<nav aria-label="Contents"><ul>', *items, "</ul></nav>"]
 
 
 def _e(text: str) -> str:
@@ -83,7 +99,10 @@ def _math(inner: str) -> str:
 def _formulas(each: Printed) -> list[str]:
     if not isinstance(each.language, MathML):
         raise TypeError("MathML is expected")
-    return each.language.formulas(each.listing)
+    steps, elements = each.language.steps(each.listing), each.language.elements(each.listing)
+    if len(steps) > FOLDED:
+        steps = [f"<details><summary>{len(steps)} steps, with which it is written</summary>", *steps, "</details>"]
+    return [*steps, *elements]
 
 
 def _table(head: Iterable[str], rows: Iterable[Iterable[str]]) -> list[str]:
@@ -130,7 +149,7 @@ def _statements(found: Report, about: str) -> list[str]:
 
 def _sizes(found: Report, metric: Printed) -> list[str]:
     sizes, reason = found.sizes(metric)
-    lines = ["<h2>Sizes of the terms of the mass matrix</h2>"]
+    lines = _headed("Sizes of the terms of the mass matrix")
     if not sizes or metric.terms is None:
         return [*lines, f"<p>Not told: {_e(reason or 'all elements are one term')}.</p>"]
     lines.append(f"<p>{_named(told_sizes(found))}</p>")
