@@ -13,7 +13,8 @@ SCALE, TURNED, RAISED = 130.0, 0.45, 0.45  # from where it is seen
 Points = Sequence[np.ndarray]
 STYLE = (
     "text{font:15px sans-serif;fill:currentColor}.small{font-size:12px}path{fill:none;stroke:currentColor}"
-    ".p{stroke:#2a78ad}.k{stroke:#c7663a}.way{stroke-width:3}.thin{stroke-dasharray:4 4}"
+    "svg{color:#57626d}.p{stroke:#2a78ad}.k{stroke:#c7663a}.way{stroke-width:3}.thin{stroke-dasharray:4 4}"
+    "@media(prefers-color-scheme:dark){svg{color:#c3cbd2}.p{stroke:#6fb7e8}.k{stroke:#ef9a70}}"
 )
 
 
@@ -72,7 +73,7 @@ class Drawing:
     def text(self) -> str:
         """SVG."""
         width, height = self.size
-        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img" color="#57626d">'
+        head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" role="img">'
         body = "\n".join(self.parts)
         return f"{head}\n<title>{self.words}</title>\n<style>{STYLE}</style>\n{body}\n</svg>\n"
 
@@ -115,23 +116,27 @@ def joint_row() -> Drawing:
 def mounting() -> Drawing:
     """A part on a port of a host, by a placement."""
     told = "The interface of a part, at a placement from a port that is fixed in a body of the host"
-    made = Drawing(told, 620, 300, (90, 200))
+    made = Drawing(told, 640, 330, (110, 190))
     host, port = np.zeros(3), np.array([0.5, 1.3, 0.55])
     of_port = turn(2, 0.3) @ turn(0, -0.3)
     shift = of_port @ np.array([0.5, 1.5, 0.5])
     interface = port + shift
-    axes = of_port @ turn(2, 0.7) @ turn(1, -0.4) @ turn(0, 0.5)
+    axes = of_port @ turn(2, 0.5) @ turn(1, 0.5) @ turn(0, -0.5)
+    foot = host - 0.55 * np.eye(3)[:, 2]
     made.frame(host, np.eye(3), "", "p")
-    made.word(host, "body frame h of the host", (-60, 44), "small")
+    made.word(host, "body frame h", (-92, 0), "small")
+    made.word(foot, "O of h", (-50, 6), "small")
+    made.line([foot, host], "way")
+    made.word(0.5 * foot, "&#964;", (-20, 4))
     made.line([host, port], "way")
     made.frame(port, of_port, "", "p", 0.4)
     made.word(port, "port", (-20, 34), "small")
     made.line([port, interface], "way", tip=True)
-    made.word(port + 0.5 * shift, "placement: position, roll, pitch, yaw", (-30, 40), "small")
+    made.word(port + 0.5 * shift, "placement", (-40, -10), "small")
     made.frame(interface, axes, "", "k")
-    made.word(interface, "interface I of the part", (-30, 42), "small")
-    made.line([host, interface], "thin")
-    made.word(0.3 * interface, "z, A", (10, 26))
+    made.word(interface, "interface I of the part", (-60, 84), "small")
+    made.line([foot, interface], "thin", tip=True)
+    made.word(0.5 * (foot + interface), "z, A", (4, 24))
     return made
 
 

@@ -5,10 +5,12 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cache
 from typing import Any
 
 import orjson
 
+from service.pages.documents import FOLDER
 from service.pages.html import Content, Html, html, joined, link, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
@@ -17,9 +19,15 @@ METHODS = ("get", "post", "put", "patch", "delete")
 #: of requests that change nothing, beside all of GET
 COMPUTED = ("analyses",)
 ALSO_COMPUTED = ("/v1/trees/{ref}/evaluations", "/v1/equivalences")
-#: what is asked for where a name or a choice is needed
-CHOSEN = {"quantity": "metric", "target": "c", "file": "certificate"}
-NEEDED = re.compile(r"\{\w+\}")
+#: what is asked for where a choice is needed
+CHOSEN = {"quantity": "metric", "target": "c", "format": "text"}
+NEEDED = re.compile(r"\{\w+\}|=(?:&|$)")
+#: of which one of several members is needed
+OF_A_CHOICE = ("/v1/trees/{ref}/steady-motions",)
+#: an answer without an end
+STREAMS = "/events"
+#: how the documents write requests that are tried: method, path, headers, body
+REQUEST = re.compile(r"```http \d{3}\n([A-Z]+) (\S+)\n(?:[A-Z][A-Za-z-]+: [^\n]*\n)*\n(\{.*?)\n?```", re.DOTALL)
 
 
 @dataclass(frozen=True)
@@ -36,14 +44,15 @@ class Stored:
         """Of the tree."""
         return [] if self.tree is None else orjson.loads(self.tree.summary)["coordinates"]
 
-    def filled(self, path: str, query: Mapping[str, str]) -> str:
-        """The path with names, as far as there are some."""
+    def filled(self, path: str, query: Sequence[str]) -> str:
+        """The path with names, as far as there are some, and with options that are needed."""
         tree = "" if self.tree is None else f"{self.tree.name}@{self.tree.revision}"
         ref = tree if path.startswith("/v1/trees") else self.part
         names = {"ref": ref, "name": ref.partition("@")[0], "job": self.job, **CHOSEN}
         for name, value in names.items():
             path = path.replace(f"{{{name}}}", value) if value else path
-        return path + "".join(f"{'&' if k else '?'}{name}={value}" for k, (name, value) in enumerate(query.items()))
+        options = {"to": ref, "refs": self.part, **CHOSEN}
+        return path + "".join(f"{'&' if k else '?'}{name}={options.get(name, '')}" for k, name in enumerate(query))
 
 
 @dataclass(frozen=True)
@@ -65,18 +74,20 @@ class Operation:
         """Whether it is safe to be sent as it stands."""
         return self.method == "get" or self.group in COMPUTED or self.path in ALSO_COMPUTED
 
-    def query(self) -> dict[str, str]:
+    @property
+    def query(self) -> list[str]:
         """Options that are needed."""
         asked = [each for each in self.about.get("parameters", ()) if each["in"] == "query" and each.get("required")]
-        return {each["name"]: CHOSEN.get(each["name"], "") for each in asked}
+        return [each["name"] for each in asked]
 
-    def body(self, stored: Stored) -> dict[str, Any] | None:
-        """As much of a JSON body as is known here; None where there is none."""
+    def body(self, stored: Stored) -> tuple[str | None, bool]:
+        """A JSON body, and whether it is a whole one of what is stored here; of others that of the documents. None
+        where there is none.
+        """
         content = self.about.get("requestBody", {}).get("content", {})
         name = content.get("application/json", {}).get("schema", {}).get("$ref", "").rpartition("/")[2]
         if not name:
-            return None
-        members = set(_members(self.schemas, name))
+            return None, not content
         known = {
             "a": stored.part,
             "b": stored.part,
@@ -84,16 +95,44 @@ class Operation:
             "q": [0.0] * len(stored.coordinates),
             "span": [0, 1],
         }
-        return {member: value for member, value in known.items() if member in members}
+        forms = list(_forms(self.schemas, name))
+        for members, needed in forms:
+            if self.changes_nothing and needed <= known.keys() and self.path not in OF_A_CHOICE:
+                return _json({member: value for member, value in known.items() if member in members}), True
+        some = {member: value for member, value in known.items() if member in forms[0][0]}
+        return _example(self.method.upper(), self.path) or _json(some), False
 
 
-def _members(schemas: Mapping[str, Any], name: str) -> Iterator[str]:
-    """Members of a schema, and of those that it may be."""
+def _json(document: Mapping[str, Any]) -> str:
+    return orjson.dumps(document).decode()
+
+
+def _forms(schemas: Mapping[str, Any], name: str) -> Iterator[tuple[set[str], set[str]]]:
+    """Members of a schema, or of each that it may be, and those of them that are needed."""
     schema = schemas.get(name, {})
-    yield from schema.get("properties", ())
-    for other in (*schema.get("anyOf", ()), *schema.get("oneOf", ()), *schema.get("allOf", ())):
-        if "$ref" in other:
-            yield from _members(schemas, other["$ref"].rpartition("/")[2])
+    others = [
+        each["$ref"].rpartition("/")[2]
+        for kind in ("anyOf", "oneOf")
+        for each in schema.get(kind, ())
+        if "$ref" in each
+    ]
+    if others:
+        for other in others:
+            yield from _forms(schemas, other)
+    else:
+        yield set(schema.get("properties", ())), set(schema.get("required", ()))
+
+
+@cache
+def _examples() -> tuple[tuple[str, str, str], ...]:
+    """Method, path and body of the requests in the documents."""
+    texts = [path.read_text(encoding="utf-8") for path in sorted((FOLDER / "reference" / "http").glob("*.md"))]
+    return tuple((m[1], m[2].partition("?")[0], m[3]) for text in texts for m in REQUEST.finditer(text))
+
+
+def _example(method: str, template: str) -> str:
+    pattern = re.compile(re.sub(r"\{\w+\}", "[^/]+", template))
+    return next((body for m, path, body in _examples() if m == method and pattern.fullmatch(path)), "")
 
 
 def interface_page(openapi: Mapping[str, Any], stored: Stored) -> bytes:
@@ -107,15 +146,15 @@ def interface_page(openapi: Mapping[str, Any], stored: Stored) -> bytes:
     ]
     groups = list(dict.fromkeys(each.group for each in found))
     here = joined([link(group, f"#{group}") for group in groups], " · ")
-    sections = [
-        html(tag("h2", group, id=group), [_operation(x, stored) for x in found if x.group == group]) for group in groups
-    ]
+    sections = [_section(group, [x for x in found if x.group == group], stored) for group in groups]
     told = "Filled in with what is stored here. What changes nothing can be sent; change what is sent as you like."
+    none = "No tree is stored that you see, so that requests of trees cannot be sent." if stored.tree is None else ""
     whole = tag("p", "The same as a document for programs: ", link("openapi.json", "/openapi.json"), ".")
     return document(
         "The interface by example - substructures",
         tag("h1", "The interface by example"),
         tag("p", told),
+        tag("p", none, class_="warn") if none else Html(),
         whole,
         tag("p", here),
         *sections,
@@ -128,12 +167,12 @@ def _section(group: str, operations: Sequence[Operation], stored: Stored) -> Htm
 
 
 def _operation(operation: Operation, stored: Stored) -> Html:
-    path, body = stored.filled(operation.path, operation.query()), operation.body(stored)
-    shown = None if body is None else orjson.dumps(body).decode()
+    path = stored.filled(operation.path, operation.query)
+    shown, is_whole = operation.body(stored)
     method = operation.method.upper()
     said = str(operation.about.get("description", operation.about.get("summary", ""))).partition("\n\n")[0]
     title = tag("summary", tag("code", f"{method} {operation.path}"), " ", tag("span", said, class_="quiet"))
-    may_be_sent = operation.changes_nothing and not NEEDED.search(path)
+    may_be_sent = operation.changes_nothing and is_whole and not NEEDED.search(path) and not path.endswith(STREAMS)
     form = _form(method, path, shown) if may_be_sent else None
     texts = [
         tag("details", tag("summary", name), tag("pre", tag("code", text), tabindex="0"))
@@ -157,13 +196,14 @@ def _texts(method: str, address: str, path: str, body: str | None) -> dict[str, 
     post = "-X POST " if method == "POST" and body is None else verb
     given = "" if body is None else f", {body}"
     if body is not None:
-        matlab = f'webwrite("{url}", \'{body}\', weboptions("MediaType", "application/json"))'
+        matlab = f'webwrite("{url}", "json", \'{body}\')' if method == "POST" else ""
     else:
         option = "" if method == "GET" else f', weboptions("RequestMethod", "{method.lower()}")'
         matlab = f'webread("{url}"{option})'
     python = f'with Client("{address}") as client:\n    print(client.request("{method}", "{path}"{given}).text)'
-    return {
+    found = {
         "curl": f"curl -s {post}'{url}'{sent}",
         "Python": f"from substructures.client import Client\n\n{python}",
         "MATLAB": matlab,
     }
+    return {name: text for name, text in found.items() if text}

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from html import unescape
 from typing import Any
 
 import pytest
@@ -25,6 +27,24 @@ def test_every_request_is_there(client: TestClient) -> None:
     assert "/trees/{ref}/evaluations&quot;" not in text
     assert 'name="path" value="/v1/trees"' in text
     assert 'href="/docs/interface"' in client.get("/docs").text
+
+
+def test_what_can_be_sent_is_answered_as_it_stands(filled: TestClient, address: str) -> None:
+    """Whatever has a button, in a store with a tree."""
+    assert address
+    text = filled.get("/docs/interface").text
+    sent = re.findall(r'<form data-method="(GET|POST)" class="send">(.*?)</form>', text)
+    assert len(sent) > 40
+    wrong: list[str] = []
+    for method, form in sent:
+        path = unescape(re.search(r'name="path" value="([^"]*)"', form)[1])  # type: ignore[index]
+        body = re.search(r"<textarea[^>]*>(.*?)</textarea>", form)
+        given = {"json": json.loads(unescape(body[1]))} if body else {}
+        answer = filled.request(method, path, **given)
+        is_right = "no-equilibrium" in answer.text or "no-folder" in answer.text  # of this state and this server
+        if answer.status_code >= 400 and not is_right:
+            wrong.append(f"{method} {path}: {answer.text}")
+    assert wrong == []
 
 
 @in_browser

@@ -47,8 +47,8 @@ export function texts(origin, reference, form) {
     const [[method, path], body] = [request(form), filled(form)];
     const [url, json] = [`${origin}/v1/trees/${reference}/${path}`, JSON.stringify(body)];
     const verb = method === "POST" ? "" : `-X ${method} `;
-    const option = method === "POST" ? "" : `, "RequestMethod", "${method.toLowerCase()}"`;
-    const matlab = `webwrite("${url}", '${json.replaceAll("'", "''")}', weboptions("MediaType", "application/json"${option}))`;
+    const option = method === "POST" ? "" : `, weboptions("RequestMethod", "${method.toLowerCase()}")`;
+    const matlab = `webwrite("${url}", "json", '${json.replaceAll("'", "''")}'${option})`;
     return {
         curl: `curl -s ${verb}${url} -H 'Content-Type: application/json' -d '${json.replaceAll("'", "'\\''")}'`,
         Python: `from substructures.client import Client\n\nwith Client("${origin}") as client:\n    print(client.${call(reference, form, body)})`,
