@@ -12,22 +12,26 @@ export class Ahead {
         this.place = document.getElementById("ahead");
         this.host = joined(path, home);
         this.parts = new Map();
+        this.latest = 0;
     }
 
-    /** M with a part on a frame; nothing without a part. */
-    async show({ substructure, name, at, placement }, home) {
+    /** M with a part on a frame, and what does not fit; nothing without a part. */
+    async show({ substructure, name, at, placement }, home, differs) {
+        const mine = ++this.latest;
         if (!home) return this.place.replaceChildren();
         if (!this.parts.has(substructure)) {
             this.parts.set(substructure, joined(`/v1/substructures/${encodeURIComponent(substructure)}`, home));
         }
         const [host, part] = await Promise.all([this.host, this.parts.get(substructure)]);
+        if (mine !== this.latest) return undefined; // something else was asked for meanwhile
         if (at !== "world" && !host.frames.includes(at)) return this.place.replaceChildren();
         const start = performance.now();
         const { size, all } = metric(host, part, at, placement);
         const took = (performance.now() - start).toFixed(2);
         const names = [...host.names, ...part.names.map((each) => `${name || "?"}.${each}`)];
         const words = `Not stored yet: ${size} degrees of freedom, M at home, computed here in ${took} ms`;
-        return this.place.replaceChildren(element("p", { class: "small" }, words), table(names, size, all));
+        const warning = differs ? [element("p", { class: "warn small" }, differs)] : [];
+        return this.place.replaceChildren(...warning, element("p", { class: "small" }, words), table(names, size, all));
     }
 }
 

@@ -1,15 +1,17 @@
 // A part where it would be, and M of the whole, while its place is typed, picked or dragged.
 import { Ahead } from "./ahead.js";
 import { plain } from "./coupled.js";
+import { misfit } from "./fitting.js";
 import { element } from "./fragments.js";
 import { ghost, sceneOf } from "./ghost.js";
 import { load } from "./program.js";
 import { filled } from "./steps.js";
 
 export class Placing {
-    /** path: of the tree in the interface; form: of couplings; changed(form) hears of a drag. */
-    constructor(path, form, changed) {
-        Object.assign(this, { path, form, changed, view: null, ahead: null });
+    /** path: of the tree in the interface; spec: its document; form: of couplings; changed(form) hears of a drag. */
+    constructor(path, spec, form, changed) {
+        Object.assign(this, { path, form, changed, view: null, ahead: null, latest: 0 });
+        this.instances = JSON.parse(spec).instances ?? [];
         this.parts = document.getElementById("parts");
     }
 
@@ -44,14 +46,17 @@ export class Placing {
     /** The part where it would be, and M of the whole, before it is stored. */
     async rested(form) {
         if (form.dataset.action !== "couplings") return;
+        const mine = ++this.latest; // what was asked for before may be answered later
         const coupling = filled(form);
         const { substructure, at, placement } = coupling;
         const found = () => [...this.parts.options].some(({ value }) => value === substructure.split("@")[0]);
         if (substructure && !found()) await this.search(substructure);
         if (form.dataset.method) return;
         const part = substructure && found() && at ? await sceneOf(substructure) : null;
+        const differs = part ? await misfit(this.instances, at, substructure) : "";
+        if (mine !== this.latest) return;
         this.view?.ghost(part && ghost(part, placement), at);
-        await this.ahead?.show(coupling, part?.scene.poses.home);
+        await this.ahead?.show(coupling, part?.scene.poses.home, differs);
     }
 
     /** The part follows the pointer, its place in the fields and M with it. */

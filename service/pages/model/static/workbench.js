@@ -32,7 +32,7 @@ async function step(method, address, body, more = "") {
     else location.assign(`/trees/${found.name}@${found.revision}/edit${more}`);
 }
 
-const placing = new Placing(path, document.querySelector("[data-action]"), (form) => show(form));
+const placing = new Placing(path, bench.spec, document.querySelector("[data-action]"), (form) => show(form));
 const tried = (work) => work.catch((error) => tell(error.message, "warn"));
 
 /** Makes an earlier revision the newest one: its document is sent letter by letter. */
