@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable
+from functools import cache
 from html import escape
 
 #: control characters, and those that turn the direction of the text around them
@@ -43,12 +44,17 @@ def _one(content: Content) -> str:
 
 def tag(name: str, /, *content: Content, **attributes: str | int | None) -> Html:
     """An element. ``class_`` is the attribute class, ``data_text`` is data-text; None leaves an attribute out."""
-    if attributes:
-        given = {key.rstrip("_").replace("_", "-"): value for key, value in attributes.items() if value is not None}
-        start = "".join([f"<{name}", *(f' {key}="{html(value)}"' for key, value in given.items()), ">"])
-    else:
-        start = f"<{name}>"
+    start = f"<{name}"
+    for key, value in attributes.items():
+        if value is not None:
+            start += f' {_attribute(key)}="{_one(value)}"'
+    start += ">"
     return Html(start if name in _VOID else f"{start}{html(*content)}</{name}>")
+
+
+@cache
+def _attribute(key: str) -> str:
+    return key.rstrip("_").replace("_", "-")
 
 
 def table(columns: Iterable[Content], rows: Iterable[Iterable[Content]]) -> Html:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from functools import partial
-from typing import Annotated
+from collections.abc import Callable, Mapping
+from functools import lru_cache, partial
+from typing import Annotated, Any
 
 import orjson
 from fastapi import APIRouter, Query, Request, Response
@@ -259,7 +259,14 @@ def _panel(shown: Shown, subject: Callable[[], modules.Subject], worker: Worker,
         raise not_found(f"there is no entry '{entry[:80]}'; write for example metric,0,1", "unknown-formula")
     of = subject()
     told = orjson.loads(modules.entry(of, worker, *found))
-    return panel(shown, told, orjson.loads(modules.origins(of, worker)))
+    return panel(shown, told, _read(modules.origins(of, worker)))
+
+
+@lru_cache(maxsize=8)
+def _read(told: bytes) -> Mapping[str, Any]:
+    """The document, which is large and the same for every entry of a model."""
+    found: Mapping[str, Any] = orjson.loads(told)
+    return found
 
 
 def _answer(request: Request, page: bytes, script: str = "main.js") -> Response:
