@@ -51,11 +51,11 @@ def trees_page(page: Page[Tree], q: str, part: str, may_write: bool) -> bytes:
 
 
 def _new(part: str) -> Html:
-    """A form that begins a tree, with a part on the world; a script sends it."""
+    """A form that begins a tree, with a part on the world; a script sends it, and lets it be sent."""
     fields = [
         tag("label", "name ", tag("input", name="name", required="required", pattern=r"[a-z0-9][a-z0-9\-]*")),
         tag("label", "first part ", tag("input", name="substructure", required="required", value=part)),
         tag("label", "gravity in m/s^2 ", tag("input", name="gravity", value="0, 0, -9.81")),
     ]
-    form = tag("form", fields, tag("button", "Begin", type="submit"), class_="bar", id="begin")
+    form = tag("form", fields, tag("button", "Begin", type="submit", disabled="disabled"), class_="bar", id="begin")
     return tag("section", tag("h2", "Begin a tree"), form, tag("p", id="told", role="status"))

@@ -64,6 +64,7 @@ def test_a_file_is_looked_at_before_it_is_stored(browser: Any, address: str, fil
 def test_a_part_begins_a_tree_and_is_coupled_onto_one(browser: Any, address: str, filled: TestClient) -> None:
     tab = Tab(browser, address, "/?q=slider")
     tab.page.click("a:has-text('+ to tree')")
+    tab.page.wait_for_selector("#begin button:enabled")
     tab.page.fill("[name=name]", "begun")
     tab.page.keyboard.press("Enter")
     tab.page.wait_for_url("**/trees/begun@1/edit")

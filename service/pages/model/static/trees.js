@@ -24,6 +24,7 @@ async function begin() {
     location.assign(answer.status === 202 ? `/jobs/${found.id}` : `/trees/${found.name}@${found.revision}/edit`);
 }
 
+for (const button of form?.querySelectorAll("button") ?? []) button.disabled = false;
 form?.addEventListener("submit", (event) => {
     event.preventDefault();
     told.className = "quiet";
