@@ -312,3 +312,16 @@ def test_concurrent_versions_get_different_numbers(client: TestClient) -> None:
         return int(client.post("/v1/substructures", json=changed(title=f"Title {k}")).json()["version"])
 
     assert sorted(at_once(submit, range(8))) == list(range(1, 9))
+
+
+def test_facets_are_counted_again_after_every_change(filled: TestClient) -> None:
+    def tags() -> dict[str, int]:
+        found: dict[str, int] = filled.get("/v1/substructures?facets=true").json()["facets"]["tags"]
+        return found
+
+    before = tags()
+    assert tags() == before
+    assert filled.post("/v1/substructures", json={**PENDULUM, "name": "counted", "tags": ["new"]}).status_code == 201
+    assert tags() == {**before, "new": 1}
+    assert filled.post("/v1/substructures/counted@1/yank", json={"reason": "wrong"}).status_code == 200
+    assert tags() == before
