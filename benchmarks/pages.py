@@ -19,7 +19,7 @@ from benchmarks.http import cpu_seconds, serving
 from substructures.catalogue import load_tree
 from substructures.client import Client
 
-FLAGS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader"]
+FLAGS = ["--no-sandbox", "--disable-gpu", "--enable-unsafe-swiftshader"]  # as on a machine without a graphics card
 MOVES, FRAMES, ASKED = 100, 60, 30
 #: pages whose work in the server is measured
 PAGES = (
@@ -37,12 +37,21 @@ PAGES = (
 READY = "document.getElementById('place').dataset.{}"
 #: milliseconds from an input event to the frame that has drawn it
 MOVE = """(k) => new Promise((done) => {
-    const slider = document.querySelector('[data-q]');
+    const sliders = document.querySelectorAll('[data-q]');
+    const slider = sliders[sliders.length >> 1];
     slider.value = String(Number(slider.min) + (k / 100) * (slider.max - slider.min));
     const start = performance.now();
     slider.dispatchEvent(new Event('input', { bubbles: true }));
     requestAnimationFrame(() => done(performance.now() - start)); // after that of the page itself
 })"""
+#: keeps how long keys took until what they changed was on the screen, in steps of 8 ms, from 16 on
+KEYS = """() => {
+    window.keys = [];
+    const keep = (list) => window.keys.push(...list.getEntries().filter(({ name }) => name === 'keydown'));
+    new PerformanceObserver(keep).observe({ type: 'event', durationThreshold: 16 });
+    const sliders = document.querySelectorAll('[data-q]');
+    sliders[sliders.length >> 1].focus();
+}"""
 
 
 def until(page: Any, script: str) -> None:
@@ -63,6 +72,17 @@ def opened(page: Any, address: str) -> tuple[float, float, int]:
     usable = perf_counter() - start
     until(page, READY.format("view"))
     return usable, perf_counter() - start, sum(sizes)
+
+
+def pressed(page: Any) -> list[float]:
+    """Milliseconds from keys that move a slider to pixels on the screen, as the browser's Event Timing tells them."""
+    page.evaluate(KEYS)
+    for _ in range(MOVES):
+        page.keyboard.press("ArrowLeft")
+        page.wait_for_timeout(40)
+    page.wait_for_timeout(500)
+    found = [float(x) for x in page.evaluate("window.keys.map(({ duration }) => duration)")]
+    return [8.0] * (MOVES - len(found)) + found
 
 
 def played(page: Any, address: str) -> list[float]:
@@ -108,7 +128,9 @@ def main(name: str) -> None:
             print(f"{told}: usable in {usable:.2f} s, drawn in {drawn:.2f} s, {received / 1000:.0f} kB received")
         times = [page.evaluate(MOVE, k) for k in range(MOVES)]
         script = [float(page.evaluate(READY.format("milliseconds")))]
-        print(f"slider to drawing: median {median(times):.1f} ms, p95 {quantiles(times, n=20)[-1]:.1f} ms")
+        print(f"slider to its frame: median {median(times):.1f} ms, p95 {quantiles(times, n=20)[-1]:.1f} ms")
+        times = pressed(page)
+        print(f"key to screen: median {median(times):.0f} ms, p95 {quantiles(times, n=20)[-1]:.0f} ms, steps of 8 ms")
         print(f"script of a frame: {script[0]:.2f} ms (grid, panel, view; software rendering comes on top)")
         times = played(page, f"{address}/motion")
         print(f"script of a frame of a motion: median {median(times):.2f} ms (pose, plots, values at the cursor, view)")

@@ -29,7 +29,7 @@ export function at(frames, { frame, at: place = [0, 0, 0] }) {
 export class Shapes {
     constructor(groups, { frames, joints, bodies, loads, closures }) {
         const colour = (k) => COLOURS[k % COLOURS.length];
-        const solid = (k, more = {}) => new THREE.MeshStandardMaterial({ color: colour(k), roughness: 0.6, ...more });
+        const solid = (k, more = {}) => new THREE.MeshLambertMaterial({ color: colour(k), ...more });
         const [rod, ball] = [new THREE.CylinderGeometry(1, 1, 1, 16), new THREE.SphereGeometry(1, 24, 16)];
         const add = (group, geometry, material, more) => {
             const mesh = Object.assign(new THREE.Mesh(geometry, material), { userData: more });

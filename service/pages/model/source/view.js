@@ -1,7 +1,7 @@
 // A mechanism in three dimensions, posed by positions and rotations; what there is to draw is the interface's scene.
 import * as THREE from "three/src/Three.Core.js";
-import { WebGLRenderer } from "three/src/renderers/WebGLRenderer.js";
 import { Camera } from "./camera.js";
+import { Drawer } from "./drawer.js";
 import { Shade } from "./shade.js";
 import { Shapes, at } from "./shapes.js";
 
@@ -16,10 +16,9 @@ export class View {
     constructor(place, scene) {
         this.place = place;
         this.told = scene;
-        this.renderer = new WebGLRenderer({ antialias: true, alpha: true });
-        this.renderer.setPixelRatio(Math.min(devicePixelRatio, 2));
-        const canvas = Object.assign(this.renderer.domElement, { tabIndex: 0 });
+        const canvas = Object.assign(document.createElement("canvas"), { tabIndex: 0 });
         canvas.setAttribute("aria-label", "View; arrow keys turn it");
+        this.drawer = new Drawer(canvas);
         this.camera = new Camera(canvas, () => this.draw());
         this.scene = new THREE.Scene();
         this.scene.add(new THREE.HemisphereLight(0xffffff, 0x666677, 2.6));
@@ -131,7 +130,7 @@ export class View {
     resize() {
         const { clientWidth: width, clientHeight: height } = this.place;
         if (!width || !height) return;
-        this.renderer.setSize(width, height, false);
+        this.drawer.resize(width, height);
         this.camera.resize(width, height);
         this.draw();
     }
@@ -139,7 +138,7 @@ export class View {
     draw() {
         if (!this.fitted) return;
         this.headlight.position.copy(this.camera.seen.position);
-        this.renderer.render(this.scene, this.camera.seen);
+        this.drawer.draw(this.scene, this.camera.seen);
         if (!this.groups.names.visible) return;
         this.labels.forEach((label, frame) => {
             const [left, top] = this.camera.pixel(at(this.frames, { frame }));

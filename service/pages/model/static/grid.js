@@ -30,6 +30,7 @@ export class Grid {
             Number(cell.dataset.at),
             cell.parentElement.classList.contains("zero"),
         ]);
+        this.colours = [];
         this.isSmall = table?.classList.contains("small") ?? false;
     }
 
@@ -50,12 +51,16 @@ export class Grid {
         const values = this.program.array(this.quantity);
         let largest = 0;
         for (const [, at] of this.cells) largest = Math.max(largest, Math.abs(values[at]));
-        for (const [cell, at, zero] of this.cells) {
+        for (const [k, [cell, at, zero]] of this.cells.entries()) {
             if (zero) continue;
             const size = Math.abs(values[at]);
             const share = size > 0 ? Math.max(0, 1 + Math.log10(size / largest) / LOGARITHMIC) : 0;
-            cell.style.setProperty("--share", share.toFixed(3));
-            cell.classList.toggle("negative", values[at] < 0);
+            const colour = (values[at] < 0 ? "-" : "") + share.toFixed(3);
+            if (colour !== this.colours[k]) {
+                cell.style.setProperty("--share", share.toFixed(3));
+                cell.classList.toggle("negative", values[at] < 0);
+                this.colours[k] = colour; // most stay, and thousands of styles take their time
+            }
             if (!this.isSmall) cell.textContent = short(values[at]);
         }
     }
