@@ -9,21 +9,20 @@ const COLOURS = 8;
 const KEYS = 12; // names in a picture
 const LETTER = 6.4; // width of one
 
-/** at(t) is called for a time that was chosen. */
+/** at(t) is called for a time that was chosen, zoom(from, to) for a span that was dragged over with Shift. */
 export class Curves {
-    constructor({ title, unit, columns, small }, times, width, at) {
-        Object.assign(this, { times, columns, width, names: Object.keys(columns) });
-        [this.first, this.last] = [times[0], times[times.length - 1]];
+    constructor({ title, unit, columns, small }, times, [first, last], width, { at, zoom }) {
+        Object.assign(this, { times, first, last, columns, width, names: Object.keys(columns) });
+        this.seen = times.flatMap((t, k) => (t >= first && t <= last ? [k] : []));
         this.title = unit ? `${title} [${unit}]` : title;
         this.keys = [];
         const top = this.legend();
         this.svg = svg("svg", { viewBox: `0 0 ${width} ${top + HEIGHT}`, role: "img", class: "line" });
         this.svg.append(svg("title", {}, `${title} over time: ${this.names.join(", ")}`), ...this.axes(top), ...this.lines(top), ...this.keys);
         this.cursor = svg("line", { x1: LEFT, x2: LEFT, y1: top, y2: top + HEIGHT - BOTTOM, class: "here" });
-        this.svg.append(this.cursor);
-        for (const name of ["pointerdown", "pointermove"]) {
-            this.svg.addEventListener(name, (event) => event.buttons && at(this.pointed(event)));
-        }
+        this.span = svg("rect", { y: top, width: 0, height: HEIGHT - BOTTOM, class: "span" });
+        this.svg.append(this.span, this.cursor);
+        this.follow(at, zoom);
         const save = element("button", { type: "button", class: "copy", "aria-label": `${title} as SVG` }, "SVG");
         save.addEventListener("click", () => offer(picture(this.svg), `${title.replaceAll(/\W+/g, "-")}.svg`));
         this.element = element("details", { class: "curves" }, element("summary", {}, this.title), this.svg, save);
@@ -32,6 +31,27 @@ export class Curves {
 
     x(t) {
         return LEFT + ((this.width - LEFT - RIGHT) * (t - this.first)) / (this.last - this.first || 1);
+    }
+
+    follow(at, zoom) {
+        let from = null;
+        this.svg.addEventListener("pointerdown", (event) => {
+            from = event.shiftKey ? this.pointed(event) : null;
+            this.svg.setPointerCapture(event.pointerId);
+            if (from === null) at(this.pointed(event));
+        });
+        this.svg.addEventListener("pointermove", (event) => {
+            if (!event.buttons) return;
+            const t = this.pointed(event);
+            if (from === null) return at(t);
+            const [low, high] = [this.x(Math.min(from, t)), this.x(Math.max(from, t))];
+            this.span.setAttribute("x", low);
+            this.span.setAttribute("width", high - low);
+        });
+        this.svg.addEventListener("pointerup", (event) => {
+            this.span.setAttribute("width", 0);
+            if (from !== null) zoom(from, this.pointed(event));
+        });
     }
 
     pointed({ clientX }) {
@@ -55,7 +75,7 @@ export class Curves {
     }
 
     axes(top) {
-        const all = Object.values(this.columns).flat().filter(Number.isFinite);
+        const all = Object.values(this.columns).flatMap((values) => this.seen.map((k) => values[k])).filter(Number.isFinite);
         let [low, high] = all.reduce(([a, b], x) => [Math.min(a, x), Math.max(b, x)], [Infinity, -Infinity]);
         if (!all.length) [low, high] = [-1, 1];
         const least = 1e-6 * Math.max(Math.abs(high), Math.abs(low)) || 1; // what is smaller is rounding
@@ -73,8 +93,9 @@ export class Curves {
 
     lines() {
         return this.names.map((name, k) => {
-            const points = this.columns[name].flatMap((value, i) =>
-                Number.isFinite(value) ? [`${this.x(this.times[i]).toFixed(1)},${this.y(value).toFixed(1)}`] : []);
+            const values = this.columns[name];
+            const points = this.seen.filter((i) => Number.isFinite(values[i]))
+                .map((i) => `${this.x(this.times[i]).toFixed(1)},${this.y(values[i]).toFixed(1)}`);
             return svg("polyline", { points: points.join(" "), class: `curve c${k % COLOURS} dash${Math.floor(k / COLOURS) % 3}` });
         });
     }
@@ -82,7 +103,7 @@ export class Curves {
     /** The cursor at a time, whose index among the times is k, and the values there. */
     mark(t, k) {
         if (!this.element.open) return;
-        const x = this.x(t).toFixed(1);
+        const x = this.x(Math.min(this.last, Math.max(this.first, t))).toFixed(1);
         this.cursor.setAttribute("x1", x);
         this.cursor.setAttribute("x2", x);
         const shown = Math.min(KEYS, this.names.length);

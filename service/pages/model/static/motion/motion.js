@@ -6,13 +6,13 @@ import { Sliders } from "../sliders.js";
 import { shown } from "../viewing.js";
 import { post } from "./asked.js";
 import { table, verdict } from "./checks.js";
-import { Curves } from "./curves.js";
 import { locus } from "./locus.js";
 import { Modes } from "./modes.js";
 import { Player } from "./player.js";
+import { Plots } from "./plots.js";
 import { keep, request, restore, time } from "./request.js";
 import { save } from "./saving.js";
-import { groups, index, interpolated } from "./trajectory.js";
+import { groups, interpolated } from "./trajectory.js";
 
 const place = document.getElementById("place");
 const get = (id) => document.getElementById(id);
@@ -25,7 +25,8 @@ async function start({ kind, reference, ranges, joints }) {
     const path = `/v1/${kind}/${reference}`;
     const [program, layout] = await load(path);
     const state = program.vectors;
-    let [motion, found, plots, view, running, asked] = [null, null, [], null, null, null];
+    let [motion, found, view, running, asked] = [null, null, null, null, null];
+    const plots = new Plots(get("plots"), (t) => player.choose(t));
     get("without").hidden = true;
     const draw = () => {
         view?.pose(program);
@@ -39,7 +40,7 @@ async function start({ kind, reference, ranges, joints }) {
     const player = new Player((t) => {
         const before = performance.now();
         motion(t);
-        if (found) for (const plot of plots) plot.mark(t, index(found.t, t));
+        if (found) plots.mark(t);
         draw();
         place.dataset.milliseconds = (performance.now() - before).toFixed(3);
     }, (t) => found && keep(t));
@@ -56,9 +57,7 @@ async function start({ kind, reference, ranges, joints }) {
             busy(false);
         }
         asked = body;
-        const width = Math.min(560, Math.max(280, get("plots").clientWidth));
-        plots = groups(found, layout, program).map((group) => new Curves(group, found.t, width, (t) => player.choose(t)));
-        get("plots").replaceChildren(table(found), ...plots.map((plot) => plot.element));
+        plots.show(groups(found, layout, program), found.t, table(found));
         tell(...verdict(found));
         get("saves").hidden = false;
         motion = (t) => interpolated(found, t, state);
@@ -82,8 +81,8 @@ async function start({ kind, reference, ranges, joints }) {
     };
     const play = (length, at) => {
         player.stop();
-        [plots, found] = [[], null];
-        get("plots").replaceChildren();
+        found = null;
+        plots.clear();
         get("saves").hidden = true;
         motion = (t) => state.q.set(at(t));
         player.load(length);
