@@ -84,6 +84,11 @@ def origins(subject: Subject, worker: Worker) -> bytes:
     return _kept(subject, lambda: Answer(200, _made(subject, worker, "origins")["json"], {}), "origins").body
 
 
+def integrals(subject: Subject, worker: Worker) -> bytes:
+    """First integrals of a tree as JSON, without formulas. Raises TooLarge, TimeoutError."""
+    return _kept(subject, lambda: Answer(200, _made(subject, worker, "integrals")["json"], {}), "integrals").body
+
+
 def entry(subject: Subject, worker: Worker, quantity: str, index: Sequence[int]) -> bytes:
     """The JSON document of :func:`service.models.entries.entry`. Raises Refused 422, InvalidInput, TimeoutError."""
 

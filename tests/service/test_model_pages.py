@@ -21,7 +21,7 @@ from service.app import create_app
 from service.pages.model import assets
 from service.store.store import Store
 
-from .conftest import HAND, PENDULUM
+from .conftest import HAND, PENDULUM, TREE
 from .one_store import filled, store
 
 __all__ = ["filled", "store"]
@@ -129,6 +129,42 @@ def test_numbers_after_keyboard_moves(browser: Any, address: str, filled: TestCl
 
 
 @in_browser
+@pytest.mark.deep
+def test_first_integrals_are_a_tab(browser: Any, address: str, filled: TestClient) -> None:
+    tab = Tab(browser, address, "/trees/cell@1?pose=0.3")
+    tab.until(READY)
+    tab.page.click("[data-tab=first_integrals]")
+    tab.page.click("[data-entry='first_integrals,0']")
+    tab.until("document.getElementById('entry').dataset.entry === 'first_integrals,0'")
+    assert "energy" in tab.page.inner_text("#entry h2")
+    tab.page.fill("[data-rate='0']", "1.5")
+    request = {"q": [0.3], "qd": [1.5], "quantities": ["kinetic_energy", "potential_energy"]}
+    told = filled.post("/v1/trees/cell@1/evaluations", json=request).json()
+    energy = told["kinetic_energy"] + told["potential_energy"]
+    tab.until(f"Math.abs(Number({VALUE}) - {energy}) < 1e-9")
+    tab.close()
+
+
+def test_first_integrals_without_scripts(filled: TestClient) -> None:
+    page = filled.get("/trees/cell@1?tab=first_integrals").text
+    assert 'data-entry="first_integrals,0"' in page
+    assert "all forces have a potential" in page
+    page = filled.get("/trees/cell@1?entry=first_integrals,0&pose=0.3").text
+    told = filled.post("/v1/trees/cell@1/evaluations", json={"q": [0.3], "quantities": ["potential_energy"]}).json()
+    assert repr(told["potential_energy"])[:12] in page
+    assert filled.get("/trees/cell@1/entry?entry=first_integrals,9").status_code == 422
+    assert filled.get("/substructures/pendulum/entry?entry=first_integrals,0").status_code == 404
+
+
+def test_first_screens_are_kept_for_each_reference(filled: TestClient) -> None:
+    assert filled.post("/v1/trees", json={**TREE, "name": "cell-too"}).status_code == 201
+    assert "/trees/cell-too@1?entry=" not in filled.get("/trees/cell@1").text
+    assert "/trees/cell@1?entry=" not in filled.get("/trees/cell-too@1").text
+    assert 'value="0.25"' in filled.get("/trees/cell@1?pose=0.25").text
+    assert 'value="0.25"' not in filled.get("/trees/cell@1").text
+
+
+@in_browser
 def test_a_motion_is_the_trajectory(browser: Any, address: str, filled: TestClient) -> None:
     tab = Tab(browser, address, "/trees/cell@2/motion?pose=0.3,-0.8&t=1.25")
     tab.until("document.getElementById('place').dataset.ready")
@@ -152,6 +188,20 @@ def test_pages_with_hostile_words_stay_silent(browser: Any, address: str, scheme
             tab = Tab(browser, address, path, width, color_scheme=scheme)
             tab.until(READY)
             tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_view_without_a_graphics_card_is_sharp_at_rest(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    pixels = "(({ width, clientWidth }) => width / clientWidth)(document.querySelector('.view canvas'))"
+    tab.until(f"{pixels} === 2")
+    tab.page.focus("#q1")
+    tab.page.keyboard.press("ArrowRight")
+    tab.until(f"{pixels} === 1")
+    tab.until(f"{pixels} === 2")
+    tab.close()
 
 
 @in_browser

@@ -13,7 +13,7 @@ from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs, admitted
 from service.jobs.kinds.previewed import preview_of
 from service.jobs.kinds.reported import difference_of, report_of
-from service.jobs.kinds.shown import entry_of, origins_of, program_of
+from service.jobs.kinds.shown import entry_of, integrals_of, origins_of, program_of
 from service.models.printing import Style, names_of_steps, text_of, with_numbers
 from service.schemas.jobs import ItemDocument
 from service.schemas.publishing import PublishRequest
@@ -80,4 +80,5 @@ REQUESTED: Mapping[str, Callable[[ItemDocument, Blobs], Outcome]] = {
     "program": program_of,
     "origins": origins_of,
     "entry": entry_of,
+    "integrals": integrals_of,
 }

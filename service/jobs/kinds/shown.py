@@ -7,6 +7,7 @@ An item names a part (``substructure``, ``program``) or a tree (as :func:`servic
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import Any
 
 import orjson
 
@@ -16,8 +17,10 @@ from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs
 from service.jobs.kinds.reported import INSTANCE
 from service.jobs.kinds.trees import source_of
+from service.messages.refusals import unprocessable
 from service.models.entries import entry
 from service.models.exporting import NAME
+from service.models.formulas import made
 from service.models.source import Source
 from service.schemas.jobs import ItemDocument
 from substructures.export import Exported, exported_model, exported_part, interface_of_model, interface_of_part
@@ -39,6 +42,7 @@ from substructures.tree.model import couple
 OF_TREES = ("metric", "christoffel", "forces", "position", "rotation")
 OF_PARTS = ("metric", "christoffel")
 KINEMATICS = ("position", "rotation")
+INTEGRALS = "first_integrals"
 WITH_ORIGINS = ("metric", "christoffel", "forces", "gravity")
 
 
@@ -98,9 +102,29 @@ def origins_of(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 def entry_of(item: ItemDocument, blobs: Blobs) -> Outcome:
     """File ``json``: one entry of a quantity, ``index``, as :func:`service.models.entries.entry` tells it."""
-    found = _subject(item, blobs)
-    told = entry(_quantity(found, item["quantity"]), item["quantity"], tuple(item["index"]), _interface(found))
+    found, quantity, index = _subject(item, blobs), item["quantity"], tuple(item["index"])
+    if quantity == INTEGRALS and isinstance(found, Source):
+        return Outcome(files={"json": orjson.dumps(_integral(found, *index))})
+    told = entry(_quantity(found, quantity), quantity, index, _interface(found))
     return Outcome(files={"json": orjson.dumps(told)})
+
+
+def integrals_of(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """File ``json``: the first integrals of a tree with their reasons, without their formulas."""
+    found = _subject(item, blobs)
+    told = made(found, INTEGRALS, {}).members["integrals"] if isinstance(found, Source) else []
+    return Outcome(files={"json": orjson.dumps(told)})
+
+
+def _integral(source: Source, number: int = -1, *_: int) -> dict[str, Any]:
+    """One of them as an entry, which is a scalar."""
+    found = made(source, INTEGRALS, {})
+    integrals = found.members["integrals"]
+    if not 0 <= number < len(integrals):
+        raise unprocessable("component", f"there are {len(integrals)} first integrals, from 0 on", "/query/index")
+    told = integrals[number]
+    shown = entry(found.program.select([told["name"]]), told["name"], (), interface_of_model(source.model))
+    return {**shown, "quantity": INTEGRALS, "index": [number], "of": [number], "integral": told}
 
 
 def _quantity(found: Part | Source, name: str) -> Program:

@@ -9,6 +9,7 @@ import orjson
 
 from service.pages.html import Content, Html, html, joined, link, tag
 from service.pages.model.shown import LETTERS, Shown
+from substructures.expr.program import read_program
 
 LANGUAGES = {"latex": "LaTeX", "python": "Python", "c": "C", "matlab": "MATLAB", "json": "JSON", "text": "text"}
 
@@ -16,7 +17,7 @@ LANGUAGES = {"latex": "LaTeX", "python": "Python", "c": "C", "matlab": "MATLAB",
 def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any]) -> Html:
     """``told``: of :func:`service.models.entries.entry`; ``origins``: of :func:`substructures.quantities.origins`."""
     quantity, index = told["quantity"], tuple(told["index"])
-    names = [labels[i] for labels, i in zip(shown.labels(quantity), index, strict=True)]
+    names = _names(shown, told)
     number = tag("sub", " ".join(str(i + 1) for i in index))
     title = tag("h2", LETTERS[quantity], number, " ", tag("span", joined(names), class_="quiet small"))
     if told["is_zero"]:
@@ -25,6 +26,7 @@ def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any]) -> 
         "section",
         title,
         _value(shown, told),
+        tag("p", f"Because {told['integral']['reason']}.") if "integral" in told else None,
         _formula(told),
         _terms(told),
         _origin(told, origins, shown),
@@ -39,16 +41,31 @@ def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any]) -> 
     )
 
 
-def _value(shown: Shown, told: Mapping[str, Any]) -> Html:
+def _names(shown: Shown, told: Mapping[str, Any]) -> list[str]:
+    if "integral" in told:
+        return [told["integral"]["name"]]
+    return [labels[i] for labels, i in zip(shown.labels(told["quantity"]), told["index"], strict=True)]
+
+
+def _here(shown: Shown, told: Mapping[str, Any]) -> tuple[float | None, str]:
+    """The value in the pose, None where a parameter has none, and its unit."""
+    if "integral" in told:
+        program = read_program(orjson.loads(told["texts"]["json"]))
+        found, unit = shown.evaluated(program, told["integral"]["name"]), told["integral"]["unit"]
+        return None if found is None else float(found), unit
     quantity, index = told["quantity"], tuple(told["index"])
-    found = shown.numbers(quantity)
-    text = "a parameter has no value" if found is None else repr(float(found[index]))
-    unit = shown.unit(quantity, index)
+    numbers = shown.numbers(quantity)
+    return None if numbers is None else float(numbers[index]), shown.unit(quantity, index)
+
+
+def _value(shown: Shown, told: Mapping[str, Any]) -> Html:
+    here, unit = _here(shown, told)
+    text = "a parameter has no value" if here is None else repr(here)
     return tag(
         "p",
         tag("output", text, id="value"),
         f" {unit}" if unit else "",
-        " in this pose",
+        " in this state" if "integral" in told else " in this pose",
         class_="value",
     )
 
@@ -92,11 +109,14 @@ def _entry(told: Mapping[str, Any], origins: Mapping[str, Any]) -> Mapping[str, 
 def _origin(told: Mapping[str, Any], origins: Mapping[str, Any], shown: Shown) -> Html:
     bodies, symbols = _bodies(told, origins), [origins["symbols"][k] for k in _entry(told, origins).get("symbols", ())]
     proof = f"{shown.path}#certificate"
+    compared = "certificate: compared with a computation that shares no code with this formula"
+    if "integral" in told:
+        compared = "certificate of the equations of motion, along which the rate of this formula vanishes identically"
     rows: list[tuple[str, Content]] = [
         ("Bodies", joined([tag("code", name) for name in bodies])),
         ("Symbols", joined([tag("code", name) for name in symbols])),
         ("Operations", f"{told['operations']:,}"),
-        ("Proof", link("certificate: compared with a computation that shares no code with this formula", proof)),
+        ("Proof", link(compared, proof)),
     ]
     shown_rows = [html(tag("dt", name), tag("dd", value)) for name, value in rows if html(value)]
     return tag("dl", shown_rows)

@@ -3,10 +3,11 @@ or by the server where the pose was sent as a form."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
-from service.pages.html import Html, html, tag
-from service.pages.model.shown import LETTERS, TITLES, Shown
+from service.pages.html import Html, html, table, tag
+from service.pages.model.shown import INTEGRALS, LETTERS, TITLES, Shown
 from substructures.array import Array
 
 #: from this many coordinates on cells are too small for numbers
@@ -26,9 +27,6 @@ def tabs(shown: Shown, chosen: str) -> Html:
         )
         for name in shown.tabs
     ]
-    if shown.kind == "trees":
-        integrals = f"/v1/trees/{shown.reference}/first_integrals?format=mathml"
-        links.append(tag("a", "first integrals", href=integrals))
     return tag("nav", links, class_="tabs", aria_label="Quantities")
 
 
@@ -60,10 +58,24 @@ def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Htm
             cells.append(write(index, index in there, at, value))
         body.append(tag("tr", tag("th", _short(row, is_small, i), scope="row", title=row), Html("".join(cells))))
     kind = "grid small" if is_small else "grid"
-    table = tag("table", tag("thead", head), tag("tbody", body), class_=kind, data_quantity=quantity)
+    drawn = tag("table", tag("thead", head), tag("tbody", body), class_=kind, data_quantity=quantity)
     return tag(
-        "div", chooser, tag("div", table, class_="scroll", tabindex="0", role="group", aria_label=quantity), id="grid"
+        "div", chooser, tag("div", drawn, class_="scroll", tabindex="0", role="group", aria_label=quantity), id="grid"
     )
+
+
+def integrals_table(shown: Shown, told: Sequence[Mapping[str, Any]]) -> Html:
+    """First integrals by name, with why they are constant; one that is chosen is shown as an entry."""
+    rows = []
+    for k, each in enumerate(told):
+        where = f"{shown.path}?entry={INTEGRALS},{k}{_pose(shown)}"
+        rows.append((tag("a", each["name"], href=where, data_entry=f"{INTEGRALS},{k}"), each["unit"], _reason(each)))
+    columns = ("first integral", "unit", "because")
+    return tag("div", table(columns, rows) if rows else tag("p", "None was found."), id="grid", class_="integrals")
+
+
+def _reason(integral: Mapping[str, Any]) -> str:
+    return integral["reason"] if integral["rule"] == "constant" else f"{integral['rule']}: {integral['reason']}"
 
 
 def _n(names: Sequence[str]) -> list[tuple[int, str]]:

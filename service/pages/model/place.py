@@ -5,22 +5,28 @@ from __future__ import annotations
 import orjson
 
 from service.pages.html import Html, html, link, tag
-from service.pages.model.grid import grid, tabs
+from service.pages.model.grid import tabs
 from service.pages.model.shown import Shown, described
-from substructures.array import Array
 
 STEPS = 1000  # of a slider
 ENTRY = "Choose an entry to read its formula, its value here, and the bodies that it comes from."
+NONE_CHOSEN = tag("section", tag("p", ENTRY, class_="quiet"), id="entry")
 
 
-def place(shown: Shown, quantity: str, slice_: int, numbers: Array | None, entry: Html | None, picture: str) -> Html:
-    """The whole; ``picture``: the address of the drawing of the server, for those without WebGL."""
-    formulas = tag("div", tabs(shown, quantity), grid(shown, quantity, slice_, numbers), class_="formulas")
-    panel = entry or tag("section", tag("p", ENTRY, class_="quiet"), id="entry")
+def place(shown: Shown, quantity: str, drawn: Html, picture: str) -> Html:
+    """The whole but for the entry that is chosen; ``drawn``: the entries of a quantity; ``picture``: the address of the
+    drawing of the server, for those without WebGL.
+    """
+    formulas = tag("div", tabs(shown, quantity), drawn, class_="formulas")
     left = tag("div", view(shown, picture), sliders(shown), class_="left")
-    right = tag("div", formulas, panel, _parameters(shown), class_="right", id="formulas")
+    right = tag("div", formulas, NONE_CHOSEN, _parameters(shown), class_="right", id="formulas")
     work = tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
     return html(_jumps(shown), work)
+
+
+def with_entry(work: Html, panel: Html | None) -> Html:
+    """The same with the panel of an entry."""
+    return work if panel is None else Html(work.replace(NONE_CHOSEN, panel, 1))
 
 
 def _jumps(shown: Shown) -> Html:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
 from functools import lru_cache, partial
 from typing import Annotated, Any
 
 import orjson
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import APIRouter, Depends, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -18,19 +19,21 @@ from service.operations import catalogue, modules, pictures, trees
 from service.pages.account import PageRoute
 from service.pages.bench import Bench, bench_page
 from service.pages.details import part_page, tree_page
-from service.pages.html import Html, html
+from service.pages.html import Html, html, tag
 from service.pages.layout import answer, document
 from service.pages.model.assets import scripted, with_scripts
 from service.pages.model.entry import panel
-from service.pages.model.grid import grid
+from service.pages.model.grid import grid, integrals_table
 from service.pages.model.motion import motion_page
-from service.pages.model.place import place, requests, view
-from service.pages.model.shown import Shown, read_entry
+from service.pages.model.place import place, requests, view, with_entry
+from service.pages.model.shown import INTEGRALS, Shown, read_entry
 from service.pages.versions import SHOWN, revisions_section, uses_section, versions_section, withdrawn_section
 from service.queries import aliases, uses, versions
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
+from substructures.array import Array
+from substructures.errors import InvalidInput
 from substructures.export import interface_of_model, interface_of_part
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import Part
@@ -51,18 +54,22 @@ ADVICE = "take it as code instead"
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
 
 
+@dataclass(frozen=True)
+class Asked:
+    """What of a part or tree is shown: the state, a tab of formulas, one entry."""
+
+    pose: Poses = None
+    q: Numbers = None
+    tab: Text = "metric"
+    slice_: Slice = 0
+    entry: Text = ""
+
+
+AskedOf = Annotated[Asked, Depends()]
+
+
 @router.get("/substructures/{ref}")
-async def substructure(
-    ref: str,
-    request: Request,
-    store: StoreOf,
-    viewer: ViewerOf,
-    pose: Poses = None,
-    q: Numbers = None,
-    tab: Text = "metric",
-    slice_: Slice = 0,
-    entry: Text = "",
-) -> Response:
+async def substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, asked: AskedOf) -> Response:
     """A part."""
 
     def shown_page(worker: Worker) -> Response:
@@ -74,8 +81,8 @@ async def substructure(
             gone = uses.withdrawn_in_part(connection, viewer, version.digest)
             all_of_it = versions.page_versions(connection, viewer, version.name, None, SHOWN + 1)
             used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
-        shown = of_part(version, part, pose, q)
-        work = _place(shown, lambda: modules.of_version(store, version), worker, tab, slice_, entry, bool(q))
+        shown = of_part(version, part, asked.pose, asked.q)
+        work = _place(store, shown, lambda: modules.of_version(store, version), worker, asked)
         told = html(work, requests(shown, _address(request)) if shown.coordinates else None)
         notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, shown.reference)]
         return _answer(request, part_page(version, names, part, told, notes))
@@ -84,17 +91,7 @@ async def substructure(
 
 
 @router.get("/trees/{ref}")
-async def tree(
-    ref: str,
-    request: Request,
-    store: StoreOf,
-    viewer: ViewerOf,
-    pose: Poses = None,
-    q: Numbers = None,
-    tab: Text = "metric",
-    slice_: Slice = 0,
-    entry: Text = "",
-) -> Response:
+async def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, asked: AskedOf) -> Response:
     """A revision of a tree, the latest for a bare name."""
 
     def shown_page(worker: Worker) -> Response:
@@ -104,9 +101,8 @@ async def tree(
             model = store.model(connection, found)
             gone = trees.withdrawn(connection, viewer, found)
             all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
-        shown = of_tree(found, model, pose, q)
-        subject = partial(modules.of_revision, store, found, has_parts=True)
-        work = _place(shown, subject, worker, tab, slice_, entry, bool(q))
+        shown = of_tree(found, model, asked.pose, asked.q)
+        work = _place(store, shown, partial(modules.of_revision, store, found, has_parts=True), worker, asked)
         told = html(work, requests(shown, _address(request)))
         notes = withdrawn_section(gone), revisions_section(all_of_it)
         return _answer(request, tree_page(found, model, told, notes))
@@ -172,12 +168,18 @@ async def one_entry(
 
 
 @router.get("/{kind}/{ref}/grid")
-def one_grid(
+async def one_grid(
     kind: str, ref: str, request: Request, store: StoreOf, viewer: ViewerOf, tab: Text, slice_: Slice = 0
 ) -> Response:
     """The grid of a quantity alone."""
-    shown, _ = _found(kind, ref, store, viewer, None)
-    return answer(request, document(shown.reference, grid(shown, _tab(shown, tab), slice_, None)))
+
+    def fragment(worker: Worker) -> Response:
+        """In a thread."""
+        shown, subject = _found(kind, ref, store, viewer, None)
+        drawn = _formulas(shown, subject, worker, _tab(shown, tab), slice_, None)
+        return answer(request, document(shown.reference, drawn))
+
+    return await in_time(request, fragment, ADVICE)
 
 
 def _address(request: Request) -> str:
@@ -189,6 +191,7 @@ def of_part(version: Version, part: Part, pose: str | None, q: list[str] | None)
     return Shown(
         "substructures",
         f"{version.name}@{version.version}",
+        (version.digest, version.program),
         part.joints,
         interface_of_part(part),
         part.program.outputs,
@@ -202,7 +205,14 @@ def of_tree(found: Tree, model: Model, pose: str | None, q: list[str] | None) ->
     reference, program = f"{found.name}@{found.revision}", model.program
     interface = interface_of_model(model)
     return Shown(
-        "trees", reference, model.joints, interface, program.outputs, lambda _: program, _pose(pose, q, model.joints)
+        "trees",
+        reference,
+        (found.digest, found.program),
+        model.joints,
+        interface,
+        program.outputs,
+        lambda _: program,
+        _pose(pose, q, model.joints),
     )
 
 
@@ -230,21 +240,37 @@ def _tab(shown: Shown, wanted: str) -> str:
     return wanted if wanted in shown.tabs else next(iter(shown.tabs), "")
 
 
-def _place(
+def _place(store: Store, shown: Shown, subject: Callable[[], modules.Subject], worker: Worker, asked: Asked) -> Html:
+    if not shown.coordinates:
+        return Html()
+    quantity = _tab(shown, (read_entry(asked.entry) or (asked.tab,))[0])
+    has_numbers = bool(asked.q) and quantity != INTEGRALS
+
+    def make() -> Html:
+        """All but the entry."""
+        numbers = shown.numbers(quantity) if has_numbers else None
+        drawn = _formulas(shown, subject, worker, quantity, asked.slice_, numbers)
+        return place(shown, quantity, drawn, _picture(shown))
+
+    key = (*shown.digests, shown.path, quantity, asked.slice_)
+    work = make() if shown.pose else Html(store.caches.pictures.once(key, make))
+    return with_entry(work, _panel(shown, subject, worker, asked.entry) if asked.entry else None)
+
+
+def _formulas(
     shown: Shown,
     subject: Callable[[], modules.Subject],
     worker: Worker,
-    tab: str,
+    quantity: str,
     slice_: int,
-    entry: str,
-    with_numbers: bool,
+    numbers: Array | None,
 ) -> Html:
-    if not shown.coordinates:
-        return Html()
-    quantity = _tab(shown, (read_entry(entry) or (tab,))[0])
-    numbers = shown.numbers(quantity) if with_numbers else None
-    chosen = _panel(shown, subject, worker, entry) if entry else None
-    return place(shown, quantity, slice_, numbers, chosen, _picture(shown))
+    if quantity != INTEGRALS:
+        return grid(shown, quantity, slice_, numbers)
+    try:
+        return integrals_table(shown, orjson.loads(modules.integrals(subject(), worker)))
+    except InvalidInput as error:
+        return tag("p", str(error), id="grid", class_="warn")
 
 
 def _picture(shown: Shown) -> str:

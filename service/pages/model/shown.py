@@ -18,7 +18,16 @@ from substructures.quantities.quantity import outputs_of
 
 #: tabs of the formulas, and what they show where it is there
 TABS = ("metric", "christoffel", "forces", "gravity", "position", "rotation")
-LETTERS = {"metric": "M", "christoffel": "Γ", "forces": "Q", "gravity": "Q", "position": "r", "rotation": "R"}
+INTEGRALS = "first_integrals"  # of trees, the last tab
+LETTERS = {
+    "metric": "M",
+    "christoffel": "Γ",
+    "forces": "Q",
+    "gravity": "Q",
+    "position": "r",
+    "rotation": "R",
+    INTEGRALS: "I",
+}
 TITLES = {
     "metric": "M",
     "christoffel": "Γ",
@@ -26,16 +35,19 @@ TITLES = {
     "gravity": "Q of gravity",
     "position": "positions",
     "rotation": "rotations",
+    INTEGRALS: "first integrals",
 }
 
 
 @dataclass(frozen=True)
 class Shown:
-    """``kind``: ``trees`` or ``substructures``; ``outputs``: of its program by name; ``program``: makes the one that is
-    evaluated; ``pose``: of ``?pose=``, empty where none was given."""
+    """``kind``: ``trees`` or ``substructures``; ``digests``: of what it is and of its formulas; ``outputs``: of its
+    program by name; ``program``: makes the one that is evaluated; ``pose``: of ``?pose=``, empty where none was given.
+    """
 
     kind: str
     reference: str
+    digests: tuple[str, str]
     joints: str
     interface: Interface
     outputs: Mapping[str, Output]
@@ -56,7 +68,8 @@ class Shown:
     def tabs(self) -> tuple[str, ...]:
         """The quantities that there are."""
         found = [name for name in TABS if all(output in self.outputs for output in outputs_of(name))]
-        return tuple(name for name in found if name != "gravity" or "forces" not in found)
+        found = [name for name in found if name != "gravity" or "forces" not in found]
+        return (*found, *([INTEGRALS] if self.kind == "trees" else []))
 
     @cached_property
     def values(self) -> dict[str, float]:
@@ -72,8 +85,12 @@ class Shown:
 
     def numbers(self, output: str) -> Array | None:
         """An array in the pose, None where a parameter has no value."""
+        return self.evaluated(self.program([output]), output)
+
+    def evaluated(self, program: Program, output: str) -> Array | None:
+        """The same of another program."""
         try:
-            return interpret(self.program([output]), self.values, [output])[output]
+            return interpret(program, self.values, [output])[output]
         except MissingValue:
             return None
 
