@@ -33,6 +33,8 @@ PAGES = (
     "/trees/shown@1/motion",
     "/jobs",
     "/docs/explanation/notation",
+    "/docs/interface",
+    f"/trees/shown@1?pose={','.join(['0.123456'] * 34)}",
 )
 READY = "document.getElementById('place').dataset.{}"
 #: milliseconds from an input event to the frame that has drawn it
@@ -85,8 +87,17 @@ def pressed(page: Any) -> list[float]:
     return [8.0] * (MOVES - len(found)) + found
 
 
-def played(page: Any, address: str) -> list[float]:
-    """Milliseconds of the script in frames of a motion of a second."""
+#: frames that are drawn in two seconds
+COUNTED = """() => new Promise((done) => {
+    const start = performance.now();
+    let frames = 0;
+    const count = (now) => (now < start + 2000 ? requestAnimationFrame(count, frames++) : done(frames));
+    requestAnimationFrame(count);
+})"""
+
+
+def played(page: Any, address: str) -> tuple[list[float], float]:
+    """Milliseconds of the script in frames of a motion of a second, again and again, and frames a second."""
     page.goto(address)
     until(page, READY.format("ready"))
     page.fill("#span", "1")
@@ -96,7 +107,7 @@ def played(page: Any, address: str) -> list[float]:
     for _ in range(FRAMES):
         page.wait_for_timeout(30)
         found.append(float(page.evaluate(READY.format("milliseconds"))))
-    return found
+    return found, float(page.evaluate(COUNTED)) / 2
 
 
 def works(client: Client) -> None:
@@ -107,7 +118,7 @@ def works(client: Client) -> None:
         for _ in range(ASKED):
             client.request("GET", path)
         used = (cpu_seconds(client) - before) / ASKED * 1e3
-        print(f"{path:40} {used:6.1f} ms of CPU, {len(asked.content):,} bytes")
+        print(f"{path[:40]:40} {used:6.1f} ms of CPU, {len(asked.content):,} bytes")
 
 
 def main(name: str) -> None:
@@ -132,8 +143,9 @@ def main(name: str) -> None:
         times = pressed(page)
         print(f"key to screen: median {median(times):.0f} ms, p95 {quantiles(times, n=20)[-1]:.0f} ms, steps of 8 ms")
         print(f"script of a frame: {script[0]:.2f} ms (grid, panel, view; software rendering comes on top)")
-        times = played(page, f"{address}/motion")
+        times, rate = played(page, f"{address}/motion")
         print(f"script of a frame of a motion: median {median(times):.2f} ms (pose, plots, values at the cursor, view)")
+        print(f"frames of a motion: {rate:.0f} a second")
         works(client)
         browser.close()
 

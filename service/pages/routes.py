@@ -9,6 +9,7 @@ from fastapi import APIRouter, Query, Request, Response
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.jobs.worker import Worker
+from service.messages.answers import Answer
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
 from service.operations import differences, searches
@@ -183,7 +184,8 @@ def interface(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     part = f"{some[0].name}@{some[0].version}" if some else ""
     job = latest[0].id if latest else ""
     stored = Stored(newest[0] if newest else None, part, job, _address(request))
-    made = scripted(interface_page(request.app.openapi(), stored), "send.js")
+    page = lambda: Answer(200, interface_page(request.app.openapi(), stored), {})  # noqa: E731
+    made = scripted(store.caches.printed.once(stored, page).body, "send.js")
     return with_scripts(answer(request, made), compiles=False)
 
 

@@ -109,10 +109,10 @@ def _drawn(shown: Table, x: str, y: str) -> Html:
     every = np.unique(np.linspace(0, shown.count - 1, min(POINTS, shown.count)).astype(int))
     best = front(objectives(shown.columns, goals)) if goals else np.zeros(0, dtype=int)
     horizontal, vertical = _scaled(columns[x], WIDTH), _scaled(columns[y], HEIGHT)
+    pairs = list(zip((EDGE + horizontal).tolist(), (HEIGHT - EDGE - vertical).tolist(), strict=True))
     points = [
-        tag("circle", cx=f"{EDGE + horizontal[k]:.1f}", cy=f"{HEIGHT - EDGE - vertical[k]:.1f}", r="2", class_=kind)
+        tag("path", d="".join(f"M{pairs[k][0]:.1f} {pairs[k][1]:.1f}h0" for k in places), class_=kind)
         for kind, places in (("point", every), ("best", best[:POINTS]))
-        for k in places
     ]
     return tag(
         "svg",

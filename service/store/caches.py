@@ -26,7 +26,7 @@ class Caches:
     """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
     model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
     digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
-    and first screens of pages by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers
+    and formulas of pages by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers
     compute with, ``facets`` of searches by the last act that was noted.
     """
 

@@ -34,7 +34,7 @@ KNOWN = {
         "noscript",
         "svg",
         "rect",
-        "circle",
+        "path",
         "text",
         "link",
         "details",

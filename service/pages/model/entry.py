@@ -9,13 +9,14 @@ import orjson
 
 from service.pages.html import Content, Html, html, joined, link, tag
 from service.pages.model.shown import LETTERS, Shown
-from substructures.expr.program import read_program
 
 LANGUAGES = {"latex": "LaTeX", "python": "Python", "c": "C", "matlab": "MATLAB", "json": "JSON", "text": "text"}
 
 
-def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any]) -> Html:
-    """``told``: of :func:`service.models.entries.entry`; ``origins``: of :func:`substructures.quantities.origins`."""
+def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any], here: float | None) -> Html:
+    """``told``: of :func:`service.models.entries.entry`; ``origins``: of :func:`substructures.quantities.origins`;
+    ``here``: the value in the pose, None where a parameter has none.
+    """
     quantity, index = told["quantity"], tuple(told["index"])
     names = _names(shown, told)
     number = tag("sub", " ".join(str(i + 1) for i in index))
@@ -25,7 +26,7 @@ def panel(shown: Shown, told: Mapping[str, Any], origins: Mapping[str, Any]) -> 
     return tag(
         "section",
         title,
-        _value(shown, told),
+        _value(shown, told, here),
         tag("p", f"Because {told['integral']['reason']}.") if "integral" in told else None,
         _formula(told),
         _terms(told),
@@ -47,19 +48,8 @@ def _names(shown: Shown, told: Mapping[str, Any]) -> list[str]:
     return [labels[i] for labels, i in zip(shown.labels(told["quantity"]), told["index"], strict=True)]
 
 
-def _here(shown: Shown, told: Mapping[str, Any]) -> tuple[float | None, str]:
-    """The value in the pose, None where a parameter has none, and its unit."""
-    if "integral" in told:
-        program = read_program(orjson.loads(told["texts"]["json"]))
-        found, unit = shown.evaluated(program, told["integral"]["name"]), told["integral"]["unit"]
-        return None if found is None else float(found), unit
-    quantity, index = told["quantity"], tuple(told["index"])
-    numbers = shown.numbers(quantity)
-    return None if numbers is None else float(numbers[index]), shown.unit(quantity, index)
-
-
-def _value(shown: Shown, told: Mapping[str, Any]) -> Html:
-    here, unit = _here(shown, told)
+def _value(shown: Shown, told: Mapping[str, Any], here: float | None) -> Html:
+    unit = told["integral"]["unit"] if "integral" in told else shown.unit(told["quantity"], told["index"])
     text = "a parameter has no value" if here is None else repr(here)
     return tag(
         "p",

@@ -12,6 +12,8 @@ from substructures.array import Array
 
 #: from this many coordinates on cells are too small for numbers
 SMALL = 12
+#: where the pose goes in addresses of entries; no text holds it, since it would be taken out
+POSE = "\0"
 ZERO = "zero in every pose; choose it to read why"
 
 
@@ -64,11 +66,16 @@ def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Htm
     )
 
 
+def posed(drawn: str, pose: Sequence[float]) -> Html:
+    """What was drawn for any pose, with links to entries in one that was sent as a form; scripts keep their own."""
+    return Html(drawn.replace(POSE, html("".join(f"&q={x!r}" for x in pose))))
+
+
 def integrals_table(shown: Shown, told: Sequence[Mapping[str, Any]]) -> Html:
     """First integrals by name, with why they are constant; one that is chosen is shown as an entry."""
     rows = []
     for k, each in enumerate(told):
-        where = f"{shown.path}?entry={INTEGRALS},{k}{_pose(shown)}"
+        where = Html(f"{html(shown.path)}?entry={INTEGRALS},{k}{POSE}")
         rows.append((tag("a", each["name"], href=where, data_entry=f"{INTEGRALS},{k}"), each["unit"], _reason(each)))
     columns = ("first integral", "unit", "because")
     return tag("div", table(columns, rows) if rows else tag("p", "None was found."), id="grid", class_="integrals")
@@ -105,7 +112,7 @@ def _cells(shown: Shown, quantity: str) -> Callable[[tuple[int, ...], bool, int,
     """What writes a cell: of index, whether it is there, place in the array and value. There may be thousands, and but
     for what is escaped here all of them is numbers.
     """
-    before, after = html(f"{shown.path}?entry={quantity},"), html(_pose(shown))
+    before = html(f"{shown.path}?entry={quantity},")
     entry, letter = html(f"{quantity},"), html(LETTERS[quantity])
 
     def write(index: tuple[int, ...], is_there: bool, at: int, value: float | None) -> str:
@@ -114,10 +121,6 @@ def _cells(shown: Shown, quantity: str) -> Callable[[tuple[int, ...], bool, int,
         text = "" if value is None or not is_there else f"{value:.3g}"
         start = "<td><a" if is_there else f'<td class="zero"><a title="{ZERO}"'
         data = f'data-at="{at}" data-entry="{entry}{name}" aria-label="{letter} {places}"'
-        return f'{start} href="{before}{name}{after}" {data}>{text}</a></td>'
+        return f'{start} href="{before}{name}{POSE}" {data}>{text}</a></td>'
 
     return write
-
-
-def _pose(shown: Shown) -> str:
-    return f"&pose={','.join(map(repr, shown.pose))}" if shown.pose else ""

@@ -13,20 +13,22 @@ ENTRY = "Choose an entry to read its formula, its value here, and the bodies tha
 NONE_CHOSEN = tag("section", tag("p", ENTRY, class_="quiet"), id="entry")
 
 
-def place(shown: Shown, quantity: str, drawn: Html, picture: str) -> Html:
-    """The whole but for the entry that is chosen; ``drawn``: the entries of a quantity; ``picture``: the address of the
-    drawing of the server, for those without WebGL.
+def formulas(shown: Shown, quantity: str, drawn: Html) -> Html:
+    """The right side, the same in every pose: ``drawn``, the entries of a quantity, room for one that is chosen,
+    parameters.
     """
-    formulas = tag("div", tabs(shown, quantity), drawn, class_="formulas")
+    entries = tag("div", tabs(shown, quantity), drawn, class_="formulas")
+    return tag("div", entries, NONE_CHOSEN, _parameters(shown), class_="right", id="formulas")
+
+
+def place(shown: Shown, right: str, entry: Html | None, picture: str) -> Html:
+    """The whole; ``right``: of :func:`formulas`, in this pose; ``picture``: the address of the drawing of the server,
+    for those without WebGL.
+    """
+    right = Html(right if entry is None else right.replace(NONE_CHOSEN, entry, 1))
     left = tag("div", view(shown, picture), sliders(shown), class_="left")
-    right = tag("div", formulas, NONE_CHOSEN, _parameters(shown), class_="right", id="formulas")
     work = tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
     return html(_jumps(shown), work)
-
-
-def with_entry(work: Html, panel: Html | None) -> Html:
-    """The same with the panel of an entry."""
-    return work if panel is None else Html(work.replace(NONE_CHOSEN, panel, 1))
 
 
 def _jumps(shown: Shown) -> Html:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
-from functools import lru_cache, partial
-from typing import Annotated, Any
+from collections.abc import Callable
+from functools import partial
+from typing import Annotated
 
-import orjson
 from fastapi import APIRouter, Depends, Query, Request, Response
 
 from service.http.acting import in_time
@@ -19,50 +17,43 @@ from service.operations import catalogue, modules, pictures, trees
 from service.pages.account import PageRoute
 from service.pages.bench import Bench, bench_page
 from service.pages.details import part_page, tree_page
-from service.pages.html import Html, html, tag
+from service.pages.html import html
 from service.pages.layout import answer, document
 from service.pages.model.assets import scripted, with_scripts
-from service.pages.model.entry import panel
-from service.pages.model.grid import grid, integrals_table
+from service.pages.model.grid import posed
 from service.pages.model.motion import motion_page
-from service.pages.model.place import place, requests, view, with_entry
-from service.pages.model.shown import INTEGRALS, Shown, read_entry
+from service.pages.model.place import requests, view
+from service.pages.model.screen import (
+    Asked,
+    Poses,
+    Slice,
+    Text,
+    chosen_tab,
+    entries_of,
+    entry_of,
+    first_screen,
+    picture_of,
+)
+from service.pages.model.shown import Shown
 from service.pages.versions import SHOWN, revisions_section, uses_section, versions_section, withdrawn_section
 from service.queries import aliases, uses, versions
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
-from substructures.array import Array
-from substructures.errors import InvalidInput
 from substructures.export import interface_of_model, interface_of_part
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import Part
 from substructures.tree.model import Model
 
-Text = Annotated[str, Query(max_length=50_000)]
-Poses = Annotated[str | None, Query(max_length=50_000)]
-Numbers = Annotated[list[str] | None, Query(alias="q", max_length=2_000)]
 Time = Annotated[str, Query(alias="t", max_length=40)]
 Fields = Annotated[str, Query(alias="run", max_length=50_000)]
 #: revisions that a newer one is like after undo, and as far as can be done again; read by scripts
 Like = Annotated[int, Query(alias="of", ge=0)]
 Newest = Annotated[int, Query(alias="top", ge=0)]
-Slice = Annotated[int, Query(alias="slice", ge=0, le=100_000)]
 Name = Annotated[str, Query(max_length=200)]
 ADVICE = "take it as code instead"
 
 router = APIRouter(include_in_schema=False, dependencies=[needs("read")], route_class=PageRoute)
-
-
-@dataclass(frozen=True)
-class Asked:
-    """What of a part or tree is shown: the state, a tab of formulas, one entry."""
-
-    pose: Poses = None
-    q: Numbers = None
-    tab: Text = "metric"
-    slice_: Slice = 0
-    entry: Text = ""
 
 
 AskedOf = Annotated[Asked, Depends()]
@@ -82,7 +73,7 @@ async def substructure(ref: str, request: Request, store: StoreOf, viewer: Viewe
             all_of_it = versions.page_versions(connection, viewer, version.name, None, SHOWN + 1)
             used = uses.page(connection, viewer, version.name, version.version, None, SHOWN + 1)
         shown = of_part(version, part, asked.pose, asked.q)
-        work = _place(store, shown, lambda: modules.of_version(store, version), worker, asked)
+        work = first_screen(store, shown, lambda: modules.of_version(store, version), worker, asked)
         told = html(work, requests(shown, _address(request)) if shown.coordinates else None)
         notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, shown.reference)]
         return _answer(request, part_page(version, names, part, told, notes))
@@ -102,7 +93,7 @@ async def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, ask
             gone = trees.withdrawn(connection, viewer, found)
             all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
         shown = of_tree(found, model, asked.pose, asked.q)
-        work = _place(store, shown, partial(modules.of_revision, store, found, has_parts=True), worker, asked)
+        work = first_screen(store, shown, partial(modules.of_revision, store, found, has_parts=True), worker, asked)
         told = html(work, requests(shown, _address(request)))
         notes = withdrawn_section(gone), revisions_section(all_of_it)
         return _answer(request, tree_page(found, model, told, notes))
@@ -125,7 +116,7 @@ def motion(
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)
     shown = of_tree(found, model, pose, None)
-    return _answer(request, motion_page(shown, _picture(shown)), "motion/motion.js")
+    return _answer(request, motion_page(shown, picture_of(shown)), "motion/motion.js")
 
 
 @router.get("/trees/{ref}/edit")
@@ -149,7 +140,7 @@ def workbench(
     for name in model.frames:
         frames.setdefault(name.partition(".")[0], []).append(name.partition(".")[2])
     shown = of_tree(found, model, None, None)
-    made = bench_page(Bench(found, before, latest, frames), view(shown, _picture(shown)), substructure)
+    made = bench_page(Bench(found, before, latest, frames), view(shown, picture_of(shown)), substructure)
     return _answer(request, made, "workbench.js")
 
 
@@ -162,7 +153,7 @@ async def one_entry(
     def fragment(worker: Worker) -> Response:
         """In a thread."""
         shown, subject = _found(kind, ref, store, viewer, pose)
-        return answer(request, document(shown.reference, _panel(shown, subject, worker, entry)))
+        return answer(request, document(shown.reference, entry_of(shown, subject, worker, entry)))
 
     return await in_time(request, fragment, ADVICE)
 
@@ -176,8 +167,8 @@ async def one_grid(
     def fragment(worker: Worker) -> Response:
         """In a thread."""
         shown, subject = _found(kind, ref, store, viewer, None)
-        drawn = _formulas(shown, subject, worker, _tab(shown, tab), slice_, None)
-        return answer(request, document(shown.reference, drawn))
+        drawn = entries_of(shown, subject, worker, chosen_tab(shown, tab), slice_, None)
+        return answer(request, document(shown.reference, posed(drawn, ())))
 
     return await in_time(request, fragment, ADVICE)
 
@@ -234,65 +225,6 @@ def _found(
 
 def _pose(pose: str | None, q: list[str] | None, joints: str) -> tuple[float, ...]:
     return pictures.read_pose(",".join(q) if q else pose, joints) or ()
-
-
-def _tab(shown: Shown, wanted: str) -> str:
-    return wanted if wanted in shown.tabs else next(iter(shown.tabs), "")
-
-
-def _place(store: Store, shown: Shown, subject: Callable[[], modules.Subject], worker: Worker, asked: Asked) -> Html:
-    if not shown.coordinates:
-        return Html()
-    quantity = _tab(shown, (read_entry(asked.entry) or (asked.tab,))[0])
-    has_numbers = bool(asked.q) and quantity != INTEGRALS
-
-    def make() -> Html:
-        """All but the entry."""
-        numbers = shown.numbers(quantity) if has_numbers else None
-        drawn = _formulas(shown, subject, worker, quantity, asked.slice_, numbers)
-        return place(shown, quantity, drawn, _picture(shown))
-
-    key = (*shown.digests, shown.path, quantity, asked.slice_)
-    work = make() if shown.pose else Html(store.caches.pictures.once(key, make))
-    return with_entry(work, _panel(shown, subject, worker, asked.entry) if asked.entry else None)
-
-
-def _formulas(
-    shown: Shown,
-    subject: Callable[[], modules.Subject],
-    worker: Worker,
-    quantity: str,
-    slice_: int,
-    numbers: Array | None,
-) -> Html:
-    if quantity != INTEGRALS:
-        return grid(shown, quantity, slice_, numbers)
-    try:
-        return integrals_table(shown, orjson.loads(modules.integrals(subject(), worker)))
-    except InvalidInput as error:
-        return tag("p", str(error), id="grid", class_="warn")
-
-
-def _picture(shown: Shown) -> str:
-    drawn = f"?q={','.join(map(repr, shown.pose))}" if shown.pose else ""
-    return f"/v1/{shown.kind}/{shown.reference}/picture{drawn}"
-
-
-def _panel(shown: Shown, subject: Callable[[], modules.Subject], worker: Worker, entry: str) -> Html:
-    """Raises Refused 404 for what is no entry, TooLarge, TimeoutError."""
-    found = read_entry(entry)
-    if found is None or found[0] not in shown.tabs:
-        raise not_found(f"there is no entry '{entry[:80]}'; write for example metric,0,1", "unknown-formula")
-    of = subject()
-    told = orjson.loads(modules.entry(of, worker, *found))
-    return panel(shown, told, _read(modules.origins(of, worker)))
-
-
-@lru_cache(maxsize=8)
-def _read(told: bytes) -> Mapping[str, Any]:
-    """The document, which is large and the same for every entry of a model."""
-    found: Mapping[str, Any] = orjson.loads(told)
-    return found
 
 
 def _answer(request: Request, page: bytes, script: str = "main.js") -> Response:
