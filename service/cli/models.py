@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from service.cli.documents import read_document
 from service.cli.output import tell_warnings
-from substructures.interchange.content import is_foreign
+from substructures.interchange.files.content import is_foreign
 
 if TYPE_CHECKING:
     from substructures.interchange.importing import Imported

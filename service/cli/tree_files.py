@@ -13,7 +13,7 @@ from service.settings import Limits
 from substructures import catalogue
 from substructures.documents import DOCUMENTS
 from substructures.errors import InvalidDocument
-from substructures.interchange.content import is_foreign
+from substructures.interchange.files.content import is_foreign
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import BY_VALUE, TOLD

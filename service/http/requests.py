@@ -26,6 +26,7 @@ from substructures.errors import meant
 from substructures.formats import arrays, arrow
 
 SUBMISSIONS = "/v1/jobs"  # longer bodies
+IMPORTS = "/v1/imports"  # zips of files with meshes
 SESSION = "substructures_session"  # cookie
 
 
@@ -122,7 +123,10 @@ ViewerOf = Annotated[Viewer, Depends(viewer)]
 async def raw_body(request: Request) -> bytes:
     """The request body, refused with 413 as soon as it exceeds its limit."""
     limits = store_of(request).settings.limits
-    limit = limits.job_bytes if request.url.path == SUBMISSIONS else limits.json_bytes
+    by_path = {SUBMISSIONS: limits.job_bytes}
+    if declared_type(request) == bundles.MEDIA_TYPE:
+        by_path[IMPORTS] = limits.binary_bytes
+    limit = by_path.get(request.url.path, limits.json_bytes)
     return b"".join([chunk async for chunk in _limited(request, limit)])
 
 

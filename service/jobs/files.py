@@ -27,11 +27,12 @@ class Wanted:
     cut: Sequence[str] = ()
 
 
-def read(worker: Worker, data: bytes, wanted: Wanted) -> Mapping[str, Any]:
-    """What is in a file: ``definition`` or ``tree``, and the report. Raises InvalidDocument, TimeoutError."""
+def read(worker: Worker, data: bytes, wanted: Wanted, unpacked: int = 0) -> Mapping[str, Any]:
+    """What is in a file, or in a zip of at most so many bytes ``unpacked``: ``definition`` or ``tree``, and the report.
+    Raises InvalidDocument, Refused 422, TimeoutError."""
     digest, item = digest_of(data), asdict(wanted.options) | {"cut": list(wanted.cut)}
     item |= {"kind": wanted.kind, "name": wanted.name, "called": wanted.file, "license": wanted.license}
-    return worker("import", {"file": digest, **item}, {digest: data}).summary
+    return worker("import", {"file": digest, "unpacked": unpacked, **item}, {digest: data}).summary
 
 
 def document_of(worker: Worker, given: Mapping[str, Any]) -> Mapping[str, Any]:

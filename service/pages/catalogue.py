@@ -119,6 +119,9 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
     ]
 
 
+KINDS = ".urdf,.xml,.mjcf,.sdf,.csv,.json,.par,.zip"
+
+
 def _bring(address: str, may_write: bool) -> list[Html]:
     """A place for files, or for those whose key only reads, the command that sends one with another key."""
     kinds = "URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO"
@@ -126,10 +129,11 @@ def _bring(address: str, may_write: bool) -> list[Html]:
     if not may_write:
         command = f'substructures submit FILE --server {address} --key "$SUBSTRUCTURES_KEY"'
         return [tag("h2", "Bring a robot"), tag("p", label, "."), tag("pre", tag("code", command), tabindex="0")]
-    chosen = tag("input", id="file", type="file", accept=".urdf,.xml,.mjcf,.sdf,.csv,.json,.par", aria_label=label)
+    chosen = tag("input", id="file", type="file", accept=KINDS, aria_label=label)
     asked = "Links that begin parts of their own, separated by commas"
     cut = tag("input", id="cut", placeholder="cut at links, such as left_shoulder", aria_label=asked, title=asked)
-    told = f"{label}; nothing is stored before you say so. Choose it, or drop it anywhere on this page. "
+    told = f"{label}; with its meshes as a zip. Nothing is stored before you say so. "
+    told += "Choose it, or drop it anywhere on this page. "
     place = tag("section", id="import", aria_live="polite", aria_label="What was read")
     return [tag("h2", "Bring a robot"), tag("p", told, chosen, " ", cut), place]
 

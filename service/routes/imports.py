@@ -8,6 +8,7 @@ from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.content import bundles
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs, received
@@ -27,7 +28,10 @@ from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/imports", tags=["imports"])
 #: media types that no HTML form of another site can send
-MEDIA_TYPES = ("application/xml", "text/xml", "application/json", "text/csv", "application/octet-stream")
+MEDIA_TYPES = (
+    *("application/xml", "text/xml", "application/json", "text/csv", "application/octet-stream"),
+    bundles.MEDIA_TYPE,
+)
 MADE: dict[int | str, dict[str, Any]] = {201: {"description": "It was stored", "model": ImportView}, **ACCEPTED}
 BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {m: binary() for m in MEDIA_TYPES}}}
 
@@ -41,7 +45,9 @@ def read_file(
     act: ActOf,
     kind: Annotated[str | None, Query(description=f"what the file has to be: {', '.join(KINDS)}")] = None,
     name: Annotated[str | None, Query(max_length=64, description="name of the part")] = None,
-    file: Annotated[str, Query(max_length=200, description="name of the file, kept as its source")] = "",
+    file: Annotated[
+        str, Query(max_length=200, description="name of the file, kept as its source; in a zip the robot file")
+    ] = "",
     license: Annotated[str, Query(max_length=200, description="licence of the file")] = "",  # noqa: A002 -- its name
     parameters: Parameters = "inertia",
     fixed: Fixed = "ports",
@@ -53,7 +59,8 @@ def read_file(
     stored: Annotated[bool, Query(alias="store", description="derive, verify and store what was read")] = False,
     visibility: Annotated[Visibility | None, Query(description=f"of what is stored: {VISIBILITY}")] = None,
 ) -> Response:
-    """Read a robot file as a definition. 200 with the report; with `store=true` 201 and what was stored."""
+    """Read a robot file as a definition; in a zip with the files that it includes and takes meshes from. 200 with the
+    report; with `store=true` 201 and what was stored."""
     if declared_type(request) not in MEDIA_TYPES:
         accepted = ", ".join(MEDIA_TYPES)
         detail = f"send one of {accepted}; {received(request)} was received"
@@ -63,13 +70,13 @@ def read_file(
     if not stored:
         return act.compute(lambda: json_answer(imports.answer_of(_read(store, act, body, wanted, preview))))
     act.require("write")
-    found = act.first(lambda: read(act.worker, body, wanted))
+    found = act.first(lambda: read(act.worker, body, wanted, store.settings.limits.binary_bytes))
     entry = PartEntry(visibility=visibility)
     return _tree(store, act, found, entry) if "tree" in found else _part(store, act, found, entry)
 
 
 def _read(store: StoreOf, act: ActOf, body: bytes, wanted: Wanted, preview: bool) -> Mapping[str, Any]:
-    found = read(act.worker, body, wanted)
+    found = read(act.worker, body, wanted, store.settings.limits.binary_bytes)
     return imports.with_preview(store, act.worker, found) if preview else found
 
 

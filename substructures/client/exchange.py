@@ -73,14 +73,15 @@ class ExchangeCaller(JobCaller):
         return self.told("GET", f"/v1/{kind}/{step(ref)}/scene")
 
     def import_file(self, content: bytes | Path, **options: Any) -> Answer:
-        """A robot file as a definition, or as a tree, with a report; ``options``: ``kind, name, file, license,
-        parameters, fixed, base, cut, preview, store``.
+        """A robot file, or a zip of one with its meshes, as a definition or a tree, with a report; ``options``: ``kind,
+        name, file, license, parameters, fixed, base, cut, preview, store``.
         """
         if isinstance(content, Path):
             options, content = {"file": content.name, **options}, content.read_bytes()
         links = options.get("cut")
         options |= {"cut": ",".join(links)} if isinstance(links, list | tuple) else {}
-        answer = self.request("POST", "/v1/imports" + query(options), content=content, headers=FILE)
+        headers = ZIP if content.startswith(b"PK\x03\x04") else FILE
+        answer = self.request("POST", "/v1/imports" + query(options), content=content, headers=headers)
         if answer.status_code != 202:
             return Answer(answer.json())
         made = self._made_by_job(answer.json()["id"])

@@ -14,6 +14,7 @@ report              remarks with their lines; what is lost is kept in definition
 cut                 a robot that is cut at named links as several definitions and a tree
 equivalence         whether two models are the same; ``culprits``: which body and parameter is not
 symbolic            SymPy in and out: expressions, equations, systems of bodies and joints
+files               what bytes are, what lies about a robot file in a folder or a zip, masses of meshes
 xml, numbers        elements with their lines and exact numbers; ``rotations`` and inertias as doubles
 ==================  ================================================================================================
 """

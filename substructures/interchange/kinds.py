@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
-from substructures.interchange.content import is_par, is_table, is_xml
+from substructures.interchange.files.content import is_par, is_table, is_xml
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Robot, tell_of_missing_masses

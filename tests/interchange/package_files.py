@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator
 from importlib.metadata import PackageNotFoundError, files
 from pathlib import Path
@@ -33,17 +32,23 @@ def _is_whole(path: Path) -> bool:
     return "<mujoco" in text and "<body" in text
 
 
+class Beside(dict[str, bytes]):
+    """The files that lie about a file, read when they are asked for."""
+
+    def __init__(self, path: Path) -> None:
+        super().__init__()
+        self._folder = path.parent
+
+    def __contains__(self, name: object) -> bool:
+        return (self._folder / str(name)).is_file()
+
+    def __getitem__(self, name: str) -> bytes:
+        return (self._folder / name).read_bytes()
+
+
 def included(path: Path) -> dict[str, bytes]:
-    """The contents of the files that a file includes, by their names in it."""
-    found: dict[str, bytes] = {}
-    waiting = [path]
-    while waiting:
-        for name in re.findall(r'<include file="([^"]+)"', waiting.pop().read_text(errors="replace")):
-            file = path.parent / name
-            if name not in found and file.exists():
-                found[name] = file.read_bytes()
-                waiting.append(file)
-    return found
+    """The contents of the files that a file includes or takes meshes from, by their names in it."""
+    return Beside(path)
 
 
 def _files(package: str, ending: str) -> Iterator[tuple[str, Path]]:

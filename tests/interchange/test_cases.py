@@ -213,11 +213,16 @@ def test_misspelt_attributes_are_told_with_what_was_meant() -> None:
     assert "'dampnig' is not known here and ignored; did you mean 'damping'?" in message
 
 
-def test_a_mesh_on_a_body_that_stands_still_is_told_and_kept_from_moving() -> None:
-    name = "35-mesh-on-fixed-body.xml"
-    assert any("the mass of a mesh needs its file" in message for message in warnings_of(read(name)))
+def test_a_mesh_on_a_body_that_stands_still_has_a_mass_or_is_told_and_kept_from_moving() -> None:
+    data = (CASES / "35-mesh-on-fixed-body.xml").read_bytes()
+    assert warnings_of(import_file(data)) == []
+    free = import_file(data, Options(base="floating")).definition
+    assert float(free["parameters"]["m_base_2"]["value"]) == pytest.approx(1000 / 6)  # a corner of a cube
+    elsewhere = data.replace(b'vertex="0 0 0  1 0 0  0 1 0  0 0 1"', b'file="plinth.stl"')
+    assert elsewhere != data
+    assert any("the mass of a mesh needs its file" in message for message in warnings_of(import_file(elsewhere)))
     with pytest.raises(InvalidDocument, match="line 4: <geom>: the mass of a mesh needs its file"):
-        import_file((CASES / name).read_bytes(), Options(base="floating"))
-    scaled = (CASES / name).read_bytes().replace(b"<asset>", b'<compiler settotalmass="3"/><asset>')
+        import_file(elsewhere, Options(base="floating"))
+    scaled = elsewhere.replace(b"<asset>", b'<compiler settotalmass="3"/><asset>')
     with pytest.raises(InvalidDocument, match="scaled by settotalmass"):
         import_file(scaled)

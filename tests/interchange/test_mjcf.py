@@ -94,13 +94,22 @@ def test_free_joints_have_armature_and_damping(tmp_path: Path) -> None:
     assert compared("free", path, MujocoTwin).error < 1e-10
 
 
+MESH = '<asset><mesh name="m" file="m.stl"/></asset>'
+
+
 def one(inside: str, head: str = "") -> bytes:
     return f"<mujoco>\n{head}<worldbody>\n<body name='b'>\n{inside}\n</body></worldbody></mujoco>".encode()
 
 
 BAD = {
-    "mesh": (one('<joint/><geom name="g" type="mesh" mesh="m"/>'), 'line 4: <geom name="g">: the mass of a mesh needs'),
-    "path": (one('<joint/><geom type="mesh" mesh="../../etc/passwd"/>'), "the mass of a mesh needs its file"),
+    "mesh": (one('<joint/><geom name="g" type="mesh" mesh="m"/>', MESH),
+             'line 4: <geom name="g">: the mass of a mesh needs its file: \'m.stl\' is not given'),
+    "no mesh": (one('<joint/><geom type="mesh" mesh="../etc/passwd"/>', MESH), "there is no mesh '../etc/passwd'; .*m"),
+    "fitted": (one('<joint/><geom type="box" mesh="m"/>', MESH), "a box fitted to a mesh is not read: give its size"),
+    "inertia": (one('<joint/><geom type="mesh" mesh="m"/>', MESH.replace("/>", ' inertia="all"/>', 1)),
+                "inertia='all' is none of legacy, exact, convex, shell"),
+    "flat": (one('<joint/><geom type="mesh" mesh="m"/>', MESH.replace('file="m.stl"', 'vertex="0 0 0 1 0 0 0 1 0"')),
+             "this mesh has no mass: its points have no convex hull"),
     "include": (b'<mujoco>\n<include file="/etc/passwd"/></mujoco>', "line 2: <include>: the file '/etc/passwd'"),
     "include in a body": (one('<include file="x.xml"/>'), "line 4: <include>: the file 'x.xml' is not followed"),
     "global": (one("<geom size='1'/>", '<compiler coordinate="global"/>'), "no longer in MJCF"),

@@ -9,6 +9,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.cli.main import main
+from tests.interchange.test_meshes import ROBOT as ROBOT_WITH_MESHES
+from tests.interchange.test_meshes import zipped
 
 from .conftest import PENDULUM
 
@@ -32,6 +34,7 @@ LONG = f"""<robot name="long"><link name="ground"/>
 <joint name="wrist" type="continuous"><parent link="forearm"/><child link="hand"/><origin xyz="0 0 .3"/></joint>
 </robot>"""
 XML = {"Content-Type": "application/xml"}
+ZIP = {"Content-Type": "application/zip"}
 
 
 def test_a_file_is_read_and_nothing_is_stored(client: TestClient) -> None:
@@ -309,3 +312,32 @@ def test_what_is_stored_may_be_private(client: TestClient, cut: str) -> None:
 def test_a_visibility_that_is_none_is_refused(client: TestClient) -> None:
     answer = client.post("/v1/imports?store=true&visibility=hidden", content=ARM, headers=XML)
     assert (answer.status_code, answer.json()["errors"][0]["pointer"]) == (422, "/query/visibility")
+
+
+def test_a_zip_brings_the_meshes_along(client: TestClient) -> None:
+    answer = client.post("/v1/imports?preview=true&file=bot.zip", content=zipped(ROBOT_WITH_MESHES), headers=ZIP)
+    assert answer.status_code == 200, answer.text
+    found = answer.json()
+    assert found["definition"]["source"].startswith("MJCF file bot/robot.xml, sha256:")
+    assert found["preview"]["mass"] == pytest.approx(1000 * 24 * 0.5 * 0.4 * 0.3 + 2)
+    stored = client.post("/v1/imports?store=true&name=bot", content=zipped(ROBOT_WITH_MESHES), headers=ZIP)
+    assert stored.status_code == 201
+    assert client.get("/v1/substructures/bot@1").json()["dof"] == 1
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (b"PK\3\4 no zip", "not a zip that can be read"),
+        (zipped({"x.stl": b""}), "there is no robot file"),
+        (zipped({"a.xml": b"<a/>", "b.xml": b"<b/>"}), "several robot files: say which by 'file': a.xml, b.xml"),
+        (zipped({"../a.xml": b"<a/>"}), "leads out of the bundle"),
+        (zipped({"bot/robot.xml": ROBOT_WITH_MESHES["bot/robot.xml"]}), "'part.stl' is not given"),
+        (zipped({**ROBOT_WITH_MESHES, "bot/meshes/part.stl": b"?"}), "neither a binary STL file"),
+        (zipped({"a.xml": b" " * (65 * 2**20)}), "the limit is 67,108,864"),
+    ],
+)
+def test_bad_zips_are_refused(client: TestClient, content: bytes, message: str) -> None:
+    answer = client.post("/v1/imports", content=content, headers=ZIP)
+    assert answer.status_code == 422
+    assert message in answer.text

@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Iterator
+import zipfile
+from collections.abc import Callable, Iterator
+from itertools import islice
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,14 +17,17 @@ from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json
 from service.cli.tree_files import part_or_tree
 from substructures.documents import write_json
+from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence
+from substructures.interchange.files.archive import Beside, main_of
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS
 from substructures.interchange.sides import sides
 
-#: an included file is read when it is in the folder of the file, or below it
-_MOST_BYTES = 4 * 2**20
+#: an included file or mesh is read when it is in the folder of the file, or below it
+_MOST_BYTES = 64 * 2**20
+_MOST_FILES = 20_000
 
 
 def read_robot_file(
@@ -30,9 +35,30 @@ def read_robot_file(
     options: Options = Options(),  # noqa: B008 -- frozen
     **more: Any,
 ) -> Imported:
-    """A robot file with the files beside it that it includes. Raises InvalidDocument naming the file."""
+    """A robot file with the files beside it that it includes and takes meshes from; of a folder or a zip the robot file
+    that is there. Raises InvalidDocument naming the file."""
     with named(path):
-        return import_file(path.read_bytes(), options, file=path.name, included=_Beside(path.parent), **more)
+        files = _files_of(path)
+        if files is None:
+            return import_file(path.read_bytes(), options, file=path.name, included=_Beside(path.parent), **more)
+        names, read = files
+        main = main_of(names, read)
+        return import_file(read(main), options, file=main, included=Beside(main, names, read), **more)
+
+
+def _files_of(path: Path) -> tuple[list[str], Callable[[str], bytes]] | None:
+    """The files of a folder or a zip, by their paths in it; None for any other file."""
+    if path.is_dir():
+        found = list(islice((file for file in path.rglob("*") if file.is_file()), _MOST_FILES))
+        return [file.relative_to(path).as_posix() for file in found], lambda name: (path / name).read_bytes()
+    if path.suffix.lower() != ".zip":
+        return None
+    try:
+        with zipfile.ZipFile(path) as archive:
+            files = {each.filename: archive.read(each) for each in archive.infolist() if not each.is_dir()}
+    except zipfile.BadZipFile as error:
+        raise InvalidDocument.at("", "invalid-zip", f"not a zip that can be read: {error}") from None
+    return list(files), files.__getitem__
 
 
 class _Beside(dict[str, bytes]):
@@ -61,7 +87,10 @@ class _Beside(dict[str, bytes]):
 def read(
     server: Server,
     file: Annotated[
-        Path, typer.Argument(metavar="FILE", help=f"Robot file: {', '.join(KINDS)}, found by its content.")
+        Path,
+        typer.Argument(
+            metavar="FILE", help=f"Robot file ({', '.join(KINDS)}), or a folder or zip of one with its meshes."
+        ),
     ],
     kind: Annotated[str | None, one_of(KINDS, help="What the file has to be.")] = None,
     name: Annotated[str | None, typer.Option(help="Name of the part (default: the robot's).")] = None,

@@ -5,8 +5,10 @@ read by people is written. No submission names these kinds; their items come fro
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from io import BytesIO
 
 from service.content.summaries import part_content
+from service.content.unzipped import unzipped
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import tree_parts
 from service.jobs.kinds.decoded import part_of
@@ -22,6 +24,7 @@ from substructures.errors import InvalidArgument
 from substructures.export import interface_of_part
 from substructures.expr.program import Program
 from substructures.interchange.as_part import Options
+from substructures.interchange.files.archive import Beside, main_of
 from substructures.interchange.importing import import_file
 from substructures.part.outputs import with_own_inertia
 from substructures.part.parameters import described_inputs
@@ -30,18 +33,31 @@ from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
 BODY = "body"  # file of an outcome that is an answer
+ZIP = b"PK\x03\x04"
+MOST_FILES = 2000
 
 
 def _read_file(item: ItemDocument, blobs: Blobs) -> Outcome:
     """The document of a robot file, with the report. Raises InvalidDocument with line and element, or with pointers
     into the query."""
     options = Options(item["parameters"], item["fixed"], item["base"])
-    about = {"name": item["name"], "file": item["called"], "license_of_file": item["license"]}
+    data, called, beside = _opened(blobs[item["file"]], item["called"], item["unpacked"])
+    about = {"name": item["name"], "file": called, "license_of_file": item["license"], "included": beside}
     try:
-        found = import_file(blobs[item["file"]], options, kind=item["kind"], cut=item["cut"], **about)
+        found = import_file(data, options, kind=item["kind"], cut=item["cut"], **about)
     except InvalidArgument as error:
         raise error.below("/query") from None
     return Outcome(found.plain())
+
+
+def _opened(data: bytes, called: str, most: int) -> tuple[bytes, str, Mapping[str, bytes]]:
+    """A robot file, its name, and what lies about it in a zip of at most so many bytes. Raises InvalidDocument, Refused
+    422."""
+    if not data.startswith(ZIP):
+        return data, called, {}
+    files = unzipped(BytesIO(data), MOST_FILES, most, lambda _: most)
+    main = main_of(files, files.__getitem__, called)
+    return files[main], main, Beside(main, files, files.__getitem__)
 
 
 def publication_of(request: PublishRequest, name: str) -> Publication:

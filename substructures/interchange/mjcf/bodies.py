@@ -8,7 +8,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from substructures.interchange.merge import Seat, judge, vector
-from substructures.interchange.mjcf.geoms import Mass, UnknownMass, mass_of, summed
+from substructures.interchange.mjcf.geoms import Mass, mass_of, summed
+from substructures.interchange.mjcf.meshes import Meshes, UnknownMass
 from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation
 from substructures.interchange.numbers import (
     ONE,
@@ -47,6 +48,7 @@ class Bodies:
 
     compiler: Compiler
     defaults: Defaults
+    meshes: Meshes
     report: Report
     links: list[Link] = field(default_factory=list)
     frames: list[NamedFrame] = field(default_factory=list)
@@ -212,7 +214,7 @@ class Bodies:
             return None
         for geom, _ in geoms:
             try:
-                mass_of(geom, self.compiler)
+                mass_of(geom, self.compiler, self.meshes)
             except UnknownMass:
                 message = "the mass of a mesh needs its file: it is left out, as the body does not move here"
                 self.report.lost(geom.place, message, "physics")
@@ -228,7 +230,7 @@ class Bodies:
             return Inertial()
         masses = []
         for child, outer in geoms:
-            mass = mass_of(child, self.compiler)
+            mass = mass_of(child, self.compiler, self.meshes)
             if mass is not None:
                 masses.append(_moved(mass, outer))
         total = summed(masses)

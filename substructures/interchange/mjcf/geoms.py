@@ -1,4 +1,4 @@
-"""Masses and inertia tensors of geoms: homogeneous spheres, capsules, cylinders, ellipsoids and boxes.
+"""Masses and inertia tensors of geoms: homogeneous spheres, capsules, cylinders, ellipsoids, boxes and meshes.
 
 About its own centre, with mass m, radius r, half length h (height H = 2 h), half axes a, b, c:
 
@@ -18,7 +18,7 @@ from decimal import Decimal
 import numpy as np
 
 from substructures.array import Array
-from substructures.errors import InvalidDocument
+from substructures.interchange.mjcf.meshes import Meshes, UnknownMass
 from substructures.interchange.mjcf.settings import Compiler, orientation
 from substructures.interchange.numbers import ORIGIN, ZERO, value
 from substructures.interchange.report import refuse
@@ -40,12 +40,8 @@ class Mass:
     size: float = 0.0  #: of the places that the mass centre was computed of
 
 
-class UnknownMass(InvalidDocument):
-    """The mass of a geom is in a file, or that of a shell."""
-
-
-def mass_of(geom: Node, compiler: Compiler) -> Mass | None:
-    """The mass of a geom, None where it has none. Raises UnknownMass for a mesh that has one."""
+def mass_of(geom: Node, compiler: Compiler, meshes: Meshes) -> Mass | None:
+    """The mass of a geom, None where it has none. Raises UnknownMass for a mesh whose file is not here."""
     kind = geom.attributes.get("type", "mesh" if "mesh" in geom.attributes else "sphere")
     low, high = compiler.inertiagrouprange
     given = "mass" in geom.attributes
@@ -54,15 +50,24 @@ def mass_of(geom: Node, compiler: Compiler) -> Mass | None:
         return None
     if geom.attributes.get("shellinertia", "false") == "true":
         raise UnknownMass(refuse(geom.place, "shell", "shellinertia is not read: give the body an <inertial>").faults)
+    if kind == "mesh":
+        found = meshes.of(geom)
+        m = mass if given else density * found.volume
+        R, position = orientation(geom, compiler), np.array([value(x) for x in geom.numbers("pos", 3, ORIGIN)])
+        return _positive(geom, Mass(m, position + R @ found.centre, R @ found.theta @ R.T * (m / found.volume)))
     if kind not in _SIZES or "mesh" in geom.attributes:
-        message = f"the mass of a {kind[:20]} needs its file: give the body an <inertial>, or the geom mass='0'"
+        message = f"a {kind[:20]} fitted to a mesh is not read: give its size, or the body an <inertial>"
         raise UnknownMass(refuse(geom.place, "mesh-inertia", message).faults)
     size, centre, R = _placed(geom, kind, compiler)
     volume, unit = _shape(kind, *size)
     m = mass if given else density * volume
-    if m < 0:
-        raise refuse(geom.place, "negative-mass", f"the mass {m:g} kg is negative")
-    return Mass(m, centre, R @ np.diag(unit) @ R.T * m)
+    return _positive(geom, Mass(m, centre, R @ np.diag(unit) @ R.T * m))
+
+
+def _positive(geom: Node, mass: Mass) -> Mass:
+    if mass.m < 0:
+        raise refuse(geom.place, "negative-mass", f"the mass {mass.m:g} kg is negative")
+    return mass
 
 
 def _placed(geom: Node, kind: str, compiler: Compiler) -> tuple[list[float], Array, Array]:

@@ -9,6 +9,7 @@ from substructures.interchange.known.mjcf import MJCF
 from substructures.interchange.mjcf.actuators import rotor_laws
 from substructures.interchange.mjcf.bodies import Bodies
 from substructures.interchange.mjcf.loops import bindings_of, loops_of
+from substructures.interchange.mjcf.meshes import Meshes
 from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
 from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
@@ -19,24 +20,27 @@ from substructures.interchange.xml import Node, read_xml
 GRAVITY = "0 0 -9.81"
 _READ = ("compiler", "option", "default", "worldbody", "equality", "include", "actuator")
 _IGNORED = {
-    "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks, and meshes",
+    "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks",
     "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data",
 }  # fmt: skip
 _MOST_INCLUDES = 100
 
 
 def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
-    """The robot of an MJCF document. ``included``: contents of files by the names in <include>.
+    """The robot of an MJCF document. ``included``: contents of files by the names in <include>, and of meshes by their
+    paths.
 
     Raises InvalidDocument with line and element.
     """
     if root.tag != "mujoco":
         raise refuse(root.place, "not-mjcf", "the root of an MJCF file is <mujoco>")
-    root = _with_included(root, {} if included is None else included, [])
+    files = {} if included is None else included
+    root = _with_included(root, files, [])
     report = Report()
     MJCF.tell(root, report)
     defaults = Defaults(root)
-    bodies = Bodies(Compiler.of(root), defaults, report)
+    compiler = Compiler.of(root)
+    bodies = Bodies(compiler, defaults, Meshes(root, compiler, defaults, files), report)
     bodies.armatures, bodies.dampings = rotor_laws(root, defaults, report)
     for node in root.all("worldbody"):
         bodies.world(written_out(node, bodies.compiler))

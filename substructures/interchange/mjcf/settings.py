@@ -35,6 +35,9 @@ class Compiler:
     boundinertia: float = 0
     settotalmass: float = -1
     balanceinertia: bool = False
+    exactmeshinertia: bool = False
+    meshdir: str = ""
+    strippath: bool = False
 
     @classmethod
     def of(cls, root: Node) -> Compiler:
@@ -49,6 +52,8 @@ class Compiler:
         if given.get("coordinate", "local") != "local":
             raise refuse(node.place, "global-coordinates", "coordinate='global' is no longer in MJCF: use 'local'")
         changes: dict[str, Any] = {name: read(node) for name, read in _SETTINGS.items() if name in given}
+        if "assetdir" in changes:
+            changes = {"meshdir": changes.pop("assetdir"), **changes}
         if "angle" in changes:
             changes["degrees"] = changes.pop("angle") == "degree"
         return replace(self, **changes)
@@ -85,6 +90,10 @@ _SETTINGS: dict[str, Callable[[Node], Any]] = {
     "inertiafromgeom": lambda node: choice(node, "inertiafromgeom", ("true", "false", "auto")),
     "autolimits": lambda node: _YES[choice(node, "autolimits", tuple(_YES))],
     "balanceinertia": lambda node: _YES[choice(node, "balanceinertia", tuple(_YES))],
+    "exactmeshinertia": lambda node: _YES[choice(node, "exactmeshinertia", tuple(_YES))],
+    "strippath": lambda node: _YES[choice(node, "strippath", tuple(_YES))],
+    "assetdir": lambda node: node.text_of("assetdir"),
+    "meshdir": lambda node: node.text_of("meshdir"),
     "boundmass": lambda node: value(node.number("boundmass")),
     "boundinertia": lambda node: value(node.number("boundinertia")),
     "settotalmass": lambda node: value(node.number("settotalmass")),

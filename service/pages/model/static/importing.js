@@ -1,7 +1,7 @@
 // A robot file: read, derived and drawn before anything of it is stored.
 import { element } from "./fragments.js";
 
-const FILE = { "Content-Type": "application/octet-stream" };
+const headers = ({ name }) => ({ "Content-Type": /\.zip$/i.test(name) ? "application/zip" : "application/octet-stream" });
 const place = document.getElementById("import");
 const [input, cut] = ["file", "cut"].map((id) => document.getElementById(id));
 const tell = (...content) => place.replaceChildren(...content);
@@ -9,7 +9,7 @@ const tell = (...content) => place.replaceChildren(...content);
 /** The answer of the interface for the file. */
 async function sent(file, more) {
     const given = { file: file.name.slice(0, 200), ...(cut.value.trim() ? { cut: cut.value.trim() } : {}), ...more };
-    const answer = await fetch(`/v1/imports?${new URLSearchParams(given)}`, { method: "POST", headers: FILE, body: file });
+    const answer = await fetch(`/v1/imports?${new URLSearchParams(given)}`, { method: "POST", headers: headers(file), body: file });
     const told = await answer.json();
     if (!answer.ok) throw Object.assign(new Error(told.detail), { faults: told.errors ?? [] });
     return [answer.status, told];

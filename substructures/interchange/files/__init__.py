@@ -1,0 +1,1 @@
+"""Files from outside as bytes: what they are, what lies about them, meshes."""
