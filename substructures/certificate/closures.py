@@ -68,11 +68,11 @@ class _Vector:
 
 
 def closure_outputs(
-    result: Outputs, bodies: Bodies, closures: Sequence[Plain], numbers: Numbers, rates: Sequence[Ball]
+    result: Outputs, bodies: Bodies, closures: Sequence[tuple[Plain, Numbers]], rates: Sequence[Ball]
 ) -> None:
-    """The outputs ``closure.*`` of the rows of all closures in order."""
+    """The outputs ``closure.*`` of the rows of all closures in order, each with the numbers that it is given in."""
     moving = motions(bodies, rates)
-    rows = [row for closure in closures for row in _rows(bodies, moving, closure, numbers)]
+    rows = [row for closure, numbers in closures for row in _rows(bodies, moving, closure, numbers)]
     m, n = len(rows), len(bodies.joints)
     for name, shape in (("residual", (m,)), ("jacobian", (m, n)), ("acceleration", (m,)), ("alignment", (m,))):
         result.array(f"closure.{name}", shape)

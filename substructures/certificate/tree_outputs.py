@@ -78,8 +78,9 @@ def tree_outputs(
     friction(result, bodies, tree, numbers, definitions, loads)
     friction_load(result, bodies, definitions, loads)
     _kinematics(result, bodies)
-    if tree.get("closures"):
-        closure_outputs(result, bodies, tree["closures"], numbers, moving)
+    closed = closures_in(tree, definitions, numbers, loads)
+    if closed:
+        closure_outputs(result, bodies, closed, moving)
     return of_coordinates(result, bodies)
 
 
@@ -133,16 +134,28 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         ports = definition.get("ports", ())
         frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
     closures = [
-        {
-            "name": c["name"],
-            "type": c["type"],
-            "from": c["from"],
-            "to": c.get("to", "world"),
-            "rows": [*ROWS[c["type"]]],
-        }
-        for c in tree.get("closures", ())
+        {**{x: c[x] for x in ("name", "type", "from")}, "to": c.get("to", "world"), "rows": [*ROWS[c["type"]]]}
+        for c, _ in closures_of(tree, definitions)
     ]
     return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
+
+
+def closures_of(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[tuple[Plain, str]]:
+    """The closures of the tree, then those of its parts with the names of the tree; the instance that has them."""
+    yield from ((closure, "") for closure in tree.get("closures", ()))
+    for instance in hosts_first(tree):
+        name = instance["name"]
+        for closure in definitions[name].get("closures", ()):
+            ends = {"name": closure["name"], "from": closure["from"], "to": closure.get("to", "base")}
+            yield {**closure, **{field: f"{name}.{x}" for field, x in ends.items()}}, name
+
+
+def closures_in(
+    tree: Plain, definitions: Mapping[str, Plain], numbers: Numbers, inside: Sequence[tuple[str, Numbers, range]]
+) -> list[tuple[Plain, Numbers]]:
+    """All closures with the numbers of the tree, or of the instance that has them."""
+    known = {"": numbers} | {name: own for name, own, _ in inside}
+    return [(closure, known[name]) for closure, name in closures_of(tree, definitions)]
 
 
 def _joints_of(definition: Plain) -> Iterable[tuple[Plain, int, str]]:

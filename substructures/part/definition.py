@@ -7,9 +7,9 @@ Meaning is checked when formulas are derived: names and expressions by :mod:`sub
 from __future__ import annotations
 
 from collections.abc import Mapping
-from typing import Any, Literal
+from typing import Any, Literal, Self
 
-from pydantic import Field, ValidationInfo, field_validator, model_validator
+from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
@@ -204,6 +204,37 @@ class Relation(DocumentPart):
     offset: Number = Field(0, description="constant; rad or m")
 
 
+class PartClosure(DocumentPart):
+    """A loop of the mechanism: a joint that is cut. It equates two frames as far as the joint demands.
+
+    The joint's axis is the third axis of both frames. ``pin`` is ``revolute``, ``slider`` is ``prismatic``, ``ball`` is
+    ``spherical``, ``weld`` is ``fixed``; ``rod``: the origins keep the distance ``length``.
+    """
+
+    name: Name
+    type: Literal[
+        "pin", "revolute", "slider", "prismatic", "ball", "spherical", "weld", "fixed", "cylindrical", "universal",
+        "planar", "rod",
+    ]  # fmt: skip
+    from_: Name = Field(alias="from", description="port or body")
+    to: Name = Field("base", description="port, body or base")
+    placement: Placement = Field(Placement(), description="where the joint is in the frame 'to'")
+    axis: tuple[Number, Number, Number] | None = Field(
+        None, description="joint axis in the frame 'from' and in the placed frame 'to' (constant; default: the third)"
+    )
+    length: Number | None = Field(None, description="m; of a rod")
+
+    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
+
+    @model_validator(mode="after")
+    def _fitting(self) -> Self:
+        if (self.type == "rod") != (self.length is not None):
+            raise PydanticCustomError("rod-length", "a rod has a 'length', and only a rod")
+        if self.axis is not None and self.type in ("ball", "spherical", "weld", "fixed", "rod"):
+            raise PydanticCustomError("no-axis", "this type of closure has no 'axis'")
+        return self
+
+
 class LeftOut(DocumentPart):
     """Something that the source of a definition says and its equations do not have: part and trees are warned of it.
 
@@ -246,6 +277,7 @@ class Definition(WithTables):
     ports: tuple[Port, ...] = Field((), max_length=500)
     mount: Mount | None = Field(None, description="of its base")
     relations: tuple[Relation, ...] = Field((), max_length=1000, description="joints that move with another one")
+    closures: tuple[PartClosure, ...] = Field((), max_length=500, description="loops, each between two of its frames")
     loads: tuple[LoadOfPart, ...] = Field((), max_length=1000)
     poses: dict[Name, dict[Name, Number]] = Field(
         {},

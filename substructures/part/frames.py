@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import array, program
 from substructures.expr.trigonometry import of_sum
-from substructures.loads.scope import Scope, no_names
+from substructures.loads.scope import Lookup, Scope, no_names
 from substructures.mechanics.linear3 import (
     IDENTITY,
     Matrix,
@@ -22,6 +23,7 @@ from substructures.mechanics.linear3 import (
     transpose,
 )
 from substructures.mechanics.parallel_axes import one_after_the_other
+from substructures.part.definition import PartClosure
 
 #: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
 AXES: tuple[Matrix, Matrix, Matrix] = (
@@ -59,6 +61,30 @@ def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: st
     if len(given) == 1:
         return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
     return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
+
+
+class CutFrames(NamedTuple):
+    """The frames of a closure: E in the frame ``from``, E and position in the frame ``to``; their third axes are the
+    joint axis. ``length``: of a rod.
+    """
+
+    start: Matrix
+    end: Matrix
+    position: Vector
+    length: Expr
+
+
+def cut_frames(scope: Scope, closure: PartClosure, pointer: str, lookup: Lookup | None = None) -> CutFrames:
+    """Read the numbers of a closure, which are constant; ``lookup``: of names in its expressions."""
+    axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
+    E = scope.rpy(closure.placement.rpy, f"{pointer}/placement/rpy", lookup).matrix()
+    position = scope.vector(closure.placement.position, f"{pointer}/placement/position", lookup)
+    length = scope.graph.zero
+    if closure.length is not None:
+        length = scope.read(closure.length, f"{pointer}/length", lookup)
+        if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
+            scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
+    return CutFrames(axis, multiply(axis, E), position, length)
 
 
 def joined_turns(first: Planar, second: Planar) -> Planar:

@@ -91,10 +91,11 @@ def without_effect(definition: Definition, used: Collection[str]) -> list[Notice
 
 
 def names_in_limits(definition: Definition) -> set[str]:
-    """The parameters that limits and friction of joints depend on."""
+    """The parameters that limits and friction of joints, relations and closures depend on."""
     given: list[Any] = [(body.joint.limits, body.joint.friction) for body in definition.bodies]
     given.append(tuple(load for load in definition.loads if isinstance(load, FrictionLoad)))
     given += [(each.multiplier, each.offset) for each in definition.relations]
+    given += [(*each.placement.position, *each.placement.rpy, each.length or 0) for each in definition.closures]
     return {str(step.value) for x in _flat(given) if isinstance(x, str) for step in steps_of(x) if step.op == "name"}
 
 

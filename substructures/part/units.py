@@ -30,7 +30,7 @@ from substructures.loads.units import (
     vector,
 )
 from substructures.part.angles import angle_warnings
-from substructures.part.definition import Definition, InertiaTensor, Input, Joint, Parameter, Placement
+from substructures.part.definition import Definition, InertiaTensor, Input, Joint, Parameter, PartClosure, Placement
 from substructures.part.topology import Topology
 
 MASS, INERTIA, ACCELERATION = dimension("kg"), dimension("kg m^2"), dimension("m/s^2")
@@ -99,7 +99,7 @@ class _Places:
     topology: Topology
 
     def bodies(self) -> Iterator[Place]:
-        """Joints, masses, inertias and ports."""
+        """Joints, masses, inertias, ports and closures."""
         kinds: dict[int, list[int]] = {}
         for entry in self.topology.joints:
             kinds.setdefault(entry.body, []).append(entry.s)
@@ -119,6 +119,7 @@ class _Places:
         for i, port in enumerate(self.definition.ports):
             yield from vector(f"/ports/{i}/position", port.position, LENGTH)
             yield from vector(f"/ports/{i}/rotation/rpy", port.rotation.rpy, ANGLE)
+        yield from closure_places(self.definition.closures)
 
     def poses(self) -> Iterator[Place]:
         """Values of coordinates."""
@@ -138,6 +139,14 @@ def placement_places(pointer: str, placement: Placement) -> Iterator[Place]:
     """A constant offset."""
     yield from vector(f"{pointer}/position", placement.position, LENGTH)
     yield from vector(f"{pointer}/rpy", placement.rpy, ANGLE)
+
+
+def closure_places(closures: Sequence[PartClosure]) -> Iterator[Place]:
+    """Closures of a definition or of a tree."""
+    for i, closure in enumerate(closures):
+        yield from placement_places(f"/closures/{i}/placement", closure.placement)
+        yield from vector(f"/closures/{i}/axis", closure.axis or (), None)
+        yield f"/closures/{i}/length", closure.length, LENGTH
 
 
 def _joint(pointer: str, joint: Joint, kinds: Sequence[int]) -> Iterator[Place]:

@@ -13,7 +13,7 @@ from substructures.array import Array
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import array, program
-from substructures.part.definition import Body
+from substructures.part.definition import Body, PartClosure
 from substructures.part.part import Part
 from substructures.part.poses import HOME
 from substructures.part.topology import BASE
@@ -152,9 +152,15 @@ class _Numbers:
 
     def closures(self) -> Iterator[dict[str, Any]]:
         """Cut joints, with the place of the joint at both ends."""
-        for closure in self.assembly.reading.spec.closures:
-            ends = [self._end(closure.from_, (), ""), self._end(closure.to, closure.placement.position, "")]
-            yield {"name": closure.name, "type": closure.type, "ends": ends}
+        reading = self.assembly.reading
+        some: list[tuple[str, Sequence[PartClosure]]] = [("", reading.spec.closures)]
+        some += [(name, reading.parts[name].definition.closures) for name in reading.place]
+        for instance, closures in some:
+            prefix = f"{instance}." if instance else ""
+            for each in closures:
+                end = self._end(prefix + each.to, each.placement.position, instance)
+                ends = [self._end(prefix + each.from_, (), instance), end]
+                yield {"name": prefix + each.name, "type": each.type, "ends": ends}
 
     def _end(self, frame: str, at: Sequence[Any], instance: str) -> dict[str, Any]:
         return {"frame": self.place.get(frame, WORLD), "at": self.values(at or (0, 0, 0), instance)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.errors import InvalidDocument, among
@@ -12,9 +12,9 @@ from substructures.expr.syntax import RESERVED
 from substructures.loads.friction import TreeFriction, read_friction
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.kinematics import INTERFACE
-from substructures.mechanics.linear3 import IDENTITY, ZERO, Matrix, Vector, multiply
-from substructures.part.definition import Placement
-from substructures.part.frames import axis_rotation
+from substructures.mechanics.linear3 import ZERO, Matrix, Vector
+from substructures.part.definition import PartClosure, Placement
+from substructures.part.frames import cut_frames
 from substructures.part.mechanism import friction_of
 from substructures.part.outputs import over_formulas
 from substructures.part.parameters import described, described_inputs
@@ -78,7 +78,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
         mounted.append(reading.mounted(i, first))
         first += mounted[-1].part.joint_count
     gravity = scope.vector(spec.gravity, "/gravity", bound.lookup)
-    cuts = tuple(reading.cut(i) for i in range(len(spec.closures)))
+    cuts = tuple(reading.cuts())
     limits = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.limits(i, m).items()}
     friction = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction(i, m).items()}
     loaded = {m.first + c: x for i, m in zip(order, mounted, strict=True) for c, x in reading.friction_load(i).items()}
@@ -339,23 +339,27 @@ class Reading:
                 found[a] = law.row()
         return found
 
-    def cut(self, i: int) -> Cut:
-        """A closure of the document with its frames; the third axes of both ends are the joint axis."""
-        closure, pointer, scope = self.spec.closures[i], f"/closures/{i}", self.scope
-        if any(other.name == closure.name for other in self.spec.closures[:i]):
-            scope.fault(f"{pointer}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
-        axis: Matrix = IDENTITY if closure.axis is None else axis_rotation(scope, closure.axis, f"{pointer}/axis")
-        E, position = self.placement(closure.placement, f"{pointer}/placement")
-        # the placement is in the frame ``to``; both ends are turned so that their third axis is the joint axis
-        start = ClosureEnd(*self.frame(closure.from_, f"{pointer}/from"), axis, ZERO)
-        end = ClosureEnd(*self.frame(closure.to, f"{pointer}/to"), multiply(axis, E), position)
-        length = scope.graph.zero
-        if closure.length is not None:
-            length = scope.read(closure.length, f"{pointer}/length", self.bound.lookup)
-            if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
-                scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
-        rows = ClosureRows(closure.name, closure.type, closure.from_, closure.to, ROWS[closure.type])
-        return Cut(rows, start, end, length)
+    def cuts(self) -> Iterator[Cut]:
+        """The closures of the tree, and those of its parts, hosts first, as ``instance.closure``."""
+        names: set[str] = set()
+        for i, closure in enumerate(self.spec.closures):
+            if closure.name in names:
+                self.scope.fault(f"/closures/{i}/name", "duplicate-name", f"duplicate closure '{closure.name}'")
+            names.add(closure.name)
+            yield self.cut(closure, f"/closures/{i}")
+        index = {instance.name: i for i, instance in enumerate(self.spec.instances)}
+        for name in self.place:
+            for own in self.parts[name].definition.closures:
+                yield self.cut(own, f"/instances/{index[name]}", f"{name}.")
+
+    def cut(self, closure: PartClosure, pointer: str, prefix: str = "") -> Cut:
+        """A closure with its frames; ``prefix``: of its own names, where it is one of an instance."""
+        frames = cut_frames(self.scope, closure, pointer, lambda name: self.bound.lookup(prefix + name))
+        from_, to = prefix + closure.from_, prefix + closure.to
+        start = ClosureEnd(*self.frame(from_, f"{pointer}/from"), frames.start, ZERO)
+        end = ClosureEnd(*self.frame(to, f"{pointer}/to"), frames.end, frames.position)
+        rows = ClosureRows(prefix + closure.name, closure.type, from_, to, ROWS[closure.type])
+        return Cut(rows, start, end, frames.length)
 
 
 def joint_parents(mounted: Sequence[MountedPart]) -> list[tuple[int, int]]:

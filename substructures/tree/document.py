@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import re
 from collections.abc import Collection, Mapping
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
-from pydantic import ConfigDict, Field, model_validator
+from pydantic import Field, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
@@ -15,7 +15,7 @@ from substructures.documents.fields import NAME, LibraryName, Name, Number, Numb
 from substructures.errors import among, listed, meant
 from substructures.loads.document import AT
 from substructures.loads.kinds import LoadOfTree
-from substructures.part.definition import Definition, Input, Parameter, Placement, WithTables
+from substructures.part.definition import Definition, Input, Parameter, PartClosure, Placement, WithTables
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -77,35 +77,11 @@ class Instance(DocumentPart):
         return self
 
 
-class Closure(DocumentPart):
-    """A loop of the mechanism: a joint that is cut. It equates two frames as far as the joint demands.
+class Closure(PartClosure):
+    """A loop between frames of instances, or of one and the world."""
 
-    The joint's axis is the third axis of both frames. ``pin`` is ``revolute``, ``slider`` is ``prismatic``, ``ball`` is
-    ``spherical``, ``weld`` is ``fixed``; ``rod``: the origins keep the distance ``length``.
-    """
-
-    name: Name
-    type: Literal[
-        "pin", "revolute", "slider", "prismatic", "ball", "spherical", "weld", "fixed", "cylindrical", "universal",
-        "planar", "rod",
-    ]  # fmt: skip
     from_: Annotated[str, Field(pattern=FRAME)] = Field(alias="from", description="instance.port or instance.body")
     to: Annotated[str, Field(pattern=AT)] = Field("world", description="instance.port, instance.body or world")
-    placement: Placement = Field(Placement(), description="where the joint is in the frame 'to'")
-    axis: tuple[Number, Number, Number] | None = Field(
-        None, description="joint axis in the frame 'from' and in the placed frame 'to' (constant; default: the third)"
-    )
-    length: Number | None = Field(None, description="m; of a rod")
-
-    model_config = ConfigDict(frozen=True, extra="forbid", serialize_by_alias=True)
-
-    @model_validator(mode="after")
-    def _fitting(self) -> Closure:
-        if (self.type == "rod") != (self.length is not None):
-            raise PydanticCustomError("rod-length", "a rod has a 'length', and only a rod")
-        if self.axis is not None and self.type in ("ball", "spherical", "weld", "fixed", "rod"):
-            raise PydanticCustomError("no-axis", "this type of closure has no 'axis'")
-        return self
 
 
 class TreeSpec(WithTables):

@@ -10,7 +10,7 @@ from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.program import Program
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimension_of
-from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
+from substructures.loads.units import COORDINATE, RATE, vector
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
@@ -19,6 +19,7 @@ from substructures.part.relations import left_out_warnings, weightless_warnings
 from substructures.part.topology import topology
 from substructures.part.units import (
     ACCELERATION,
+    closure_places,
     dimension_of_measure,
     input_places,
     parameter_places,
@@ -91,10 +92,7 @@ def _places(spec: TreeSpec) -> Iterator[Place]:
     yield from vector("/gravity", spec.gravity, ACCELERATION)
     for i, instance in enumerate(spec.instances):
         yield from placement_places(f"/instances/{i}/placement", instance.placement)
-    for i, closure in enumerate(spec.closures):
-        yield from placement_places(f"/closures/{i}/placement", closure.placement)
-        yield from vector(f"/closures/{i}/axis", closure.axis or (), None)
-        yield f"/closures/{i}/length", closure.length, LENGTH
+    yield from closure_places(spec.closures)
 
 
 def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[Place]:

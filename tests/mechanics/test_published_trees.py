@@ -231,12 +231,6 @@ def test_names_that_are_taken_or_too_long() -> None:
 @pytest.mark.parametrize(
     ("more", "wanted", "code", "said"),
     [
-        (
-            {"closures": [{"name": "loop", "type": "ball", "from": "a.tip", "to": "world"}]},
-            {},
-            "has-closures",
-            "'loop'",
-        ),
         ({}, {"ports": {"end": "a.tipp"}}, "unknown-port", "did you mean 'a.tip'"),
         ({}, {"free": ("a.ll",)}, "unknown-parameter", "no parameter 'a.ll'"),
         ({}, {"free": ("b.l",)}, "bound", "'b.l' is bound to 'a.l'"),

@@ -59,6 +59,29 @@ def test_loops_are_closed_and_opened_one_by_one(client: TestClient) -> None:
     assert client.post("/v1/trees/chain/closures", json={}, headers={"If-Match": tag}).status_code == 412
 
 
+def test_a_part_brings_its_closures_along(client: TestClient) -> None:
+    """Stored, as YAML, in a tree with a name for each instance, and in its states and motions."""
+    bodies = [{**PART["bodies"][0], "name": "b", "parent": "bar", "joint": {"type": "revolute", "coordinate": "p"}}]
+    bodies[0]["joint"]["placement"] = {"position": [1, 0, 0]}
+    closure = {"name": "stay", "type": "rod", "from": "tip", "to": "base", "length": 1.5}
+    part = {**PART, "name": "knee", "bodies": [*PART["bodies"], *bodies], "closures": [closure]}
+    part["ports"] = [{"name": "tip", "body": "b", "position": [1, 0, 0]}]
+    assert client.post("/v1/substructures", json=part).status_code == 201
+    again = client.get("/v1/substructures/knee/definition")
+    assert again.json()["closures"] == [{"name": "stay", "type": "rod", "from": "tip", "length": 1.5}]
+    two = [{"name": n, "substructure": "knee", "at": at} for n, at in (("k", "world"), ("l", "k.tip"))]
+    made = client.post("/v1/trees", json={"name": "knees", "gravity": [0, -9.81, 0], "instances": two})
+    assert [(c["name"], c["to"]) for c in made.json()["closures"]] == [("k.stay", "k.base"), ("l.stay", "l.base")]
+    state = {"q": [0.3, 1.4, 0.2, -1.4]}
+    found = client.post("/v1/trees/knees/loop-states", json=state).json()
+    assert (found["mobility"]["degrees_of_freedom"], found["is_right"]) == (2, True), found
+    motion = client.post("/v1/trees/knees/simulations", json={**state, "span": [0, 0.2], "step": 0.1}).json()
+    assert motion["is_right"], motion
+    wrong = {**part, "closures": [{**closure, "to": "world"}]}
+    answer = client.post("/v1/substructures", json=wrong)
+    assert [(e["pointer"], e["code"]) for e in answer.json()["errors"]] == [("/closures/0/to", "unknown-frame")]
+
+
 @pytest.fixture(scope="module")
 def ring(template: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
     """A server that knows the tree."""

@@ -149,13 +149,22 @@ def test_publishing_is_refused_with_place_and_remedy(
     assert filled.get(f"{PART}/pair").status_code == 404
 
 
-def test_trees_with_closures_and_of_nothing_are_no_parts(filled: TestClient) -> None:
+def test_a_tree_with_closures_becomes_a_part_that_has_them(filled: TestClient) -> None:
     loop = {"name": "loop", "type": "ball", "from": "b.tip", "to": "world"}
     stored(filled, TREE, {**PAIR, "name": "closed", "closures": [loop]})
+    stored(filled, f"{TREE}/closed/publish", {"name": "ring"})
+    twice = [{"name": "x", "substructure": "ring"}, {"name": "y", "substructure": "ring", "at": "x.b_tip"}]
+    found = stored(filled, TREE, {"name": "rings", "gravity": PAIR["gravity"], "instances": twice})
+    rows = [(each["name"], each["from"], each["to"]) for each in found["closures"]]
+    assert rows == [(f"{x}.loop", f"{x}.b_tip_frame", f"{x}.base") for x in "xy"]
+    refused = filled.delete(f"{TREE}/rings/closures/x.loop")
+    assert refused.json()["code"] == "unknown-closure"
+
+
+def test_trees_of_nothing_are_no_parts(filled: TestClient) -> None:
     stored(filled, TREE, {"name": "empty"})
-    for name, code in (("closed", "has-closures"), ("empty", "empty-tree")):
-        refused = filled.post(f"{TREE}/{name}/publish", json={})
-        assert (refused.status_code, refused.json()["errors"][0]["code"]) == (422, code)
+    refused = filled.post(f"{TREE}/empty/publish", json={})
+    assert (refused.status_code, refused.json()["errors"][0]["code"]) == (422, "empty-tree")
 
 
 def test_publishing_by_a_job(filled: TestClient) -> None:

@@ -18,7 +18,7 @@ from substructures.certificate.dynamics import motions, required
 from substructures.certificate.linear import Ball, Matrix, cross, dot, vector
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.tree_outputs import beside, built, hosts_first, tree_symbols
+from substructures.certificate.tree_outputs import beside, built, closures_in, hosts_first, tree_symbols
 from substructures.errors import VerificationFailed
 
 OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
@@ -35,16 +35,17 @@ def reaction_outputs(
     free_tree, free = _released(tree, definitions)
     # what is virtual is zero and rests
     at_rest = {name: arb(0) for name in tree_symbols(free_tree, free) if MARK in name} | dict(values)
-    numbers, bodies, _, acting = built(free_tree, free, at_rest)
+    numbers, bodies, inside, acting = built(free_tree, free, at_rest)
     Q: dict[int, Ball] = {}
     for forces in (*(x for f in acting for x in (f.applied, f.wrenches)), beside(tree, free, bodies, numbers).applied):
         for a, x in forces.items():
             Q[a] = Q.get(a, arb(0)) + x
     speeds, second = (rates(bodies, at_rest, mark) for mark in ("'", "''"))
-    if tree.get("closures"):
+    closed = closures_in(free_tree, free, numbers, inside)
+    if closed:
         found = Outputs()
-        closure_outputs(found, bodies, tree["closures"], numbers, speeds)
-        names = [f"lambda.{c['name']}.{row}" for c in tree["closures"] for row in ROWS[c["type"]]]
+        closure_outputs(found, bodies, closed, speeds)
+        names = [f"lambda.{c['name']}.{row}" for c, _ in closed for row in ROWS[c["type"]]]
         for (k, a), x in found["closure.jacobian"].entries.items():
             # a row of no effect has no symbol in any formula
             Q[a] = Q.get(a, arb(0)) + x * values.get(names[k], arb(0))

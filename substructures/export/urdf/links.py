@@ -213,7 +213,7 @@ class _Reader:
         return replace(drive, mimic=(self.prefix + self.m.topology.coordinates[mover], factor, offset))
 
     def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
-        """Springs, rotors, end stops, friction and loads."""
+        """Springs, rotors, end stops, friction, closures and loads."""
         for k, (entry, law) in enumerate(zip(self.m.topology.joints, self.m.laws, strict=True)):
             name = f"'{self.prefix}{entry.coordinate}'"
             if not law.stiffness.is_zero:
@@ -226,6 +226,8 @@ class _Reader:
                 yield f"the end stops of {name}"
             if law.friction is not None:
                 yield f"the dry friction of {name}"
+        for closure in self.m.definition.closures:
+            yield f"the closure '{self.prefix}{closure.name}' ({closure.type}): URDF has no loops"
         for number, load in enumerate(self.m.definition.loads):
             if load.type == "friction":
                 continue

@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.documents import read_json
-from substructures.errors import Fault, InvalidDocument, among, listed
+from substructures.errors import Fault, InvalidDocument, among
 from substructures.part.definition import Definition
 from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.publishing.published_loads import frames_of_part, load_of_part
+from substructures.tree.publishing.published_loads import closure_of_part, frames_of_part, load_of_part
 from substructures.tree.publishing.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
@@ -56,8 +56,7 @@ class Published:
 def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) -> Published:
     """The definition of a tree as a part; ``parts``: by name of the instance.
 
-    Raises InvalidDocument for closures, names of ports, frames and parameters that are not there, and parameters
-    without a value.
+    Raises InvalidDocument for names of ports, frames and parameters that are not there, and parameters without a value.
     """
     _require_tree(spec)
     names = part_names(spec, parts, wanted.free, wanted.defaults)
@@ -84,6 +83,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     document["ports"] = list(_ports(parts, names, wanted.ports))
     for load in spec.loads:
         document["loads"].append(load_of_part(load, names))
+    document["closures"] = list(_closures(spec, parts, names))
     document["bodies"] += names.frames
     document["parameters"], document["inputs"] = names.parameters(document), names.inputs
     definition = Definition.read({name: x for name, x in document.items() if x or name == "bodies"})
@@ -92,10 +92,6 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
 
 def _require_tree(spec: TreeSpec) -> None:
     """Raises InvalidDocument for what no part can be."""
-    if spec.closures:
-        closures = listed(f"'{closure.name}'" for closure in spec.closures)
-        message = f"a part is a tree of joints, and this tree is closed by {closures}: couple the part without them"
-        raise InvalidDocument.at("", "has-closures", message)
     if not spec.instances:
         raise InvalidDocument.at("", "empty-tree", "a tree without instances is no part")
 
@@ -155,6 +151,15 @@ def _left_out(names: PartNames, instance: str, given: Mapping[str, Any]) -> dict
         ends = {end: names.symbol(instance, relation[end]) for end in ("coordinate", "of")}
         moved["relation"] = {**relation, **ends}
     return moved
+
+
+def _closures(spec: TreeSpec, parts: Mapping[str, Part], names: PartNames) -> Iterator[dict[str, Any]]:
+    """The closures of the tree, then those of its instances, in the order of the model."""
+    for k, closure in enumerate(spec.closures):
+        yield closure_of_part(closure, "", names, f"/closures/{k}")
+    for instance in _hosts_first(spec):
+        for k, own in enumerate(parts[instance.name].definition.closures):
+            yield closure_of_part(own, instance.name, names, f"/instances/{instance.name}/closures/{k}")
 
 
 def _load(

@@ -1,10 +1,11 @@
-"""Loads of a tree as loads of the part that it becomes."""
+"""Loads and closures of a tree as those of the part that it becomes."""
 
 from __future__ import annotations
 
 from typing import Any
 
 from substructures.loads.document import OfTree
+from substructures.part.definition import PartClosure
 from substructures.tree.publishing.published_names import PartNames
 
 #: fields that are no numbers
@@ -23,6 +24,15 @@ def load_of_part(load: OfTree, names: PartNames) -> dict[str, Any]:
         elif field != "name":
             found[field] = x if field in WORDS else names.expressions("", x, pointer)
     return load.of_part(found)
+
+
+def closure_of_part(closure: PartClosure, instance: str, names: PartNames, pointer: str) -> dict[str, Any]:
+    """The closure of the part in place of one of an instance, or of the tree itself without one."""
+    given = closure.model_dump(by_alias=True, exclude_defaults=True)
+    numbers = {x: given[x] for x in given if x in ("placement", "length")}
+    moved = names.expressions(instance, numbers, pointer)
+    ends = {"from": names.own(instance, closure.from_), "to": names.own(instance, closure.to)}
+    return {**given, **moved, **ends, "name": names.closures.new(*filter(None, (instance, closure.name)))}
 
 
 def frames_of_part(given: Any, instance: str, names: PartNames, pointer: str) -> Any:

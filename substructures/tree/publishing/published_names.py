@@ -28,7 +28,7 @@ class PartNames:
     ``symbols``: of parameters, inputs and coordinates; ``bodies``, ``ports``: by ``instance.name``; ``bases``: by
     instance the body that its interface is; ``bound``: by parameter what it stands for; ``given``: documents of free
     parameters by name in the tree; ``parts``: by instance; ``frames``: massless bodies that are still to be put into
-    the definition.
+    the definition; ``closures``: names of closures that are taken.
     """
 
     symbols: dict[str, str]
@@ -43,6 +43,7 @@ class PartNames:
     bases: dict[str, str] = field(default_factory=dict)
     frames: list[dict[str, Any]] = field(default_factory=list)
     seats: dict[str, str] = field(default_factory=dict)
+    closures: Names = field(default_factory=Names)
     _open: list[str] = field(default_factory=list)
 
     def body(self, instance: str, name: str) -> str:
