@@ -21,11 +21,19 @@ QUICK = (
     *("furuta-pendulum", "quarter-car", "spherical-wrist", "scara", "flyball-governor", "planar-hopper", "puma560"),
 )
 
+#: what entries with loops have
+CLOSED = ("closures", "independent", "start", "ranges")
+
 
 def all_entries() -> list[Any]:
     """Values of ``parametrize``: all names, those that are not in QUICK marked ``deep``."""
     deep = (pytest.param(name, marks=pytest.mark.deep) for name in catalogue.names() if name not in QUICK)
     return [*QUICK, *deep]
+
+
+def open_entry(name: str) -> dict[str, Any]:
+    """A shipped entry as plain data without its closures, of whose formulas there are fewer."""
+    return {field: x for field, x in catalogue.load(name).items() if field not in CLOSED}
 
 
 @cache

@@ -5,9 +5,10 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+from catalogue_entries import open_entry
 from made_once import coupled_once
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.quantities.numbers.evaluation import Sources
 
@@ -19,14 +20,14 @@ QUANTITIES += ("inverse_dynamics", "forward_dynamics", "kinetic_energy", "moment
 def tree_of(*parts: str) -> Model:
     instances = [{"name": f"i{k}", "substructure": name} for k, name in enumerate(parts)]
     tree = {"name": "demo", "gravity": [0, 0, "-9.81"], "instances": instances}
-    return coupled_once(tree, {name: catalogue.load(name) for name in parts})
+    return coupled_once(tree, {name: open_entry(name) for name in parts})
 
 
 def derived_anew(*parts: str) -> Model:
     """The same, from nothing."""
     instances = [{"name": f"i{k}", "substructure": name} for k, name in enumerate(parts)]
     spec = TreeSpec.read({"name": "demo", "gravity": [0, 0, "-9.81"], "instances": instances})
-    return couple(spec, {f"i{k}": derive(Definition.read(catalogue.load(name))) for k, name in enumerate(parts)})
+    return couple(spec, {f"i{k}": derive(Definition.read(open_entry(name))) for k, name in enumerate(parts)})
 
 
 def exported_of(model: Model, name: str = "demo", **options: Any) -> Exported:

@@ -9,7 +9,7 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 import pytest
-from catalogue_entries import shipped_part
+from catalogue_entries import open_entry, shipped_part
 from related import reduction
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
@@ -52,7 +52,7 @@ def urdf_of(part: Part) -> bytes:
 
 def bare(name: str) -> Part:
     """A shipped part without what URDF cannot say."""
-    plain = catalogue.load(name)
+    plain = open_entry(name)
     for body in plain["bodies"]:
         for law in ("stiffness", "rest", "armature", "limits_act"):
             body["joint"].pop(law, None)

@@ -12,7 +12,7 @@ from typing import Any
 import flint
 import numpy as np
 import pytest
-from catalogue_entries import all_entries
+from catalogue_entries import all_entries, open_entry
 from closed_trees import tree_model
 from random_trees import Plain
 from written_formula import formula
@@ -38,7 +38,7 @@ LARGE |= {(name, "christoffel") for name in ("puma560", "humanoid-arm", "humanoi
 @cache
 def entry(name: str) -> Model:
     gravity = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}}}
-    return tree_model(gravity | {"instances": [{"name": "x", "substructure": name}]}, {name: catalogue.load(name)})
+    return tree_model(gravity | {"instances": [{"name": "x", "substructure": name}]}, {name: open_entry(name)})
 
 
 def operation(op: str, args: list[Any]) -> Any:
