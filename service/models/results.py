@@ -33,6 +33,7 @@ PROPERTIES: dict[str, dict[str, str]] = {
     "LyapunovExponents": {"is_right": "checks"},
     "FoundPlaces": {"is_right": "message", "checks": "message"},
     "CostGradient": {"is_right": "trajectory", "checks": "trajectory"},
+    "ReducedEquations": {"is_right": "checks"},
     "Optimum": {"is_right": "trajectory", "checks": "trajectory"},
     "FrequencyResponse": {"magnitude": "response", "phase": "response"},
     "Regulator": {"is_right": "checks"},

@@ -14,7 +14,7 @@ from substructures.quantities.numbers.states import read_states
 from substructures.quantities.numbers.warnings import Notice, not_judged_warnings, value_warnings
 
 #: requests whose coordinates are only where something is looked for
-NEAR = ("EquilibriaRequest", "RootLocusRequest")
+NEAR = ("EquilibriaRequest", "RootLocusRequest", "ReducedRequest")
 
 
 def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -> list[Notice]:

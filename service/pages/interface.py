@@ -22,8 +22,8 @@ ALSO_COMPUTED = ("/v1/trees/{ref}/evaluations", "/v1/equivalences")
 #: what is asked for where a choice is needed
 CHOSEN = {"quantity": "metric", "target": "c", "format": "text"}
 NEEDED = re.compile(r"\{\w+\}|=(?:&|$)")
-#: of which one of several members is needed
-OF_A_CHOICE = ("/v1/trees/{ref}/steady-motions",)
+#: of which one of several members is needed, or a tree with loops
+OF_A_CHOICE = ("/v1/trees/{ref}/steady-motions", "/v1/trees/{ref}/reduced-equations")
 #: an answer without an end
 STREAMS = "/events"
 #: how the documents write requests that are tried: method, path, headers, body

@@ -137,7 +137,29 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         {**{x: c[x] for x in ("name", "type", "from")}, "to": c.get("to", "world"), "rows": [*ROWS[c["type"]]]}
         for c, _ in closures_of(tree, definitions)
     ]
-    return {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
+    found = {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
+    reduction = reduced(tree, definitions)
+    return found | ({"reduction": reduction} if any(reduction.values()) else {})
+
+
+def reduced(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """Independent coordinates of the tree, where its closed parts name all of theirs, their starts and ranges."""
+    order = [(i["name"], definitions[i["name"]]) for i in hosts_first(tree)]
+    closed = [definition for _, definition in order if definition.get("closures")]
+    independent: list[str] = []
+    start: dict[str, str] = {}
+    ranges: dict[str, list[str]] = {}
+    for name, d in order:
+        own = [
+            c
+            for _, _, c in _joints_of(d)
+            if mover(d, c) == c and (not d.get("closures") or c in d.get("independent", ()))
+        ]
+        independent += [f"{name}.{c}" for c in own]
+        start |= {f"{name}.{c}": str(x) for c, x in d.get("start", {}).items()}
+        ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in d.get("ranges", {}).items()}
+    is_said = closed and all(d.get("independent") for d in closed) and not tree.get("closures")
+    return {"independent": independent if is_said else [], "start": start, "ranges": ranges}
 
 
 def closures_of(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[tuple[Plain, str]]:

@@ -205,10 +205,8 @@ class Relation(DocumentPart):
 
 
 class PartClosure(DocumentPart):
-    """A loop of the mechanism: a joint that is cut. It equates two frames as far as the joint demands.
-
-    The joint's axis is the third axis of both frames. ``pin`` is ``revolute``, ``slider`` is ``prismatic``, ``ball`` is
-    ``spherical``, ``weld`` is ``fixed``; ``rod``: the origins keep the distance ``length``.
+    """A loop of the mechanism: a joint that is cut. It equates two frames as far as the joint demands, whose third axis
+    is its axis. Others are named twice, ``pin`` is ``revolute``; of a ``rod`` the origins keep the distance ``length``.
     """
 
     name: Name
@@ -278,6 +276,9 @@ class Definition(WithTables):
     mount: Mount | None = Field(None, description="of its base")
     relations: tuple[Relation, ...] = Field((), max_length=1000, description="joints that move with another one")
     closures: tuple[PartClosure, ...] = Field((), max_length=500, description="loops, each between two of its frames")
+    independent: tuple[Name, ...] = Field((), max_length=500, description="coordinates that move all others of it")
+    start: dict[Name, Number] = Field({}, max_length=500, description="near a closed position (constant; rad or m)")
+    ranges: dict[Name, tuple[Number, Number]] = Field({}, max_length=500, description="of independent ones (constant)")
     loads: tuple[LoadOfPart, ...] = Field((), max_length=1000)
     poses: dict[Name, dict[Name, Number]] = Field(
         {},

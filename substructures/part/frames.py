@@ -96,6 +96,11 @@ def joined_turns(first: Planar, second: Planar) -> Planar:
     return Planar(2, *of_sum(one, other))
 
 
+def constant(x: Expr) -> float:
+    """The value of a constant expression."""
+    return constants((x, x.graph.zero, x.graph.zero))[0]
+
+
 def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:
     """The values of three constant expressions, roots and pi included."""
     p = program(v[0].graph, {"v": array((3,), lambda i: v[i])}, {})

@@ -23,7 +23,7 @@ from substructures.part.formulas import Coupled, formulas
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.parameters import described, uncounted, without_effect
-from substructures.part.poses import require_closures, require_poses
+from substructures.part.poses import require_closures, require_poses, require_reduction
 from substructures.part.relations import (
     MULTIPLIER,
     OF_COORDINATES,
@@ -306,6 +306,7 @@ def _opened(definition: Definition, is_stored: bool) -> tuple[Mechanism, UnitChe
     require_relations(definition, m.topology.coordinates)
     require_poses(definition, m.topology.coordinates)
     require_closures(definition, m.scope, [*m.bodies, *m.ports])
+    require_reduction(definition, m.topology.coordinates)
     units = check_units(definition, m.topology)
     if not is_stored:
         units.require()

@@ -9,7 +9,19 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import described
 
 #: members of a definition that are words, or the name of the whole
-WORDS = ("name", "title", "description", "tags", "license", "source", "poses", "left_out")
+WORDS = (
+    "name",
+    "title",
+    "description",
+    "tags",
+    "license",
+    "source",
+    "poses",
+    "left_out",
+    "independent",
+    "start",
+    "ranges",
+)
 
 
 def shape_of(definition: Definition) -> dict[str, Any]:

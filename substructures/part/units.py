@@ -128,6 +128,11 @@ class _Places:
             for name, value in given.items():
                 yield f"/poses/{pose}/{name}", value, COORDINATE[kinds[name]]
 
+        for name, value in self.definition.start.items():
+            yield f"/start/{name}", value, COORDINATE[kinds[name]]
+        for name, ends in self.definition.ranges.items():
+            yield from vector(f"/ranges/{name}", ends, COORDINATE[kinds[name]])
+
     def loads(self) -> Iterator[Place]:
         """Forces, torques, springs, bushings, joint loads, friction and potentials."""
         kinds = {entry.coordinate: entry.s for entry in self.topology.joints}

@@ -19,7 +19,7 @@ from substructures.part.part import MAX_NODES, Part, recheck, told_operations
 from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
 from substructures.tree.certificate import certified, seconds_of
-from substructures.tree.closures import ClosureRows
+from substructures.tree.closures import ClosureRows, Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.grouping import every, numbers
@@ -37,9 +37,9 @@ EFFORTS = {"R": "N m", "P": "N"}
 @dataclass(frozen=True)
 class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
-    the rows of the closure outputs are; ``parameters``, ``inputs`` (of loads): all that are declared and not bound,
-    whether or not a formula depends on them; ``limited``: the coordinates that have limits; ``plausibility``: of
-    values, unknown of a model out of a store."""
+    the rows of the closure outputs are, ``reduction``: in which coordinates it moves; ``parameters``, ``inputs`` (of
+    loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
+    ``plausibility``: of values, unknown of a model out of a store."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -51,6 +51,7 @@ class Model:
     inputs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
     limited: tuple[str, ...] = ()
     plausibility: Plausibility | None = field(default=None, compare=False, repr=False)
+    reduction: Reduction = field(default=Reduction(), hash=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -96,7 +97,8 @@ class Model:
 
     def described(self) -> dict[str, Any]:
         """What the axes of the outputs are, as plain data."""
-        closures = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
+        closures: dict[str, Any] = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
+        closures |= {"reduction": self.reduction.plain()} if self.reduction else {}
         return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
@@ -121,7 +123,8 @@ class Model:
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
         inputs, limited = summary.get("inputs", {}), tuple(summary.get("limited", ()))
         program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
-        return cls(program, *names, *described, closures, inputs, limited)
+        reduction = Reduction.read(summary["reduction"]) if summary.get("reduction") else Reduction()
+        return cls(program, *names, *described, closures, inputs, limited, reduction=reduction)
 
 
 def require_stored(program: Program, names: Iterable[str]) -> None:
@@ -229,7 +232,9 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     ]
     limited = tuple(moving[a] for a in sorted(assembly.limits))
     names_of = (names, joints, _frame_names(assembly))
-    return Model(result, *names_of, assembly.parameters, {}, rows, assembly.inputs, limited, plausibility)
+    reduction = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
+    parameters, inputs = assembly.parameters, assembly.inputs
+    return Model(result, *names_of, parameters, {}, rows, inputs, limited, plausibility, reduction)
 
 
 def _formulas(spec: TreeSpec, assembly: Assembly, christoffel: bool, group: bool, max_nodes: int) -> Program:

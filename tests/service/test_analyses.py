@@ -169,6 +169,19 @@ def test_closed_loops(client: TestClient) -> None:
     assert max(found["series"]["position_residual"]) < 1e-9
 
 
+def test_closed_loops_in_independent_coordinates(client: TestClient) -> None:
+    """As with multipliers; a place beyond the dead centre is named."""
+    asked = {"independent": ["a.q"], "start": {"a.q": 1.8, "b.q": -2.0, "c.q": -1.5}}
+    found = ask(client, "ring/reduced-equations", **asked, q={"a.q": {"value": 90, "unit": "deg"}}, qd={"a.q": 1})
+    assert found["is_right"], found
+    other = ask(client, "ring/loop-states", q=found["q"], qd=found["qd"])
+    assert found["qdd"] == pytest.approx(other["qdd"], rel=1e-10)
+    inertia, bent = found["metric"][0][0], found["christoffel"][0][0][0]
+    assert found["accelerations"][0] == pytest.approx((found["forces"][0] - bent) / inertia, rel=1e-12)
+    refused = client.post("/v1/trees/ring/reduced-equations", json={"q": {"a.q": 1}})
+    assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/independent", "missing")]
+
+
 def test_a_skate_does_not_slip(client: TestClient) -> None:
     edge = {"type": "knife_edge", "name": "edge", "frame": "s.sled"}
     velocities = {"speed": "s.x'*cos(s.phi) + s.y'*sin(s.phi)", "turn": "s.phi'"}

@@ -31,7 +31,7 @@ ANALYSES = (
         "regulators",
         "periodic-orbits",
     ),
-    *("optimal-controls", "root-loci", "sensitivities", "simulations", "steady-motions"),
+    *("optimal-controls", "reduced-equations", "root-loci", "sensitivities", "simulations", "steady-motions"),
 )
 
 

@@ -42,6 +42,7 @@ REQUESTS: dict[str, tuple[str, dict[str, Any]]] = {
     "cost-gradients": ("skate", {**CONTROL, "values": {"tau.s.x": 1}}),
     "optimal-controls": ("skate", {**CONTROL, "end": {"q": {"s.x": 1}}}),
     "loop-states": ("ring", {"q": [1.8, -2.0, -1.5]}),
+    "reduced-equations": ("ring", {"independent": ["a.q"], "start": {"a.q": 1.8, "b.q": -2.0, "c.q": -1.5}}),
     "excitations": ("clock", MOTION),
     "identifications": ("clock", {**MOTION, "tau": MOTION["q"], "drives": ["viscous"]}),
 }

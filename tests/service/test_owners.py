@@ -45,7 +45,15 @@ ANALYSES = (
         "regulators",
         "periodic-orbits",
     ),
-    *("optimal-controls", "root-loci", "sensitivities", "simulations", "steady-motions", "velocity-equations"),
+    *(
+        "optimal-controls",
+        "reduced-equations",
+        "root-loci",
+        "sensitivities",
+        "simulations",
+        "steady-motions",
+        "velocity-equations",
+    ),
 )
 
 

@@ -34,7 +34,7 @@ MOTIONS = (
     *("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states"),
     *("periodic-orbits", "lyapunov-exponents"),
 )
-NEAR = ("equilibria", "root-loci", "steady-motions")
+NEAR = ("equilibria", "root-loci", "steady-motions", "reduced-equations")
 MANY = ("ensembles",)
 TOLD = ("status", "message", "is_right", "cost", "warnings")
 

@@ -56,7 +56,7 @@ def pinned_model(tree: StoredTree) -> dict[str, Any]:
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
-    kept = ("coordinates", "joints", "frames", "closures", "inputs", "limited")
+    kept = ("coordinates", "joints", "frames", "closures", "reduction", "inputs", "limited")
     told: dict[str, Any] = {"warnings": summary["certificate"].get("warnings", [])}
     if lost := not_judged(summary["certificate"]):
         told["direct_form"] = {"max_relative_error": dict.fromkeys(lost)}

@@ -31,7 +31,7 @@ from substructures.tree.model import couple
 
 ALL = "*"
 #: what is stored of a tree beside its program, but for the certificate
-SUMMARY = ("coordinates", "joints", "frames", "closures", "limited", "parameters", "inputs", "operations")
+SUMMARY = ("coordinates", "joints", "frames", "closures", "reduction", "limited", "parameters", "inputs", "operations")
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:

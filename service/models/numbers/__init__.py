@@ -26,6 +26,7 @@ _MODULES = {
     "cost-gradients": "control",
     "optimal-controls": "control",
     "loop-states": "loops",
+    "reduced-equations": "loops",
     "excitations": "identification",
     "identifications": "identification",
 }

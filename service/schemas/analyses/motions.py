@@ -181,6 +181,18 @@ class LoopRequest(StateRequest):
     prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
 
 
+class ReducedRequest(StateRequest):
+    """Equations in independent coordinates at a state: ``q`` and ``qd`` of these by name. ``start``: near a closed
+    position, from which it is followed; by default what the definitions say, as are ``independent`` and ranges.
+    """
+
+    t: Annotated[Real, SECONDS] = 0.0
+    q: Annotated[dict[str, Real], COORDINATES] = Field({}, description="independent coordinates by name; rad, m")
+    qd: Annotated[dict[str, Real], VELOCITIES] = Field({}, description="by name, 0 by default; rad/s, m/s")
+    independent: tuple[str, ...] | None = Field(None, max_length=500, description="default: as the parts say")
+    start: Annotated[dict[str, Real], COORDINATES] = Field({}, description="coordinates by name; rad, m")
+
+
 class ClosedRequest(WithReactions):
     """A motion with closures from the closed state nearest to ``q``, ``qd``; see LoopRequest.
 

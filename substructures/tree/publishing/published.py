@@ -84,6 +84,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     for load in spec.loads:
         document["loads"].append(load_of_part(load, names))
     document["closures"] = list(_closures(spec, parts, names))
+    document |= _reduction(spec, parts, names)
     document["bodies"] += names.frames
     document["parameters"], document["inputs"] = names.parameters(document), names.inputs
     definition = Definition.read({name: x for name, x in document.items() if x or name == "bodies"})
@@ -160,6 +161,19 @@ def _closures(spec: TreeSpec, parts: Mapping[str, Part], names: PartNames) -> It
     for instance in _hosts_first(spec):
         for k, own in enumerate(parts[instance.name].definition.closures):
             yield closure_of_part(own, instance.name, names, f"/instances/{instance.name}/closures/{k}")
+
+
+def _reduction(spec: TreeSpec, parts: Mapping[str, Part], names: PartNames) -> dict[str, Any]:
+    """Independent coordinates with their ranges, where all loops are those of parts that name them, and starts."""
+    closed = [part.definition for part in parts.values() if part.definition.closures]
+    is_said = closed and all(definition.independent for definition in closed) and not spec.closures
+    found: dict[str, Any] = {"independent": [], "start": {}, "ranges": {}}
+    for name, part in ((instance.name, parts[instance.name]) for instance in _hosts_first(spec)):
+        given, own = _plain(part), part.definition.independent if part.definition.closures else part.coordinates
+        found["independent"] += [names.symbol(name, c) for c in part.coordinates if c in own and is_said]
+        for which in ("start", "ranges") if is_said else ("start",):
+            found[which] |= {names.symbol(name, c): x for c, x in given.get(which, {}).items()}
+    return found
 
 
 def _load(
