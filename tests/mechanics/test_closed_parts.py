@@ -21,6 +21,7 @@ from substructures import (
     evaluate,
     simulate,
 )
+from substructures.analysis.closed.loops import loop_state
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.export.urdf.document import urdf_of_part
@@ -116,6 +117,15 @@ def test_motions_of_the_closed_part_are_judged_right() -> None:
     linkage = {**CLOSED, "closures": [{**CLOSURES[0], "placement": {"position": ["l3", 0, 0]}}]}
     motion = simulate(couple(spec, {"x": derived_once(linkage)}), [1.0, -0.3, 1.9], (0, 0.5))
     assert motion.is_right, motion
+
+
+def test_reactions_that_are_not_unique_are_told_by_closure() -> None:
+    """Of a pin in a plane mechanism those across the plane, under the name that it has in the tree."""
+    spec = {"name": "m", "gravity": GRAVITY, "instances": [{"name": "x", "substructure": "linkage"}]}
+    linkage = {**CLOSED, "closures": [{**CLOSURES[0], "placement": {"position": ["l3", 0, 0]}}]}
+    found = loop_state(couple(spec, {"x": derived_once(linkage)}), [1.0, -0.3, 1.9])
+    assert found.mobility.dependent == ("x.pin.z", "x.pin.rx", "x.pin.ry")
+    assert [(each.closure, each.not_unique) for each in found.reactions] == [("x.pin", ("z", "rx", "ry"))]
 
 
 def test_a_closed_tree_becomes_a_part() -> None:

@@ -77,6 +77,11 @@ def test_a_part_brings_its_closures_along(client: TestClient) -> None:
     assert (found["mobility"]["degrees_of_freedom"], found["is_right"]) == (2, True), found
     motion = client.post("/v1/trees/knees/simulations", json={**state, "span": [0, 0.2], "step": 0.1}).json()
     assert motion["is_right"], motion
+    names = [{"type": "closure", "name": "k.stay"}, {"type": "closure", "name": "l.stay"}]
+    quasi = client.post("/v1/trees/knees/velocity-equations", json={"constraints": names}, params={"format": "json"})
+    assert quasi.json()["constraints"] == ["k.stay.length", "l.stay.length"], quasi.text
+    some = client.post("/v1/trees/knees/velocity-equations", json={"constraints": names[:1]}).json()
+    assert "the closure 'l.stay' is not among them" in some["detail"]
     wrong = {**part, "closures": [{**closure, "to": "world"}]}
     answer = client.post("/v1/substructures", json=wrong)
     assert [(e["pointer"], e["code"]) for e in answer.json()["errors"]] == [("/closures/0/to", "unknown-frame")]

@@ -57,10 +57,10 @@ class Rolling(RequestPart):
 
 
 class Closed(RequestPart):
-    """A closure of the tree, by its name."""
+    """A closure of the tree by its name, of a part by ``instance.closure``."""
 
     type: Literal["closure"]
-    name: Name
+    name: Annotated[str, Field(max_length=140)]
 
     def value(self) -> science.Closed:
         """As the science takes it."""

@@ -182,7 +182,7 @@ def mobility(s: Constrained, t: float, q: Array) -> Mobility:
     dependent = tuple(label for k, label in enumerate(s.labels) if k not in chosen)
     entangled: dict[str, tuple[str, ...]] = {}
     for k in np.flatnonzero(_ambiguous(G)):
-        closure, _, row = s.labels[k].partition(".")
+        closure, _, row = s.labels[k].rpartition(".")
         entangled[closure] = (*entangled.get(closure, ()), row)
     names = tuple(s.model.coordinates[a] for a in independent_coordinates(G))
     return Mobility(rank, s.n - rank, s.n - m, dependent, entangled, names, _is_singular(s, t, q, G, rank))

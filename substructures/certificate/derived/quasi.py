@@ -80,8 +80,7 @@ class Quasi:
 
     def _row(self, label: str, m: ModelAt) -> list[Ball]:
         """B of one row."""
-        name, _, row = label.partition(".")
-        given = self.constraints[name]
+        given, row = self._given(label), label.rpartition(".")[2]
         if "expression" in given:
             return self._linear(given["expression"], m)
         if "frame" not in given:
@@ -94,9 +93,14 @@ class Quasi:
         # the velocity of the point of contact in the axes of the plane
         return [(plane.transpose() * R * (u + cross(w, rho)))[ROLLING[row], 0] for u, w in zip(U, Omega, strict=True)]
 
+    def _given(self, label: str) -> Plain:
+        """The constraint of a row, ``constraint`` or ``constraint.row``; names of closures of parts have a dot."""
+        found: Plain = self.constraints[label if label in self.constraints else label.rpartition(".")[0]]
+        return found
+
     def _gap(self, label: str, m: ModelAt) -> Ball:
         """The residual of a closure; the distance of the contact from a plane through the origin."""
-        given = self.constraints[label.partition(".")[0]]
+        given = self._given(label)
         if "frame" not in given:
             return m.elements("closure.residual").get((self.closed.index(label),), arb(0))
         R, origin, _, _ = self._kinematics(given["frame"], m)
