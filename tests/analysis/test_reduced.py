@@ -17,6 +17,9 @@ from made_once import derived_once
 from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reduced import ReducedEquations, reduced_equations
+from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.velocity_constraints import Closed
+from substructures.expr.interpret import interpret
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
@@ -125,6 +128,25 @@ def test_they_are_the_equations_with_multipliers() -> None:
         other = loop_state(model, found.q, qd=found.qd, inputs=inputs)
         np.testing.assert_allclose(other.consistent.q, found.q, rtol=0, atol=1e-12)
         np.testing.assert_allclose(found.qdd, other.qdd, rtol=0, atol=1e-10 * np.abs(other.qdd).max())
+
+
+def test_formulas_of_them_are_velocity_equations() -> None:
+    """g*, Gamma* y'y' and Q* as certified formulas in all coordinates, by elimination: the same numbers to 1e-12."""
+    model = on_an_arm()
+    formulas = quasi_velocity_equations(model, [Closed(rows.name) for rows in model.closures])
+    assert formulas.velocities == tuple(f"{name}'" for name in model.reduction.independent)
+    rates = dict(zip(model.reduction.independent, [0.7, -1.1, 1.3, 0.4], strict=True))
+    found = reduced_equations(model, {"left.crank": 0.3, "right.crank": 2.0, "arm.b": 0.6}, qd=rates)
+    values = {s.name: 0.0 for s in formulas.program.symbols} | dict(zip(model.coordinates, found.q, strict=True))
+    values |= {name: float(p["value"]) for name, p in model.parameters.items()}
+    values |= {f"{name}'": x for name, x in rates.items()}
+    numbers = interpret(formulas.program, values, ["metric", "bias", "forces", "T"])
+    yd = list(rates.values())
+    np.testing.assert_allclose(numbers["T"], found.tangent, rtol=0, atol=1e-12)
+    np.testing.assert_allclose(numbers["metric"], found.metric, rtol=0, atol=1e-12)
+    bias = np.einsum("ijk,j,k->i", found.christoffel, yd, yd)
+    np.testing.assert_allclose(numbers["bias"], bias, rtol=0, atol=1e-12 * np.abs(bias).max())
+    np.testing.assert_allclose(numbers["forces"], found.forces, rtol=0, atol=1e-12 * np.abs(found.forces).max())
 
 
 def test_the_squeezer_starts_as_published() -> None:

@@ -37,7 +37,7 @@ from typing import Any
 from substructures.analysis.arguments import exact
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.quasi_choice import MatrixRows, independent_rows, quasi_velocity_rows, vanishing
-from substructures.analysis.equations.velocity_constraints import Constraint, velocity_rows
+from substructures.analysis.equations.velocity_constraints import Closed, Constraint, velocity_rows
 from substructures.certificate.derived.quasi import Quasi
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient
@@ -87,12 +87,20 @@ def quasi_velocity_equations(
     """The equations of a model with velocity constraints, all formulas.
 
     The quasi-velocities: ``velocities``, as many as the constraints leave free, by name, each an expression linear in
-    the velocities; or those of the coordinates ``independent``; default: chosen for short formulas that describe the
-    motion well ``near`` these values of coordinates and parameters.
+    the velocities; or those of the coordinates ``independent``; default: those that the parts name, where closures are
+    the only constraints and nothing is ``near``, else chosen for short formulas that describe the motion well ``near``
+    these values of coordinates and parameters.
 
     Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
     do not determine the velocities; TooLarge.
     """
+    if (
+        velocities is None
+        and independent is None
+        and near is None
+        and all(isinstance(each, Closed) for each in constraints)
+    ):
+        independent = model.reduction.independent or None
     f = Workspace(model)
     given = velocity_rows(f, constraints)
     rows, dependent = independent_rows(f, given)
