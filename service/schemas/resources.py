@@ -196,6 +196,9 @@ class TreeView(Shape):
     closures: list[dict[str, Any]] = Field(
         [], description="loops: name, type, from, to and rows of each; left out if none"
     )
+    reduction: dict[str, Any] = Field(
+        {}, description="independent coordinates, start and ranges, as the parts say; left out if none does"
+    )
     loads: list[dict[str, Any]] = Field([], description="of the tree, as they were given; left out if none")
     limited: list[str] = Field([], description="coordinates with limits, which are the quantity limits")
     operations: dict[str, Any]

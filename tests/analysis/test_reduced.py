@@ -19,7 +19,9 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reduced import ReducedEquations, reduced_equations
 from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.velocity_constraints import Closed
+from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
+from substructures.tree.certificate import certify_tree
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
@@ -245,6 +247,19 @@ def test_faults_of_definitions_have_their_place(change: Plain, place: str, code:
     with pytest.raises(InvalidDocument) as raised:
         derive({**LINKAGE, **change})
     assert [(fault.pointer, fault.code) for fault in raised.value.faults] == [(place, code)]
+
+
+def test_what_a_model_says_of_them_is_certified() -> None:
+    """Also as it comes out of a store."""
+    model, parts = linkage(), {"x": derived_once(LINKAGE)}
+    tree = {"name": "loop", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "linkage"}]}
+    definitions = {name: part.definition for name, part in parts.items()}
+    summary = json.loads(json.dumps(model.described()))
+    assert certify_tree(TreeSpec.read(tree), definitions, summary, model.program)["direct_form"]
+    assert Model.load({**model.summary(), **summary}, model.program.to_bytes()).reduction == model.reduction
+    summary["reduction"]["start"]["x.crank"] = "2"
+    with pytest.raises(VerificationFailed, match="reduction"):
+        certify_tree(TreeSpec.read(tree), definitions, summary, model.program)
 
 
 def test_a_published_tree_says_it_too() -> None:
