@@ -94,6 +94,24 @@ def test_a_full_turn_ends_where_it_began() -> None:
     assert abs(np.exp(1j * below.q[2]) - np.exp(1j * one.q[2])) > 0.5
 
 
+def test_many_states_are_followed_one_after_the_other() -> None:
+    """As one by one; a way that ends at a dead centre has numbers up to there."""
+    way, rates = np.linspace(-3, 3, 13), np.linspace(0, 1, 13)
+    found = reduced_equations(linkage(), {"x.crank": way}, qd={"x.crank": rates.tolist()})
+    assert found.is_right, found
+    assert [x.shape for x in (found.q, found.metric, found.christoffel)] == [(13, 3), (13, 1, 1), (13, 1, 1, 1)]
+    for k in (0, 5, 12):
+        one = reduced_equations(linkage(), {"x.crank": float(way[k])}, qd={"x.crank": float(rates[k])})
+        np.testing.assert_allclose(found.qdd[k], one.qdd, rtol=1e-9)
+    rocker = np.linspace(2, 3, 11)
+    ended = reduced_equations(linkage(), {"x.rocker": rocker}, independent=["x.rocker"])
+    assert ended.is_right is None
+    assert np.isfinite(ended.metric[:, 0, 0]).tolist() == (rocker < 2.498).tolist()
+    assert "x.rocker = 2.498091" in ended.message
+    constant = reduced_equations(linkage(), {"x.crank": [1.5]}, qd={"x.crank": 0.1})
+    assert constant.q.shape == (1, 3)
+
+
 def test_christoffel_symbols_are_those_of_the_reduced_metric() -> None:
     """Gamma*_ijk = 1/2 (d_j g*_ik + d_k g*_ij - d_i g*_jk), Q* = -dV/dy of gravity and springs at rest: differences."""
     model, h = on_an_arm(), 1e-5
@@ -203,6 +221,9 @@ def test_singular_places_bound_what_is_reached_and_are_named() -> None:
         ({"q": {"x.crank": 9}}, "/q/x.crank", "out-of-range"),
         ({"q": {"x.rocker": 1}}, "/q/x.rocker", "not-independent"),
         ({"q": [1]}, "/q", "object-expected"),
+        ({"q": {"x.crank": [1, 2]}, "qd": {"x.crank": [1, 2, 3]}}, "/q", "wrong-length"),
+        ({"q": {"x.crank": []}}, "/q", "wrong-length"),
+        ({"q": {"x.crank": [1, 9]}}, "/q/x.crank", "out-of-range"),
         ({"qd": {"x.crank": np.nan}}, "/qd/x.crank", "number-not-finite"),
         ({"independent": ["x.crank", "x.rocker"]}, "/independent", "wrong-number"),
         ({"independent": ["x.cronk"]}, "/independent/0", "unknown-coordinate"),

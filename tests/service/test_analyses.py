@@ -178,6 +178,9 @@ def test_closed_loops_in_independent_coordinates(client: TestClient) -> None:
     assert found["qdd"] == pytest.approx(other["qdd"], rel=1e-10)
     inertia, bent = found["metric"][0][0], found["christoffel"][0][0][0]
     assert found["accelerations"][0] == pytest.approx((found["forces"][0] - bent) / inertia, rel=1e-12)
+    two = ask(client, "ring/reduced-equations", **asked, q={"a.q": {"value": [100, 90], "unit": "deg"}}, qd={"a.q": 1})
+    assert two["is_right"], two
+    assert two["metric"][1] == [pytest.approx(row, rel=1e-12) for row in found["metric"]]
     refused = client.post("/v1/trees/ring/reduced-equations", json={"q": {"a.q": 1}})
     assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/independent", "missing")]
 

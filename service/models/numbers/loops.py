@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Any
 
-from service.models.numbers.analysis import Analysis, without
+from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
 from service.models.source import Source
 from service.schemas.analyses.motions import LoopRequest, ReducedRequest
@@ -18,6 +18,9 @@ def _loop_state(source: Source, request: LoopRequest, _: ProgressReport) -> Any:
 
 
 def _reduced(source: Source, request: ReducedRequest, _: ProgressReport) -> Any:
+    states = max((len(x) for x in (*request.q.values(), *request.qd.values()) if isinstance(x, list)), default=1)
+    r = len(source.model.reduction.independent if request.independent is None else request.independent)
+    check_size(source, states, (source.model.dof + r) * (r + 1) ** 2 + 3 * source.model.dof)
     return reduced_equations(source.model, request.q, **without(arguments(request), "q"), folder=source.folder)
 
 

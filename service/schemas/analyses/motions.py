@@ -181,14 +181,17 @@ class LoopRequest(StateRequest):
     prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
 
 
+Way = Annotated[list[Real], Field(max_length=10_000)]
+
+
 class ReducedRequest(StateRequest):
-    """Equations in independent coordinates at a state: ``q`` and ``qd`` of these by name. ``start``: near a closed
-    position, from which it is followed; by default what the definitions say, as are ``independent`` and ranges.
+    """Equations in independent coordinates: ``q`` and ``qd`` of these by name, numbers or lists of K. ``start``: near a
+    closed position, from which it is followed; by default what the definitions say, as are ``independent`` and ranges.
     """
 
     t: Annotated[Real, SECONDS] = 0.0
-    q: Annotated[dict[str, Real], COORDINATES] = Field({}, description="independent coordinates by name; rad, m")
-    qd: Annotated[dict[str, Real], VELOCITIES] = Field({}, description="by name, 0 by default; rad/s, m/s")
+    q: Annotated[dict[str, Real | Way], COORDINATES] = Field({}, description="independent coordinates; rad, m")
+    qd: Annotated[dict[str, Real | Way], VELOCITIES] = Field({}, description="of these, 0 by default; rad/s, m/s")
     independent: tuple[str, ...] | None = Field(None, max_length=500, description="default: as the parts say")
     start: Annotated[dict[str, Real], COORDINATES] = Field({}, description="coordinates by name; rad, m")
 

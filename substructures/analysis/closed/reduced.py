@@ -13,13 +13,14 @@ q(y) is followed from a start (:mod:`.following`).
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, fields, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy
 
-from substructures.analysis.arguments import real
+from substructures.analysis.arguments import real, reals
 from substructures.analysis.closed.constrained import Constrained, Singular
 from substructures.analysis.closed.following import Index, followed, tangent
 from substructures.analysis.closed.loops import MET, SOLVED, independent_coordinates
@@ -35,14 +36,19 @@ from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.model import Model
 
+#: of independent coordinates by name, one or (K,)
+Given = Mapping[str, float | Sequence[float] | Array]
+
 
 @dataclass(frozen=True)
 class ReducedEquations:
-    """The equations of motion in r ``independent`` coordinates at a state ``q``, ``qd`` (n,) that meets the closures.
+    """The equations of motion in r ``independent`` coordinates at a state ``q``, ``qd`` (n,) that meets the closures;
+    at K states one after the other, with the axis K first.
 
     ``tangent`` (n, r): N; ``tangent_derivative`` (n, r, r): d_(j N_bk); ``metric`` (r, r), ``christoffel`` (r, r, r;
     first kind, the first index is the equation) and ``forces`` (r,) of the reduced equations; ``accelerations`` (r,)
-    that follow from them, and ``qdd`` (n,) of all coordinates. Nothing is finite where the ``message`` says why.
+    that follow from them, and ``qdd`` (n,) of all coordinates. From the state on that is not reached, for the reason in
+    ``message``, nothing is finite.
     """
 
     independent: tuple[str, ...]
@@ -64,15 +70,15 @@ class ReducedEquations:
         return verdict(self.checks, not self.message)
 
     def __repr__(self) -> str:
-        at = ", ".join(f"{x:.6g}" for x in self.q)
-        return f"ReducedEquations in {listed(self.independent)} at q = {at}\n{self.message or 'closed'}"
+        at = f"q = {', '.join(f'{x:.6g}' for x in self.q)}" if self.q.ndim == 1 else f"{len(self.q)} states"
+        return f"ReducedEquations in {listed(self.independent)} at {at}\n{self.message or 'closed'}"
 
 
 def reduced_equations(
     model: Model,
-    q: Mapping[str, float] | None = None,
+    q: Given | None = None,
     *,
-    qd: Mapping[str, float] | None = None,
+    qd: Given | None = None,
     independent: Sequence[str] | None = None,
     start: Mapping[str, float] | None = None,
     t: float = 0.0,
@@ -80,28 +86,32 @@ def reduced_equations(
     inputs: Mapping[str, Signal] | None = None,
     folder: Path | None = None,
 ) -> ReducedEquations:
-    """The equations of motion in independent coordinates at one state.
+    """The equations of motion in independent coordinates at one state, or at K states one after the other.
 
-    ``q`` [rad, m], ``qd`` [rad/s, m/s; 0 by default]: of independent coordinates by name; those that are not given are
-    where they start. ``independent``, ``start`` (coordinates by name, near a closed position): by default what the
-    definitions of the parts say, start 0. ``t`` [s]; ``parameters``: in place of their defaults; ``inputs`` [N m, N]:
-    numbers, expressions or tables. ``folder``: a cache of compiled kernels.
+    ``q`` [rad, m], ``qd`` [rad/s, m/s; 0 by default]: of independent coordinates by name, a number or (K,); those that
+    are not given are where they start. ``independent``, ``start`` (coordinates by name, near a closed position): by
+    default what the definitions of the parts say, start 0. ``t`` [s]; ``parameters``: in place of their defaults;
+    ``inputs`` [N m, N]: numbers, expressions or tables. ``folder``: a cache of compiled kernels.
 
     Raises InvalidInput: ``not-of-tree`` without closures, ``unknown-coordinate``, ``not-independent``,
     ``wrong-number`` where the closures leave more or fewer coordinates free, ``out-of-range``; and MissingValue. A
     start that cannot be closed and places that cannot be reached are messages in the result.
     """
     names, t = _independent(model, independent), real(t, "/t")
-    wanted, rates = (_given(names, x, field) for x, field in ((q, "q"), (qd, "qd")))
-    _require_ranges(model, wanted)
     begin = _start(model, start or {})
+    y, rates, is_one = _states(model, names, {"q": q or {}, "qd": qd or {}}, begin)
     s = Constrained(model, Start(begin, None, parameters or {}, inputs or {}), (t, t), folder=folder)
+    found: list[ReducedEquations] = []
+    message = ""
     try:
         places = _begun(s, names)
-        s.move(t, followed(s, s.q, places, np.array([wanted.get(name, begin[name]) for name in names])), np.zeros(s.n))
-        return _equations(s, names, places, np.array([rates.get(name, 0.0) for name in names]), parameters or {})
+        for target, rate in zip(y, rates, strict=True):
+            s.move(t, followed(s, found[-1].q if found else s.q, places, target), np.zeros(s.n))
+            found.append(_equations(s, names, places, rate, parameters or {}))
     except Singular as error:
-        return _failed(model, names, str(error))
+        message = str(error)
+    whole = [*found, *[_nothing(model, names)] * (len(y) - len(found))]
+    return replace(whole[0] if is_one else _together(whole), message=message)
 
 
 def _begun(s: Constrained, names: tuple[str, ...]) -> tuple[Index, Index]:
@@ -143,24 +153,45 @@ def _require_known(model: Model, name: str, pointer: str) -> None:
         raise InvalidArgument.at(pointer, "unknown-coordinate", message)
 
 
-def _given(names: Sequence[str], given: Mapping[str, float] | None, field: str) -> dict[str, float]:
+def _states(
+    model: Model, names: Sequence[str], given: Mapping[str, Given], begin: Mapping[str, float]
+) -> tuple[Array, Array, bool]:
+    """Independent coordinates and rates (K, r), and whether there is one state alone. Raises InvalidArgument."""
+    wanted, rates = (_given(names, given[field], field) for field in ("q", "qd"))
+    _require_ranges(model, wanted)
+    lists = [x for x in (*wanted.values(), *rates.values()) if isinstance(x, tuple)]
+    count = len(lists[0]) if lists else 1
+    if any(len(x) != count for x in lists) or not count:
+        sizes = listed(sorted({str(len(x)) for x in lists}))
+        message = f"as many numbers of every coordinate and rate are needed, one or more; there are {sizes}"
+        raise InvalidArgument.at("/q", "wrong-length", message)
+    y = [np.broadcast_to(wanted.get(name, begin[name]), count) for name in names]
+    return np.stack(y, axis=1), np.stack([np.broadcast_to(rates.get(x, 0.0), count) for x in names], axis=1), not lists
+
+
+def _given(names: Sequence[str], given: Given, field: str) -> dict[str, float | tuple[float, ...]]:
     """Values of independent coordinates. Raises InvalidArgument."""
-    if given is not None and not isinstance(given, Mapping):
+    if not isinstance(given, Mapping):
         message = f"independent coordinates by name are needed, as in {{'{names[0]}': 0.1}}"
         raise InvalidArgument.at(f"/{field}", "object-expected", message)
-    others = [name for name in given or () if name not in names]
+    others = [name for name in given if name not in names]
     if others:
         message = f"'{others[0][:80]}' is not independent: {listed(names)} are"
         raise InvalidArgument.at(f"/{field}/{others[0]}", "not-independent", message)
-    return {name: real(x, f"/{field}/{name}") for name, x in (given or {}).items()}
+    many = (list, tuple, np.ndarray)
+    return {
+        name: reals(x, f"/{field}/{name}") if isinstance(x, many) else real(x, f"/{field}/{name}")
+        for name, x in given.items()
+    }
 
 
-def _require_ranges(model: Model, wanted: Mapping[str, float]) -> None:
+def _require_ranges(model: Model, wanted: Mapping[str, float | tuple[float, ...]]) -> None:
     faults = []
     for name, (low, high) in model.reduction.ranges.items():
         least, most = default_number(low), default_number(high)
-        if name in wanted and not least <= wanted[name] <= most:
-            message = f"{wanted[name]:.6g} is outside of the range of '{name}', from {least:.6g} to {most:.6g}"
+        beyond = [x for x in np.atleast_1d(wanted.get(name, least)) if not least <= x <= most]
+        if beyond:
+            message = f"{beyond[0]:.6g} is outside of the range of '{name}', from {least:.6g} to {most:.6g}"
             faults.append(Fault(f"/q/{name}", "out-of-range", message))
     if faults:
         raise InvalidArgument(faults)
@@ -238,8 +269,18 @@ def _checks(s: Constrained, qdd: Array) -> Iterator[Check]:
     yield Check.at(same, float(np.abs(other - qdd).max()), s.t, max(1.0, float(np.abs(other).max())), SOLVED)
 
 
-def _failed(model: Model, names: tuple[str, ...], message: str) -> ReducedEquations:
+def _together(found: Sequence[ReducedEquations]) -> ReducedEquations:
+    """States one after the other, with the worst of every check."""
+    names = [x.name for x in fields(found[0]) if isinstance(getattr(found[0], x.name), np.ndarray)]
+    arrays: dict[str, Any] = {name: np.stack([getattr(each, name) for each in found]) for name in names}
+    pairs = zip(*(each.checks for each in found if each.checks), strict=True)
+    checks = tuple(max(some, key=lambda check: check.worst / check.scale) for some in pairs)
+    return replace(found[0], **arrays, checks=checks)
+
+
+def _nothing(model: Model, names: tuple[str, ...]) -> ReducedEquations:
+    """A state that is not reached."""
     n, r = (np.full(size, np.nan) for size in (model.dof, len(names)))
     nr, rr = np.full((len(n), len(r)), np.nan), np.full((len(r), len(r)), np.nan)
     nrr, rrr = (np.full((len(x), *rr.shape), np.nan) for x in (n, r))
-    return ReducedEquations(names, n, n, n, nr, nrr, rr, rrr, r, r, message)
+    return ReducedEquations(names, n, n, n, nr, nrr, rr, rrr, r, r)
