@@ -2,7 +2,8 @@
 
 ::
 
-    bundle.json                           format, version, and of every part name, digest, program, folder, files
+    bundle.json                           format, version, and of every part name, number of its version, digest,
+                                          program, folder, files
     puma560@0123456789ab/definition.json  canonical bytes, whose SHA-256 is the digest
     puma560@0123456789ab/program          canonical bytes of the program (docs/reference/format.md)
     puma560@0123456789ab/certificate.json
@@ -16,9 +17,9 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import IO, Any
+from typing import IO, Annotated, Any
 
-from pydantic import BaseModel, ConfigDict
+from pydantic import BaseModel, ConfigDict, Field
 
 from service.content.integrity import digest_of
 from service.content.unzipped import file_pointer, invalid, too_large, unzipped
@@ -31,21 +32,24 @@ from substructures.errors import InvalidInput
 from substructures.export import archive
 from substructures.part.definition import Definition
 
-FORMAT, VERSION = "substructures.bundle", 1
+FORMAT, VERSION = "substructures.bundle", 2  # 1 was without numbers of versions
 MEDIA_TYPE = "application/zip"
 LIST = "bundle.json"
 DEFINITION, PROGRAM, CERTIFICATE = "definition.json", "program", "certificate.json"
 FILES = (DEFINITION, PROGRAM, CERTIFICATE)
 MOST_PARTS = 200
+MOST_NUMBER = 1_000_000  # of a version that comes from elsewhere
 SHORT = len("sha256:") + 12  # characters of a digest in the name of a folder
 NOTHING = "nothing was stored"  # of a bundle that is refused
 
 
 @dataclass(frozen=True, slots=True)
 class BundledPart:
-    """A part as it travels: canonical bytes of definition and program, and the certificate as JSON."""
+    """A part as it travels: canonical bytes of definition and program, and the certificate as JSON. ``number``: of its
+    version where it comes from, None where that is not told."""
 
     name: str
+    number: int | None
     digest: str
     program_digest: str
     definition: bytes
@@ -73,6 +77,7 @@ class _Listed(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: LibraryName
+    number: Annotated[int, Field(ge=1, le=MOST_NUMBER)] | None = None
     digest: Digest
     program: Digest
     folder: str
@@ -94,6 +99,7 @@ def write_bundle(parts: Sequence[BundledPart], limits: Limits) -> bytes:
     listed = [
         {
             "name": part.name,
+            **({} if part.number is None else {"number": part.number}),
             "digest": part.digest,
             "program": part.program_digest,
             "folder": part.folder,
@@ -172,7 +178,7 @@ def _part(listed: _Listed, files: dict[str, bytes], place: str) -> BundledPart:
             raise invalid(path, "it is listed, and missing")
         contents.append(files.pop(path))
         _check_digest(path, contents[-1], listed.files[name], "the list")
-    part = BundledPart(listed.name, listed.digest, listed.program, *contents)
+    part = BundledPart(listed.name, listed.number, listed.digest, listed.program, *contents)
     if listed.folder != part.folder or len(listed.files) != len(FILES):
         detail = f"the folder of this part is '{part.folder}', with {', '.join(FILES)}; {NOTHING}"
         raise unprocessable("invalid-bundle", detail, f"{place}/folder")

@@ -29,7 +29,8 @@ SUBMITTED = Origin()
 @dataclass(frozen=True, slots=True)
 class PartSubmission:
     """A definition ready to be stored; ``content`` is None when that is stored already. ``is_mended``: what is stored
-    is damaged, or was not derived here, and the content takes its place."""
+    is damaged, or was not derived here, and the content takes its place. ``number``: that the version has elsewhere, by
+    default the next one."""
 
     name: str
     digest: str
@@ -37,6 +38,7 @@ class PartSubmission:
     is_mended: bool = False
     entry: PartEntry = PLAIN
     origin: Origin = SUBMITTED
+    number: int | None = None
 
 
 def prepare(
@@ -98,7 +100,8 @@ def mend_part(connection: Connection, part: PartContent) -> None:
 
 
 def submit(connection: Connection, viewer: Viewer, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
-    """Store a submission; the version, and whether it is new. Raises Refused 403 for a name of others, 409."""
+    """Store a submission; the version, and whether it is new. Raises Refused 403 for a name of others, 409, also for a
+    number that another content has."""
     name, digest = submission.name, submission.digest
     if not _is_there(connection, viewer, name, digest) or submission.entry.visibility is not None:
         owners.claimed(connection, viewer, "substructure", name, submission.entry)
@@ -106,11 +109,21 @@ def submit(connection: Connection, viewer: Viewer, submission: PartSubmission) -
         (mend_part if submission.is_mended else store_part)(connection, submission.content)
     origin = submission.origin
     told = provenance(connection, viewer, submission.entry, origin)
-    number, is_new = catalogue.add_version(connection, name, digest, viewer.key, told)
+    if submission.number is not None:
+        _require_free(connection, name, submission.number, digest)
+    number, is_new = catalogue.add_version(connection, name, digest, viewer.key, told, submission.number)
     if is_new:
         uses.put(connection, digest, origin.uses)
         audit.note(connection, viewer, "substructure.submit", f"{name}@{number}", digest=digest)
     return _resolved(connection, viewer, Reference(name, number=number)), is_new
+
+
+def _require_free(connection: Connection, name: str, number: int, digest: str) -> None:
+    """Raise Refused 409 where a number means another content here than elsewhere. The name is locked."""
+    here = catalogue.digest_of_number(connection, name, number)
+    if here not in (None, digest) and not is_version(connection, name, digest):
+        detail = f"{name}@{number} is {here} here, and {digest} there: submit one of them under another name"
+        raise Refused(409, "version-taken", detail, here=here, there=digest)
 
 
 def find(connection: Connection, viewer: Viewer, text: str) -> catalogue.Version:
@@ -159,9 +172,9 @@ def set_alias(
 
 def check_name(connection: Connection, viewer: Viewer, name: str) -> str:
     """The owner of a substructure. Raises Refused 404 unless the viewer sees one of this name."""
-    first = catalogue.resolve(connection, viewer, Reference(name, number=1))
-    if first is not None:
-        return first.owner
+    found = ownership(connection, "substructure", name)
+    if found is not None and viewer.sees(found.owner, found.visibility):
+        return found.owner
     raise not_found(owners.absent_part(connection, viewer, name), "unknown-substructure")
 
 

@@ -21,7 +21,7 @@ def versions_section(entries: Sequence[VersionEntry]) -> list[Html]:
             each.created[:10],
             _whence(each),
             each.note,
-            _compared("substructures", each.name, each.version - 1, each.version),
+            _compared("substructures", each.name, each.before or 0, each.version),
         )
         for each in entries[:SHOWN]
     ]

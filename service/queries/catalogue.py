@@ -117,17 +117,24 @@ _TREE = ("tree", "tree_revision")
 
 
 def add_version(
-    connection: Connection, name: str, digest: str, author: str, provenance: Provenance
+    connection: Connection, name: str, digest: str, author: str, provenance: Provenance, wanted: int | None = None
 ) -> tuple[int, bool]:
-    """The number of the version with this content, and whether it is new; the name is claimed, and so locked."""
+    """The number of the version with this content, and whether it is new: the one that is ``wanted`` and free, or the
+    next; the name is claimed, and so locked."""
     number = connection.execute(_OF_DIGEST, {"of_digest": digest}).scalar()
     if number is not None:
         return number, False
-    number = connection.execute(_HIGHEST, {"of_name": name}).scalar_one() + 1
+    number = wanted or connection.execute(_HIGHEST, {"of_name": name}).scalar_one() + 1
     row = {"name": name, "version": number, "digest": digest, "created": now(), "author": author}
     connection.execute(_NEW, row | provenance.values())
     _set_latest(connection, name)
     return number, True
+
+
+def digest_of_number(connection: Connection, name: str, number: int) -> str | None:
+    """The content of a version, None where there is none."""
+    found: str | None = connection.execute(_DIGEST, {"of_name": name, "of_version": number}).scalar()
+    return found
 
 
 def _set_latest(connection: Connection, name: str, is_anew: bool = False) -> None:
@@ -274,6 +281,7 @@ _OFFERED = (  # from the highest number down: of 10,000 versions one row is read
     .order_by(versions.c.version.desc())
     .limit(1)
 )
+_DIGEST = select(versions.c.digest).where(_IS_OF_NAME, versions.c.version == bindparam("of_version"))
 _SHOWN = select(substructures.c.latest).where(substructures.c.name == bindparam("of_name"))
 _LOCKED = _SHOWN.with_for_update()
 _OF_LATEST = (

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, Select, select
+from sqlalchemy import Connection, Select, func, select
 
 from service.database.tables import parts, substructures, tree_names, trees, versions
 from service.messages.viewer import Viewer
@@ -14,7 +14,7 @@ from service.queries.owners import reference, seen_by, visible
 
 @dataclass(frozen=True, slots=True)
 class VersionEntry:
-    """A version in the list of its name; ``operations`` is JSON."""
+    """A version in the list of its name; ``operations`` is JSON; ``before``: the version before, None of the first."""
 
     name: str
     version: int
@@ -31,6 +31,7 @@ class VersionEntry:
     yanked: str | None
     yank_reason: str | None
     successor: str | None
+    before: int | None
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +71,7 @@ def page_revisions(
     return [RevisionEntry(*row) for row in rows]
 
 
+_EARLIER = versions.alias("earlier")
 _VERSIONS: Select[Any] = (
     select(
         *(versions.c[name] for name in ("name", "version", "digest", "created", "author")),
@@ -80,6 +82,10 @@ _VERSIONS: Select[Any] = (
         *(parts.c[name] for name in ("dof", "operations")),
         *(versions.c[name] for name in ("yanked", "yank_reason")),
         reference(substructures, versions.c.successor_name, versions.c.successor_version),
+        select(func.max(_EARLIER.c.version))
+        .where(_EARLIER.c.name == versions.c.name, _EARLIER.c.version < versions.c.version)
+        .correlate(versions)
+        .scalar_subquery(),
     )
     .select_from(
         versions.join(parts, parts.c.digest == versions.c.digest).join(

@@ -15,7 +15,7 @@ def version_item(entry: VersionEntry) -> dict[str, Any]:
     """A version in the list of its name."""
     names = ("name", "version", "digest", "created", "author", "owner", "note", "origin", "derived_from", "tree", "dof")
     path = f"{BASE}/substructures/{entry.name}@{entry.version}"
-    before = f"{BASE}/substructures/{entry.name}@{entry.version - 1}/difference?to={entry.name}@{entry.version}"
+    before = f"{BASE}/substructures/{entry.name}@{entry.before}/difference?to={entry.name}@{entry.version}"
     return {
         **{name: getattr(entry, name) for name in names},
         "operations": orjson.Fragment(entry.operations),
@@ -23,7 +23,7 @@ def version_item(entry: VersionEntry) -> dict[str, Any]:
         "yanked_at": entry.yanked,
         "yank_reason": entry.yank_reason,
         "successor": entry.successor,
-        "links": {"self": path} | ({"difference": before} if entry.version > 1 else {}),
+        "links": {"self": path} | ({"difference": before} if entry.before else {}),
     }
 
 

@@ -156,7 +156,7 @@ def test_the_same_bytes_for_the_same_versions(source: TestClient, files: Files) 
         assert {member.date_time for member in archive.infolist()} == {(1980, 1, 1, 0, 0, 0)}
     document = json.loads(files[LIST])
     assert [part["name"] for part in document["parts"]] == ["pendulum", "slider"]
-    assert set(document["parts"][0]) == {"name", "digest", "program", "folder", "files"}
+    assert set(document["parts"][0]) == {"name", "number", "digest", "program", "folder", "files"}
     assert "author" not in files[LIST].decode()
 
 
@@ -175,6 +175,68 @@ def test_what_is_new_in_part(source: TestClient, client: TestClient) -> None:
     assert (answer.status_code, [item["outcome"] for item in answer.json()["items"]]) == (201, ["stored", "same"])
     newer = client.post("/v1/substructures", json={**PENDULUM, "title": "newer"})
     assert newer.json()["version"] == 2
+
+
+@pytest.fixture
+def versions(source: TestClient) -> list[str]:
+    """Digests of three versions of a part there."""
+    made = [source.post("/v1/substructures", json={**PENDULUM, "name": "many", "title": f"{k}"}) for k in range(3)]
+    return [answer.json()["digest"] for answer in made]
+
+
+def test_versions_keep_their_numbers(source: TestClient, client: TestClient, versions: list[str]) -> None:
+    """What is missing stays missing, and what comes later is no newest one."""
+    path = "/v1/substructures/many"
+    assert sent(client, fetched(source, "many@3")).json()["items"][0]["version"] == 3
+    assert client.get(f"{path}@1").status_code == 404
+    assert sent(client, fetched(source, "many@1")).json()["items"][0]["links"]["self"] == f"{path}@1"
+    assert client.get(path).json()["version"] == 3
+    assert client.get(f"{path}@2").status_code == 404
+    told = client.get(f"{path}/versions").json()["items"]
+    assert [(each["version"], each["digest"]) for each in told] == [(3, versions[2]), (1, versions[0])]
+    assert told[0]["links"]["difference"] == f"{path}@1/difference?to=many@3"
+    assert "difference" not in told[1]["links"]
+    assert client.get(told[0]["links"]["difference"]).status_code == 200
+    assert "what changed since @1" in client.get("/substructures/many@3").text
+    own = client.post("/v1/substructures", json={**PENDULUM, "name": "many", "title": "own"}).json()
+    assert own["version"] == 4
+    aliased = client.put(f"{path}/aliases/first", json={"version": 1})
+    assert aliased.status_code in (200, 201)
+    items = sent(client, fetched(source, "many@2,many@3")).json()["items"]
+    assert [(each["version"], each["outcome"]) for each in items] == [(2, "stored"), (3, "same")]
+    assert client.get(path).json()["version"] == 4
+
+
+def test_a_number_that_means_another_content_is_refused(
+    source: TestClient, client: TestClient, versions: list[str], rows: Rows
+) -> None:
+    own = client.post("/v1/substructures", json={**PENDULUM, "name": "many", "title": "own"}).json()
+    before = rows()
+    answer = sent(client, fetched(source, "pendulum,many@1"))
+    assert (answer.status_code, answer.json()["code"]) == (409, "version-taken")
+    assert (answer.json()["here"], answer.json()["there"]) == (own["digest"], versions[0])
+    assert answer.json()["errors"][0]["pointer"].startswith("/many@")
+    assert rows() == before
+    assert sent(client, fetched(source, "many@2")).json()["items"][0]["version"] == 2
+
+
+def test_the_same_content_keeps_the_number_that_it_has_here(
+    source: TestClient, client: TestClient, versions: list[str]
+) -> None:
+    client.post("/v1/substructures", json={**PENDULUM, "name": "many", "title": "1"})
+    (item,) = sent(client, fetched(source, "many@2")).json()["items"]
+    assert (item["version"], item["digest"], item["outcome"]) == (1, versions[1], "same")
+
+
+def test_bundles_of_the_first_format_have_no_numbers(client: TestClient, files: Files) -> None:
+    def first(document: Any) -> None:
+        document["version"] = 1
+        for part in document["parts"]:
+            del part["number"]
+
+    client.post("/v1/substructures", json={**PENDULUM, "title": "another"})
+    items = sent(client, packed(listed(files, first))).json()["items"]
+    assert [(item["name"], item["version"]) for item in items] == [("pendulum", 2), ("slider", 1)]
 
 
 def test_a_key_replays_the_answer(source: TestClient, client: TestClient) -> None:
@@ -366,7 +428,11 @@ def later_operand(program: Any) -> None:
 
 
 def newer(document: Any) -> None:
-    document["version"] = 2
+    document["version"] = 3
+
+
+def number_of_none(document: Any) -> None:
+    document["parts"][0]["number"] = 0
 
 
 def other_name(document: Any) -> None:
@@ -423,7 +489,8 @@ WRONG: dict[str, Wrong] = {
     "a bomb that says it is small": Wrong(shy_bomb, "invalid-bundle", ""),
     "a long definition": Wrong(long_definition, "too-large", "/definition.json"),
     "many files": Wrong(many_files, "too-large", "", "number of files"),
-    "a newer format": Wrong(with_list(newer), "newer-format", "/bundle.json/version", "format 2"),
+    "a number of no version": Wrong(with_list(number_of_none), "invalid-document", "/bundle.json/parts/0/number", "1"),
+    "a newer format": Wrong(with_list(newer), "newer-format", "/bundle.json/version", "format 3"),
     "another format": Wrong(with_list(lambda d: d.update(format="x")), "invalid-bundle", "/bundle.json/format"),
     "a list that is none": Wrong(lambda files: packed({**files, LIST: b"[1"}), "invalid-document", "/bundle.json"),
     "an empty list": Wrong(with_list(lambda d: d.update(parts=[])), "too-large", "/bundle.json/parts"),
@@ -586,7 +653,7 @@ def test_names_of_others(files: Files, client: TestClient, rows: Rows) -> None:
     assert (answer.status_code, answer.json()["code"]) == (403, "name-taken")
     assert answer.json()["errors"][0]["pointer"] == "/" + path_of(files, "slider", "/program").split("/")[0]
     assert rows() == before
-    client.post("/v1/substructures", json=SLIDER, headers=acme)
+    client.post("/v1/substructures", json=SLIDER, headers=acme)  # number 2 here, 1 there
     answer = sent(client, packed(files), **bolt)
     assert [(item["version"], item["outcome"]) for item in answer.json()["items"]] == [(1, "stored"), (2, "same")]
     owners = [client.get(f"/v1/substructures/{name}", headers=bolt).json()["owner"] for name in ("pendulum", "slider")]

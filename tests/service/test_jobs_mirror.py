@@ -71,7 +71,8 @@ def test_all_public_parts(source: str, client: TestClient, store: Store) -> None
         (item,) = items(client, job)
         result = item["result"]
         assert (result["source"], result["offered"]) == (source, len(NAMES))
-        assert result["stored"] == {"count": len(NAMES), "items": [f"{name}@1" for name in NAMES]}
+        numbered = [f"{NAMES[0]}@2", *(f"{name}@1" for name in NAMES[1:])]  # as there
+        assert result["stored"] == {"count": len(NAMES), "items": numbered}
         assert [result[name]["count"] for name in ("same", "differing", "refused")] == [0, 0, 0]
         assert names(client) == NAMES
         version = client.get(f"/v1/substructures/{NAMES[0]}").json()
@@ -82,6 +83,21 @@ def test_all_public_parts(source: str, client: TestClient, store: Store) -> None
         assert [item["result"][name]["count"] for name in ("stored", "same", "refused")] == [0, len(NAMES), 0]
         for path in ("", "/result", "/archive", "/events"):
             assert SECRET not in client.get(f"/v1/jobs/{job}{path}").text
+
+
+def test_numbers_that_mean_another_content_are_refused(source: str, client: TestClient, store: Store) -> None:
+    """And stop none of the others."""
+    own = client.post("/v1/substructures", json={**SLIDER, "name": NAMES[1], "title": "own"}).json()
+    with running(store, FakeEngine()):
+        job = submitted(client, mirror(source))
+        assert finished(client, job)["state"] == "succeeded"
+        result = items(client, job)[0]["result"]
+    assert [result[name]["count"] for name in ("stored", "refused")] == [len(NAMES) - 1, 1]
+    (refused,) = result["refused"]["items"]
+    assert (refused["name"], refused["code"]) == (NAMES[1], "version-taken")
+    assert own["digest"] in refused["message"]
+    assert refused["digest"] in refused["message"]
+    assert client.get(f"/v1/substructures/{NAMES[1]}").json()["title"] == "own"
 
 
 @pytest.mark.parametrize("moment", ["/v1/substructures", "/v1/bundles"])
@@ -424,7 +440,7 @@ def test_formulas_of_a_source_are_not_stored(source: str, liar: str, client: Tes
         assert finished(client, job)["state"] == "succeeded"
     result = items(client, job)[0]["result"]
     assert [result[name]["count"] for name in ("stored", "refused")] == [1, 0]
-    assert result["differing"] == {"count": 1, "items": [f"{NAMES[0]}@1"]}
+    assert result["differing"] == {"count": 1, "items": [f"{NAMES[0]}@2"]}
     assert client.get(f"/v1/substructures/{NAMES[0]}").json()["program"] == version["program"]
 
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from service.content import bundles
 from service.content.bundles import BundledPart
@@ -47,13 +47,14 @@ def bundled(connection: Connection, version: Version) -> BundledPart:
     part = content.get_part(connection, version.digest)
     if part is None:
         raise missing(f"the definition of {version.name}@{version.version}", version.digest)
-    return BundledPart(version.name, version.digest, version.program, part.definition, part.program, part.certificate)
+    number, digests = version.version, (version.digest, version.program)
+    return BundledPart(version.name, number, *digests, part.definition, part.program, part.certificate)
 
 
 def prepare(
     store: Store, viewer: Viewer, part: BundledPart, entry: PartEntry, worker: Worker, max_nodes: int
 ) -> PartSubmission:
-    """Derive a part of a bundle from its definition, unless its content is known.
+    """Derive a part of a bundle from its definition, unless its content is known. It keeps the number of its version.
 
     Raises Refused 403 for a name of others, 409, 422 and InvalidDocument, with pointers to the file, TimeoutError.
     """
@@ -66,7 +67,7 @@ def prepare(
 
     try:
         with _inside(part):
-            return catalogue.prepare(store, viewer, definition, entry, IMPORTED, make)
+            return replace(catalogue.prepare(store, viewer, definition, entry, IMPORTED, make), number=part.number)
     except InvalidInput as error:
         raise error.below(file_pointer(path)) from None
     except TooLarge as error:
