@@ -95,7 +95,8 @@ def _summary(told: Mapping[str, Any]) -> None:
         print(f"{check['name']}: {check['rule']}, {_found(check)}: {check['reason']}")
     tell_warnings(told)
     for event in told.get("events", []):
-        print(f"{event['name']} at t = {event['t']:.9g} s")
+        act = f", the energy changes by {event['energy_change']:.6g} J" if "after" in event else ""
+        print(f"{event['name']} at t = {event['t']:.9g} s{act}")
     if "t" in told and "q" in told:
         last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
         print(f"t = {told['t'][-1]:.9g} s: {last}")

@@ -192,6 +192,8 @@ EFFORTS_OF_ACTUATORS = Measured(place=_in_order(EFFORTS))
 MOMENTA_OF_COORDINATES = Measured(place=_in_order(MOMENTA))
 #: parameters or inputs by name
 BY_NAME = Measured(place=lambda model, _, __: model.units)
+#: of coordinates and velocities by name
+STATES = Measured(place=lambda model, _, __: _varied_units(model))
 #: of everything that a formula may depend on, by name
 RANGES = Measured(place=lambda model, _, __: _of_symbols(model))
 INPUT_SIGNALS = Measured(place=lambda model, _, given: _signals(model.units, given))

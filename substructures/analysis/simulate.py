@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
 from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
+from substructures.analysis.motion.friction.transmitted import with_reactions
 from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
@@ -26,7 +27,6 @@ from substructures.analysis.motion.problems.signals import Signal, Table
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.motion.transmitted import with_reactions
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.model import Model
 
@@ -100,6 +100,8 @@ def simulate(
         "events": outputs.events,
         "series": outputs.series,
     }
+    if not isinstance(kind, (TreeMotion, Geodesic)):
+        _require_watching(outputs.events)
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if isinstance(kind, ConstrainedMotion):
         _refuse("velocity constraints", powers=outputs.powers)
@@ -129,6 +131,14 @@ def _require_kind(model: Model, kind: MotionKind) -> None:
     elif model.closures and not isinstance(kind, ConstrainedMotion):
         message = f"a model with closures moves as ClosedMotion or ConstrainedMotion, found {found}"
         raise InvalidArgument.at("/kind", "not-supported", message)
+
+
+def _require_watching(events: Sequence[Event]) -> None:
+    """Raises InvalidArgument for events that change a state which has to keep closures or constraints."""
+    message = "events act on trees without closures and velocity constraints: leave 'reset' out"
+    faults = [Fault(f"/events/{i}/reset", "not-supported", message) for i, event in enumerate(events) if event.reset]
+    if faults:
+        raise InvalidArgument(faults)
 
 
 def _refuse(kind: str, **arguments: Any) -> None:

@@ -12,7 +12,7 @@ from random_trees import Plain, tree_of
 from simulated import simulated
 
 from substructures import Definition, InvalidArgument, InvalidDocument, Model, couple, derive
-from substructures.analysis.motion import loaded_friction
+from substructures.analysis.motion.friction import loaded_friction
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 from substructures.expr.interpret import interpret

@@ -24,6 +24,7 @@ from service.schemas.measured import (
     OF_SIGNAL,
     QUASI_VELOCITIES,
     SECONDS,
+    STATES,
     VELOCITIES,
     Values,
 )
@@ -85,17 +86,22 @@ Signal = Annotated[Annotated[PlainNumber, Tag("number")] | Annotated[Table, Tag(
 
 
 class Event(RequestPart):
-    """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``."""
+    """``quantity`` (an expression in coordinates, velocities, parameters and t) crosses ``level``. ``reset``: what
+    coordinates and velocities become there, in expressions of the state before.
+    """
 
     name: Name
     quantity: Annotated[PlainNumber, EXPRESSION]
     level: Annotated[Real, OF_QUANTITY] = 0.0
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"
+    reset: Annotated[dict[str, PlainNumber], STATES] = Field(
+        {}, max_length=MAX_EVENTS, description="by coordinate or velocity (q'); the motion goes on from there"
+    )
 
     def value(self) -> science.Event:
         """As the science takes it."""
-        return science.Event(self.name, self.quantity, self.level, self.direction, self.action)
+        return science.Event(self.name, self.quantity, self.level, self.direction, self.action, self.reset)
 
 
 class FixedStep(RequestPart):

@@ -1,8 +1,8 @@
 """Dry friction that sticks exactly in motions with closures and prescribed coordinates.
 
-As :mod:`substructures.analysis.motion.dry_friction`, on the velocities that the closures leave: with a basis N of them,
-G N = 0 and N^T g N = 1, and B = N in the rows of the joints with friction, B B^T are the accelerations of these joints
-by unit forces on them, and a what they have by all else:
+As :mod:`substructures.analysis.motion.friction.dry_friction`, on the velocities that the closures leave: with a basis N
+of them, G N = 0 and N^T g N = 1, and B = N in the rows of the joints with friction, B B^T are the accelerations of
+these joints by unit forces on them, and a what they have by all else:
 
     joints that stick: B B^T f = -a        Gauss: least 1/2 |B^T f|^2 + a^T f with |f_i| <= F_s,i
 
@@ -24,8 +24,8 @@ from numpy.typing import NDArray
 from substructures.analysis.closed.constrained import Constrained, Singular
 from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.closed.sticking_forces import RANK, bounded, holding, unit_rows
-from substructures.analysis.motion.dry_friction import EDGE, REST, FrictionLaws, Signs, friction_laws
-from substructures.analysis.motion.dry_run import DryRun
+from substructures.analysis.motion.friction.dry_friction import EDGE, REST, FrictionLaws, Signs, friction_laws
+from substructures.analysis.motion.friction.dry_run import DryRun
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 

@@ -18,8 +18,8 @@ from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state
 from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
-from substructures.analysis.motion.dry_friction import friction_laws
-from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
+from substructures.analysis.motion.friction.dry_friction import friction_laws
+from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import energy_balance, unbalanced

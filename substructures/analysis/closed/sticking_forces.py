@@ -11,7 +11,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.dry_friction import EDGE
+from substructures.analysis.motion.friction.dry_friction import EDGE
 from substructures.array import Array
 
 #: rows of B of unit length are dependent when a singular value is below this part of the largest

@@ -12,16 +12,17 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
-from substructures.analysis.motion.dry_friction import DryMotion, friction_laws
-from substructures.analysis.motion.dry_run import DryRun, integrate_dry, sticking
+from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
+from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
+from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide
 from substructures.analysis.motion.integrators.fixed_step import march
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
-from substructures.analysis.motion.loaded_friction import LoadedRightHandSide
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
+from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
@@ -68,8 +69,16 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (``has-closures``;
     pointers start with names of arguments of ``simulate``) and MissingValue.
     """
-    conditions, progress, folder = tree_conditions(problem), problem.integrator.progress, problem.integrator.folder
+    conditions = tree_conditions(problem)
     _check_method(conditions, problem)
+    if acting(problem.events):
+        return simulate_with_resets(problem, Resets(problem, conditions), _simulate)
+    return _simulate(problem)
+
+
+def _simulate(problem: TreeProblem) -> Trajectory:
+    """Without events that act."""
+    conditions, progress, folder = tree_conditions(problem), problem.integrator.progress, problem.integrator.folder
     try:
         f = _right_hand_side(conditions, problem, folder)
     except InvalidInput as error:

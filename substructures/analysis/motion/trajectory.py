@@ -14,12 +14,24 @@ from substructures.errors import listed
 
 @dataclass(frozen=True)
 class Crossing:
-    """An event: ``name``, when [s], and the state."""
+    """An event: ``name``, when [s], and the state; where it acts the state ``after`` it (q, q'), and by how much the
+    energy has changed [J].
+    """
 
     name: str
     t: float
     q: Array
     qd: Array
+    after: tuple[Array, Array] | None = None
+    energy_change: float = 0.0
+
+    def plain(self) -> dict[str, Any]:
+        """Plain data."""
+        told = {"name": self.name, "t": self.t, "q": self.q.tolist(), "qd": self.qd.tolist()}
+        if self.after is None:
+            return told
+        q, qd = self.after
+        return told | {"after": {"q": q.tolist(), "qd": qd.tolist()}, "energy_change": self.energy_change}
 
 
 def crossings(events: Sequence[Event], found: Sequence[tuple[int, float, Array]], n: int) -> tuple[Crossing, ...]:
@@ -82,7 +94,6 @@ class Trajectory:
 
     def summary(self) -> dict[str, Any]:
         """What was found beside the arrays, as plain data."""
-        events = [{"name": e.name, "t": e.t, "q": e.q.tolist(), "qd": e.qd.tolist()} for e in self.events]
         return {
             "coordinates": list(self.coordinates),
             "count": len(self.t),
@@ -90,7 +101,7 @@ class Trajectory:
             "message": self.message,
             "is_right": self.is_right,
             "checks": [check.summary() for check in self.checks],
-            "events": events,
+            "events": [event.plain() for event in self.events],
             "steps": self.steps,
             "figures": dict(self.figures),
             "limits": dict(self.limits),

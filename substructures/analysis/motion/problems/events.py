@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.analysis.arguments import NumberOrExpression, one_of, real
@@ -16,8 +17,10 @@ ACTIONS = ("stop", "record")
 class Event:
     """``quantity`` (an expression in coordinates, velocities, parameters and t, its unit) crosses ``level``.
 
-    ``direction``: which crossings count; ``action``: whether the motion stops there. All crossings in a step of the
-    integrator are found, but for a pair that is less than 1/256 of the step apart. Raises InvalidArgument.
+    ``direction``: which crossings count; ``action``: whether the motion stops there. ``reset``: coordinates and
+    velocities (``q'``) that jump there, each to an expression in the state before: the motion goes on. All crossings in
+    a step of the integrator are found, but for a pair that is less than 1/256 of the step apart. Raises
+    InvalidArgument.
     """
 
     name: str
@@ -25,6 +28,7 @@ class Event:
     level: float = 0.0
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"
+    reset: Mapping[str, NumberOrExpression] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "level", real(self.level, "/level"))

@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from substructures.analysis.motion.dry_friction import FrictionLaws, Signs
+from substructures.analysis.motion.friction.dry_friction import FrictionLaws, Signs
 from substructures.analysis.motion.integrators.integration import (
     IntegratedMotion,
     IntegratorSettings,
