@@ -30,7 +30,7 @@ FILE = "substructures/client.toml"
 File = Annotated[Path, typer.Argument(help="Definition, JSON or YAML, or a robot file.", metavar="FILE")]
 Json = Annotated[bool, typer.Option("--json", help="Print JSON.")]
 OfTrees = Annotated[bool, typer.Option("--tree", help="Trees in place of parts.")]
-Wait = Annotated[bool, typer.Option("--wait", help="Wait where it takes so long that it becomes a job.")]
+Wait = Annotated[bool, typer.Option(help="Wait where it takes so long that it becomes a job.")]
 Note = Annotated[str, typer.Option(help="Why, in words.")]
 Private = Annotated[bool, typer.Option("--private", help="For the keys of its owner alone.")]
 #: the option of commands that work on the store itself

@@ -214,9 +214,9 @@ def test_parts_between_servers(run: Runner, address: str, tmp_path: Path) -> Non
         (tmp_path / "parts.zip").write_bytes(content.replace(b'"pendulum"', b'"pendulun"'))
         assert "422: " in run("bundle", "load", str(tmp_path / "parts.zip"), "--server", target, code=1)
         assert "there is no substructure 'nothing'" in run("pull", address, "nothing", "--server", target, code=1)
-        counts = run("mirror", address, "--wait", "--server", target).splitlines()[-1]
+        counts = run("mirror", address, "--server", target).splitlines()[-1]
         assert counts == f"1 parts at {address}: 0 stored, 1 same, 0 refused"
-        assert "progress" in json.loads(run("mirror", address, "--wait", "--json", "--server", target))
+        assert "progress" in json.loads(run("mirror", address, "--json", "--server", target))
         assert "SUBSTRUCTURES_MIRROR_SOURCES" in run("mirror", "http://127.0.0.1:10", "--server", target, code=1)
 
 
@@ -235,7 +235,7 @@ def test_what_a_mirror_may_not_store_is_named(run: Runner, address: str, tmp_pat
         with database.write() as connection:
             key = keys.create(connection, "", ("read", "write", "jobs"), None, "bolt")
         database.close()
-        assert main(["mirror", address, "--wait", "--server", target, "--key", key]) == 0
+        assert main(["mirror", address, "--server", target, "--key", key]) == 0
         shown = run.capsys.readouterr()
     assert shown.out.splitlines()[-1] == f"1 parts at {address}: 0 stored, 0 same, 1 refused"
     assert "refused: pendulum: the name 'pendulum' of a substructure belongs to 'local'" in shown.err

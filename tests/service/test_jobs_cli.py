@@ -49,7 +49,7 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
 def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, server = tmp_path / "cells.json", ["--server", address]
     file.write_text(json.dumps(CELLS))
-    assert main(["jobs", "submit", str(file), "--wait", *server]) == 0
+    assert main(["jobs", "submit", str(file), *server]) == 0
     shown = capsys.readouterr()
     job = shown.out.strip()
     assert "succeeded  3 of 3" in shown.err
@@ -76,11 +76,11 @@ def test_commands(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[st
 def test_what_was_skipped_is_told(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "some.json"
     file.write_text(json.dumps({**CELLS, "choices": {"a": ["pendulum", "pendulun"]}, "on_invalid": "skip"}))
-    assert main(["jobs", "submit", str(file), "--server", address]) == 0
+    assert main(["jobs", "submit", str(file), "--no-wait", "--server", address]) == 0
     told = capsys.readouterr().err
     assert told.startswith("skipped: item 1: ")
     assert "there is no substructure 'pendulun'" in told
-    assert main(["jobs", "submit", str(file), "--json", "--wait", "--server", address]) == 6
+    assert main(["jobs", "submit", str(file), "--json", "--server", address]) == 6
     shown = capsys.readouterr()
     job = json.loads(shown.out)
     assert [each["item"] for each in job["skipped"]] == [1]
@@ -103,7 +103,7 @@ def test_a_motion_that_fails_is_an_item_that_failed(
     file, server = tmp_path / "swings.json", ["--server", address]
     requests = [swing, {**swing, "max_steps": 3}, fixed]
     file.write_text(json.dumps({"kind": "simulate", "items": [{"tree": "cell@1", "requests": requests}]}))
-    assert main(["jobs", "submit", str(file), "--wait", *server]) == 3
+    assert main(["jobs", "submit", str(file), *server]) == 3
     shown = capsys.readouterr()
     job = shown.out.strip()
     assert "simulate: 1 succeeded, 2 failed of 3" in shown.err
@@ -128,7 +128,7 @@ def test_a_motion_that_fails_is_an_item_that_failed(
 def test_failures_show_in_the_exit_status(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file = tmp_path / "wrong.yaml"
     file.write_text("kind: export\nitems:\n  - {tree: cell, quantity: metric, format: text, bind: 'arm.l:nose'}\n")
-    assert main(["jobs", "submit", str(file), "--wait", "--server", address]) == 4
+    assert main(["jobs", "submit", str(file), "--server", address]) == 4
     shown = capsys.readouterr()
     assert "export: 0 succeeded, 1 failed of 1" in shown.err
     job = shown.out.strip()
@@ -145,12 +145,12 @@ def test_a_label_what_failed_once_more_and_removal(
     file, server = tmp_path / "half.yaml", ["--server", address]
     good = "{tree: cell, quantity: metric, format: text}"
     file.write_text(f"kind: export\nitems:\n  - {good}\n  - {good[:-1]}, bind: 'arm.l:nose'}}\n")
-    assert main(["jobs", "submit", str(file), "--wait", "--label", "for the paper", *server]) == 3
+    assert main(["jobs", "submit", str(file), "--label", "for the paper", *server]) == 3
     shown = capsys.readouterr()
     assert "export 'for the paper': 1 succeeded, 1 failed of 2" in shown.err
     first = shown.out.strip()
     assert f"substructures jobs retry {first}" in shown.err
-    assert main(["jobs", "retry", first, "--wait", *server]) == 4
+    assert main(["jobs", "retry", first, *server]) == 4
     second = capsys.readouterr().out.strip()
     with Client(address) as client:
         again = client.job(second)
@@ -166,7 +166,7 @@ def test_a_label_what_failed_once_more_and_removal(
 def test_there_is_nothing_to_try_again(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     file, server = tmp_path / "cells.json", ["--server", address]
     file.write_text(json.dumps(CELLS))
-    assert main(["jobs", "submit", str(file), "--wait", *server]) == 0
+    assert main(["jobs", "submit", str(file), *server]) == 0
     job = capsys.readouterr().out.strip()
     assert main(["jobs", "retry", job, *server]) == 1
     assert "all its items succeeded" in capsys.readouterr().err
@@ -225,7 +225,7 @@ def test_states_in_files(
         file.write_bytes(b"".join(arrow.write_tables(parts, {})))
     else:
         file.write_text(json.dumps({"q": q.tolist(), "parameters": {"arm.m": masses.tolist()}}))
-    command = ["jobs", "evaluate", "cell@1", str(file), "--quantities", "metric,forces", "--wait", *server]
+    command = ["jobs", "evaluate", "cell@1", str(file), "--quantities", "metric,forces", *server]
     assert main([*command, "--format", "npz" if suffix == "arrow" else "arrow"]) == 0
     job = capsys.readouterr().out.strip()
     with Client(address) as client:
@@ -309,7 +309,7 @@ def test_who_stops_to_wait_is_told_how_to_go_on(
 
     monkeypatch.setattr(Client, "wait", interrupted)
     (tmp_path / "job.json").write_text(json.dumps(CELLS))
-    assert main(["jobs", "submit", str(tmp_path / "job.json"), "--wait", "--server", address]) == 130
+    assert main(["jobs", "submit", str(tmp_path / "job.json"), "--server", address]) == 130
     shown = capsys.readouterr()
     assert f"'substructures jobs watch {shown.out.strip()}' waits again" in shown.err
 

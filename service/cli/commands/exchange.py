@@ -106,7 +106,7 @@ def load(
 def mirror(
     server: Server,
     url: Other,
-    wait: Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")] = False,
+    wait: Annotated[bool, typer.Option(help="Wait until it has ended.")] = True,
     json: Json = False,
 ) -> int:
     """Copy all public parts of another server, as a job that goes on where it ended.

@@ -28,7 +28,7 @@ from substructures.formats.arrays import read_npz
 from substructures.quantities.quantity import QUANTITIES
 
 Id = Annotated[str, typer.Argument(metavar="ID", autocompletion=completion.jobs)]
-Wait = Annotated[bool, typer.Option("--wait", help="Wait until it has ended.")]
+Wait = Annotated[bool, typer.Option(help="Wait until it has ended.")]
 Patience = Annotated[
     float,
     typer.Option(
@@ -50,7 +50,7 @@ def submit(
         Path, typer.Argument(metavar="FILE", help='{"kind", "items"} or {"kind", "template", "choices"}, JSON or YAML.')
     ],
     label: Annotated[str | None, typer.Option(help="What it is for, in words.")] = None,
-    wait: Wait = False,
+    wait: Wait = True,
     patience: Patience = PATIENCE,
     json: Json = False,
 ) -> int:
@@ -79,9 +79,9 @@ def submit(
     instance.parameter. All combinations are computed. The full description of all fields is JobRequest in the OpenAPI
     document: 'substructures openapi', or /openapi.json of a server.
 
-    With --wait the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when it was
-    cancelled, 6 when all succeeded but those that were skipped ("on_invalid": "skip"). A motion that fails or violates
-    a first integral is an item that failed.
+    Unless --no-wait is given, the exit code is 0 when all items succeeded, 3 when some failed, 4 when all did, 5 when
+    it was cancelled, 6 when all succeeded but those that were skipped ("on_invalid": "skip"). A motion that fails or
+    violates a first integral is an item that failed.
     """
     with server.client() as client:
         document = read_document(file)
@@ -93,7 +93,7 @@ def submit(
 
 
 @with_server
-def retry(server: Server, id: Id, wait: Wait = False, patience: Patience = PATIENCE, json: Json = False) -> int:  # noqa: A002 -- an argument
+def retry(server: Server, id: Id, wait: Wait = True, patience: Patience = PATIENCE, json: Json = False) -> int:  # noqa: A002 -- an argument
     """Once more what of a job failed or was cancelled, as a new job."""
     with server.client() as client:
         return _queued(client, client.retry_job(id), wait, patience, json)
@@ -129,7 +129,7 @@ def evaluate(
         ),
     ] = "",
     format: Annotated[str, one_of(FORMATS, help="Of the results: npz or arrow.")] = "npz",  # noqa: A002 -- an option
-    wait: Wait = False,
+    wait: Wait = True,
     patience: Patience = PATIENCE,
     json: Json = False,
 ) -> int:

@@ -11,7 +11,7 @@ from service.cli.progress import became_job
 
 @with_server
 def submit(
-    server: Server, file: File, note: Note = "", private: Private = False, wait: Wait = False, json: Json = False
+    server: Server, file: File, note: Note = "", private: Private = False, wait: Wait = True, json: Json = False
 ) -> int:
     """Submit a definition to a server, which derives, verifies and stores it."""
     document = read_definition(file)

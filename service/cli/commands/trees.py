@@ -37,7 +37,7 @@ def tree(
     gravity: Annotated[str, typer.Option(metavar="X,Y,Z", help="Acceleration in the world, m/s^2.")] = "0,0,-9.81",
     note: Note = "",
     private: Private = False,
-    wait: Wait = False,
+    wait: Wait = True,
     json: Json = False,
 ) -> int:
     """Make a tree of a document, or begin one with parts on the world; one of that name is there still, as a revision
@@ -76,7 +76,7 @@ def couple(
     set: Set = None,  # noqa: A002 -- name of the option
     position: Vector = None,
     rpy: Vector = None,
-    wait: Wait = False,
+    wait: Wait = True,
     json: Json = False,
 ) -> int:
     """Couple a part onto a tree, which makes a new revision."""

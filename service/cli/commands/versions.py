@@ -157,7 +157,7 @@ def publish(
     ] = None,
     note: Note = "",
     private: Private = False,
-    wait: Wait = False,
+    wait: Wait = True,
     json: Json = False,
 ) -> int:
     """Make a part of a tree."""

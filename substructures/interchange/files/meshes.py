@@ -19,8 +19,8 @@ from itertools import pairwise
 from typing import Any, Literal, get_args
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
-from scipy.spatial import ConvexHull, QhullError
 
 from substructures.array import Array
 
@@ -178,8 +178,8 @@ def _require_closed(mesh: Triangles, areas: Array) -> None:
 def _hull(mesh: Triangles) -> Triangles:
     """The convex hull, seen from outside."""
     try:
-        hull = ConvexHull(mesh.corners)
-    except (QhullError, ValueError):
+        hull = scipy.spatial.ConvexHull(mesh.corners)
+    except (scipy.spatial.QhullError, ValueError):
         raise BadMesh("its points have no convex hull with a volume") from None
     a, b, c = (hull.points[hull.simplices[:, k]] for k in range(3))
     is_inside = np.einsum("ij,ij->i", np.cross(b - a, c - a), hull.equations[:, :3]) < 0
