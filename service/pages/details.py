@@ -97,6 +97,7 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
         tag("h2", "Instances"),
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
         *_loads(summary.get("loads", ())),
+        *_closures(model),
         *_sections(
             words.coordinates(model.coordinates, model.joints),
             words.parameters(summary["parameters"]),
@@ -154,6 +155,12 @@ def _loads(loads: Sequence[Mapping[str, Any]]) -> list[Html]:
     pairs = [(x, acts_on(x)) for x in loads]
     rows = [(x["name"], x["type"], " - ".join(places[:-1]), "".join(places[-1:])) for x, places in pairs]
     return [tag("h2", "Loads"), table(("name", "type", "from", "on"), rows)] if rows else []
+
+
+def _closures(model: Model) -> list[Html]:
+    """The loops of a tree and of its parts."""
+    rows = [(x.name, x.type, x.start, x.end, len(x.rows)) for x in model.closures]
+    return [tag("h2", "Closures"), table(("name", "type", "from", "to", "rows"), rows)] if rows else []
 
 
 def _number(given: Any) -> str:

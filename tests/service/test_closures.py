@@ -38,6 +38,9 @@ def test_a_tree_with_closures_is_stored_and_shown(client: TestClient) -> None:
     assert made.status_code == 201, made.text
     rows = {"name": "pin", "type": "pin", "from": "c.end", "to": "world", "rows": ["x", "y", "z", "rx", "ry"]}
     assert made.json()["closures"] == [rows]
+    page = client.get("/trees/ring").text
+    assert "<h2>Closures</h2>" in page
+    assert "<td>c.end</td><td>world</td><td>5</td>" in page
     assert client.get("/v1/trees/ring").json()["closures"] == [rows]
     open_tree = client.post("/v1/trees", json={**TREE, "name": "chain", "closures": []})
     assert "closures" not in open_tree.json()
