@@ -88,6 +88,10 @@ def test_bounces_that_accumulate_stop_the_motion(ball: Model) -> None:
     assert "(Zeno)" in motion.message
     assert motion.t[-1] == pytest.approx(math.sqrt(2 / G) * (1 + E) / (1 - E), abs=1e-4)
     assert np.abs([*motion.q[-1], *motion.qd[-1]]).max() < 1e-4
+    assert len(motion.t) == len(motion.series["energy"])
+    assert motion.series["energy"][-1] == pytest.approx(motion.qd[-1, 0] ** 2 + 2 * G * motion.q[-1, 0], abs=1e-15)
+    late = simulate(ball, [1], (0, 10), outputs=Outputs(events=[FLOOR], times=[9]))
+    assert (late.status, len(late.t), late.t[-1]) == ("stopped", 1, motion.t[-1])
     assert len(motion.events) < 100
 
 
@@ -171,6 +175,19 @@ def test_a_slide_with_exact_friction_is_thrown_back() -> None:
     assert (motion.status, motion.is_right) == ("finished", True)
     assert motion.q[-1] == pytest.approx([1 - 0.25])
     assert motion.qd[-1] == pytest.approx([0], abs=1e-12)
+
+
+def test_a_start_without_accelerations_fails_as_without_events() -> None:
+    light = {**BALL, "bodies": [{**BALL["bodies"][0], "mass": 0}]}
+    motion = simulate(of("b", light, [0, 0, -G]), [1], (0, 1), outputs=Outputs(events=[FLOOR]))
+    assert (motion.status, motion.reached, motion.is_right) == ("failed", None, None)
+
+
+def test_an_event_at_the_end_finishes_the_motion(ball: Model) -> None:
+    whole = simulate(ball, [1], (0, 1), outputs=Outputs(events=[FLOOR]))
+    motion = simulate(ball, [1], (0, whole.events[0].t), outputs=Outputs(events=[FLOOR]))
+    assert (motion.status, motion.message) == ("finished", "")
+    assert motion.t[-1] == whole.events[0].t
 
 
 def test_progress_is_that_of_the_whole(ball: Model) -> None:

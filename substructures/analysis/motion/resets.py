@@ -30,6 +30,7 @@ from substructures.expr.interpret import interpret, interpret_in_blocks
 MANY, SOON = 10, 1e-6
 #: most events that act in a motion
 MOST = 10_000
+Status = Literal["finished", "stopped", "failed"]
 Problem = TypeVar("Problem", bound=MotionProblem)
 ENERGY = ("metric", "potential_energy")
 
@@ -97,6 +98,7 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
     choice = replace(problem.integrator, progress=_forwards(problem.integrator.progress))
     whole, pieces = replace(problem, events=stopping, integrator=choice), list[Trajectory]()
     start, t, soon, work = problem.start, span[0], 0, 0.0
+    why: tuple[Status, str] | None
     while True:
         due = wanted[wanted > t] if pieces else wanted
         piece = move(_from(whole, start, t, due, sum(each.steps for each in pieces)))
@@ -111,11 +113,12 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
         y = resets.after(k, last.t, x)
         change, n = resets.energy(last.t, y) - resets.energy(last.t, x), len(last.q)
         told = replace(last, after=(y[:n], y[n:]), energy_change=change)
-        pieces.append(_without_its_end(replace(piece, events=(*piece.events[:-1], told)), due))
+        piece = replace(piece, events=(*piece.events[:-1], told))
         soon = soon + 1 if last.t - t <= SOON * (span[1] - span[0]) else 0
-        why = _why_not(last, y, soon, len(pieces))
-        if why or last.t >= span[1]:
-            return _ended(_joined(pieces), last.t, y, why)
+        why = ("finished", "") if last.t >= span[1] else _why_not(last, y, soon, len(pieces) + 1)
+        if why is not None:  # the state before the event is the last result
+            return replace(_joined([*pieces, piece]), status=why[0], message=why[1])
+        pieces.append(_without_its_end(piece, due))
         start, t = replace(start, q=y[:n].tolist(), qd=y[n:].tolist()), last.t
 
 
@@ -154,7 +157,7 @@ def _without_its_end(piece: Trajectory, due: Array) -> Trajectory:
     return replace(piece, t=piece.t[kept], q=piece.q[kept], qd=piece.qd[kept], series=series)
 
 
-def _why_not(last: Crossing, y: Array, soon: int, count: int) -> tuple[Literal["stopped", "failed"], str] | None:
+def _why_not(last: Crossing, y: Array, soon: int, count: int) -> tuple[Status, str] | None:
     """Status and message where the motion does not go on."""
     if not np.isfinite(y).all():
         return "failed", f"the event '{last.name}' at t = {last.t:.9g} s leads to no finite state"
@@ -166,22 +169,12 @@ def _why_not(last: Crossing, y: Array, soon: int, count: int) -> tuple[Literal["
     return None
 
 
-def _ended(motion: Trajectory, t: float, y: Array, why: tuple[Literal["stopped", "failed"], str] | None) -> Trajectory:
-    """With what the last event has made as the last result, where the motion does not go on behind it."""
-    if why is None:
-        return motion
-    n = motion.q.shape[1]
-    q, qd = np.vstack([motion.q, y[:n]]), np.vstack([motion.qd, y[n:]])
-    series = {name: np.concatenate([x, x[-1:]]) for name, x in motion.series.items()}
-    return replace(motion, t=np.append(motion.t, t), q=q, qd=qd, series=series, status=why[0], message=why[1])
-
-
 def _joined(pieces: Sequence[Trajectory]) -> Trajectory:
     """One motion, which ended as its last piece did; of each check the worst."""
     last = pieces[-1]
     names = [name for name in last.series if all(name in piece.series for piece in pieces)]
     series = {name: np.concatenate([piece.series[name] for piece in pieces]) for name in names}
-    reached = [piece.reached for piece in pieces if piece.reached is not None]
+    lows, highs = ([piece.reached[k] for piece in pieces if piece.reached is not None] for k in (0, 1))
     return replace(
         last,
         t=np.concatenate([piece.t for piece in pieces]),
@@ -192,7 +185,7 @@ def _joined(pieces: Sequence[Trajectory]) -> Trajectory:
         steps=sum(piece.steps for piece in pieces),
         events=tuple(event for piece in pieces for event in piece.events),
         figures={name: sum(piece.figures.get(name, 0.0) for piece in pieces) for name in last.figures},
-        reached=(np.min([low for low, _ in reached], axis=0), np.max([high for _, high in reached], axis=0)),
+        reached=(np.min(lows, axis=0), np.max(highs, axis=0)) if lows else None,
     )
 
 
