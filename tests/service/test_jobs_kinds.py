@@ -77,6 +77,22 @@ def test_template_gives_every_combination_with_names(library: MemoryLibrary) -> 
     assert [item["tree"]["name"] for item in long] == ["c" * 62 + "-1", "c" * 62 + "-2"]
 
 
+def test_a_choice_of_an_instance_carries_its_own_port_and_numbers(library: MemoryLibrary) -> None:
+    tree = {**TREE, "instances": [*TREE["instances"], {**HAND, "parameters": {"m": 2}}]}
+    own = {"substructure": "limited", "at": "world", "placement": {"position": [1, 0, 0]}, "parameters": {}}
+    asked = {"kind": "assemble", "template": tree, "choices": {"hand": ["pendulum", own], "arm.l": [1, 2]}}
+    items = expand(submission(asked), Limits(), library)
+    hands = [item["tree"]["instances"][1] for item in items]
+    assert [(hand["name"], hand["at"]) for hand in hands] == [("hand", HAND["at"])] * 2 + [("hand", "world")] * 2
+    assert [hand["parameters"] for hand in hands[1:3]] == [{"m": 2}, {}]  # in place of those of the template
+    names = ["cell-pendulum-1", "cell-pendulum-2", "cell-limited-world-1", "cell-limited-world-2"]
+    assert [item["tree"]["name"] for item in items] == names
+    wrong = {**asked, "choices": {"hand": ["pendulum", {"substructure": "limited", "att": "world"}]}}
+    with pytest.raises(InvalidDocument, match="no 'att'; did you mean 'at'") as caught:
+        expand(submission(wrong), Limits(), library)
+    assert caught.value.faults[0].pointer == "/choices/hand/1/att"
+
+
 def test_derive_gives_what_deriving_gives(library: MemoryLibrary) -> None:
     (outcome,) = outcomes(library, "derive", {"items": [PENDULUM]})
     part = library.parts["pendulum"]
