@@ -75,15 +75,18 @@ def test_files_in_an_archive_have_the_endings_of_their_formats(filled: TestClien
 
 
 def test_an_archive_has_the_formulas_of_trees_and_parts(filled: TestClient, store: Store) -> None:
+    """Once for all that share them."""
     derived = {"kind": "derive", "items": [{**PENDULUM, "title": "another"}]}
+    alike = {**CELLS, "choices": {"/name": ["one", "two", "three"]}}
     with running(store, FakeEngine()):
-        for body, of_job in ((CELLS, "/v1/trees/{tree}"), (derived, "")):
+        for body, of_job, count in ((CELLS, "/v1/trees/{tree}", 2), (derived, "", 1), (alike, "/v1/trees/{tree}", 1)):
             job = submitted(filled, body)
             assert finished(filled, job)["state"] == "succeeded"
             data = filled.get(f"/v1/jobs/{job}/archive").content
             with zipfile.ZipFile(io.BytesIO(data)) as archive:
-                for position, item in enumerate(items(filled, job)):
-                    formulas = archive.read(f"{position}/program.json")
+                assert sum(name.startswith("programs/") for name in archive.namelist()) == count
+                for item in items(filled, job):
+                    formulas = archive.read(f"programs/{item['result']['program'].removeprefix('sha256:')}.json")
                     program = read_program(json.loads(formulas))
                     assert program.digest == item["result"]["program"]
                     if of_job:

@@ -101,7 +101,8 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 @router.get("/archive", response_class=Response, responses=ZIP)
 def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it with
-    the endings of their formats; of a tree or part that was stored all its formulas, ``<position>/program.json``."""
+    the endings of their formats; the formulas of trees and parts that were stored once for all that share them,
+    ``programs/<digest>.json`` by the ``program`` of items."""
     with store.database.read() as connection:
         jobs.find(connection, viewer, job)
     headers = {"Content-Disposition": f'attachment; filename="{job}.zip"', "Cache-Control": "no-store"}
@@ -118,7 +119,7 @@ def _archive(store: Store, job: str) -> Iterator[bytes]:
 
 
 def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
-    after = -1
+    after, told = -1, set[str]()
     while True:
         with store.database.read() as connection:
             items = rows.page_items(connection, job, None, after, ITEMS)
@@ -129,10 +130,12 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
             there = files.get(item.key, []) if item.summary is not None else []
             yield f"{item.position}/item.json", dump(item_view(job, item, there))
             stored = read_json(item.summary.encode()).get("program") if item.summary is not None else None
-            with store.database.read() as connection:
-                formulas = content.get_program(connection, stored) if isinstance(stored, str) else None
-            if formulas is not None:
-                yield f"{item.position}/program.json", formulas
+            if isinstance(stored, str) and stored not in told:
+                told.add(stored)
+                with store.database.read() as connection:
+                    formulas = content.get_program(connection, stored)
+                if formulas is not None:
+                    yield f"programs/{stored.removeprefix('sha256:')}.json", formulas
             for file in there:
                 with store.database.read() as connection:
                     yield (
