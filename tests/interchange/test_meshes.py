@@ -169,7 +169,7 @@ def model(mesh: Triangles, mode: str, file: str = "") -> str:
 def inertial(definition: Any) -> tuple[float, Array, Array]:
     """Mass, mass centre and tensor about it, of the only body."""
     (body,) = (each for each in definition["bodies"] if each.get("mass") is not None)
-    value = lambda text: float(definition["parameters"][text]["value"])  # noqa: E731
+    value = lambda text: float(definition["parameters"].get(text, {"value": 0})["value"])  # noqa: E731
     six = {name: value(f"I{name}_b") for name in ("xx", "yy", "zz", "xy", "xz", "yz")}
     rows = [[six["".join(sorted(a + b))] for b in "xyz"] for a in "xyz"]
     assert body["mass"] == "m_b"
@@ -190,6 +190,24 @@ def test_masses_are_what_mujoco_makes_of_them(mesh: Triangles, mode: str) -> Non
     assert m == pytest.approx(theirs.body_mass[1], rel=1e-12)
     assert centre == pytest.approx(theirs.body_ipos[1], abs=1e-12)
     assert theta == pytest.approx(expected, rel=1e-7, abs=1e-7 * expected.max())  # there in single precision
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_of_an_obj_file_of_several_objects_the_first_is_weighed(mode: str) -> None:
+    """As MuJoCo does, and told."""
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
+    small = "\n".join(f"v {3 + x / 2} {y / 2} {z / 2}" for x, y, z in CUBE)
+    faces = "\n".join("f " + " ".join(str(k + 9) for k in face) for face in FACES)
+    data = b"o first\n" + obj(box(1, 1, 1)) + f"\no second\n{small}\n{faces}\n".encode()
+    mesh = f'<asset><mesh name="m" file="m.obj" inertia="{mode}"/></asset>'
+    body = '<body name="b"><joint/><geom type="mesh" mesh="m"/></body>'
+    text = f"<mujoco>{mesh}<worldbody>{body}</worldbody></mujoco>"
+    theirs = mujoco.MjModel.from_xml_string(text, {"m.obj": data})
+    found = import_file(text.encode(), included={"m.obj": data})
+    m, centre, _ = inertial(found.definition)
+    assert m == pytest.approx(theirs.body_mass[1], rel=1e-6)
+    assert centre == pytest.approx(theirs.body_ipos[1], abs=1e-6)
+    assert any("only the first object of 'm.obj' is weighed" in each["message"] for each in found.report)
 
 
 @pytest.mark.parametrize("ending", FORMATS)

@@ -37,10 +37,13 @@ class BadMesh(ValueError):
 
 @dataclass(frozen=True)
 class Triangles:
-    """``corners`` (n, 3) in m, ``faces`` (m, 3) of their numbers, none where there are points alone."""
+    """``corners`` (n, 3) in m, ``faces`` (m, 3) of their numbers, none where there are points alone; ``others``: how
+    many faces further objects of the file have.
+    """
 
     corners: Array
     faces: NDArray[np.integer[Any]]
+    others: int = 0
 
 
 @dataclass(frozen=True)
@@ -86,17 +89,23 @@ def _stl(data: bytes) -> Triangles:
 
 
 def _obj(data: bytes) -> Triangles:
+    """The faces of the first object or group that has some, as MuJoCo takes them, and the corners of all."""
     corners: list[list[str]] = []
     faces: list[tuple[int, int, int]] = []
+    others, is_first = 0, True
     for line in data.decode("utf-8", "replace").replace("\\\n", " ").splitlines():
         words = line.split()
         if words[:1] == ["v"]:
             corners.append(words[1:4])
+        elif words[:1] in (["o"], ["g"]):
+            is_first = not faces
+        elif words[:1] == ["f"] and not is_first:
+            others += 1
         elif words[:1] == ["f"]:
             numbers = [int(word.partition("/")[0]) for word in words[1:]]
             way = [x - 1 if x > 0 else len(corners) + x for x in numbers]
             faces += [(way[0], *pair) for pair in pairwise(way[1:])]
-    return Triangles(np.array(corners, dtype=float).reshape(-1, 3), np.array(faces, dtype=int).reshape(-1, 3))
+    return Triangles(np.array(corners, dtype=float).reshape(-1, 3), np.array(faces, dtype=int).reshape(-1, 3), others)
 
 
 def _msh(data: bytes) -> Triangles:

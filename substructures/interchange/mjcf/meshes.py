@@ -20,7 +20,7 @@ from substructures.interchange.files.meshes import (
 )
 from substructures.interchange.mjcf.settings import Compiler, Defaults, choice
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, value
-from substructures.interchange.report import refuse
+from substructures.interchange.report import Report, refuse
 from substructures.interchange.rotations import from_quaternion
 from substructures.interchange.xml import Node
 
@@ -34,10 +34,12 @@ class UnknownMass(InvalidDocument):
 class Meshes:
     """What bodies of the shape of a mesh weigh, by the names in <asset>."""
 
-    def __init__(self, root: Node, compiler: Compiler, defaults: Defaults, files: Mapping[str, bytes]) -> None:
+    def __init__(
+        self, root: Node, compiler: Compiler, defaults: Defaults, files: Mapping[str, bytes], report: Report
+    ) -> None:
         found = [defaults.applied(mesh, None) for asset in root.all("asset") for mesh in asset.all("mesh")]
         self._nodes = {node.attributes.get("name", _stem(node.attributes.get("file", ""))): node for node in found}
-        self._compiler, self._files = compiler, files
+        self._compiler, self._files, self._report = compiler, files, report
         self._weighed: dict[str, Weighed] = {}
 
     def of(self, geom: Node) -> Weighed:
@@ -74,7 +76,11 @@ class Meshes:
         told = file.replace("\\", "/").rpartition("/")[2] if self._compiler.strippath else file
         for path in paths_of(told, self._compiler.meshdir):
             if path in self._files:
-                return read_mesh(told, self._files[path])
+                found = read_mesh(told, self._files[path])
+                if found.others:
+                    message = f"only the first object of '{file[:80]}' is weighed, as MuJoCo does; the others have "
+                    self._report.warning(node.place, f"{message}{found.others} faces")
+                return found
         message = (
             f"the mass of a mesh needs its file: '{file[:80]}' is not given; send it beside (zip), or give the body an "
             "<inertial>, or the geom mass='0'"

@@ -40,7 +40,7 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     MJCF.tell(root, report)
     defaults = Defaults(root)
     compiler = Compiler.of(root)
-    bodies = Bodies(compiler, defaults, Meshes(root, compiler, defaults, files), report)
+    bodies = Bodies(compiler, defaults, Meshes(root, compiler, defaults, files, report), report)
     bodies.armatures, bodies.dampings = rotor_laws(root, defaults, report)
     for node in root.all("worldbody"):
         bodies.world(written_out(node, bodies.compiler))
