@@ -21,13 +21,17 @@ def formulas(shown: Shown, quantity: str, drawn: Html) -> Html:
     return tag("div", entries, NONE_CHOSEN, _parameters(shown), class_="right", id="formulas")
 
 
-def place(shown: Shown, right: str, entry: Html | None, picture: str) -> Html:
-    """The whole; ``right``: of :func:`formulas`, in this pose; ``picture``: the address of the drawing of the server,
-    for those without WebGL.
+def state(shown: Shown, picture: str) -> Html:
+    """The left side: view and sliders; ``picture``: the address of the drawing of the server, for those without
+    WebGL.
     """
+    return tag("div", view(shown, picture), sliders(shown), class_="left")
+
+
+def place(shown: Shown, left: str, right: str, entry: Html | None) -> Html:
+    """The whole: :func:`state`, and :func:`formulas` in this pose with an entry."""
     right = Html(right if entry is None else right.replace(NONE_CHOSEN, entry, 1))
-    left = tag("div", view(shown, picture), sliders(shown), class_="left")
-    work = tag("div", left, right, class_="place", id="place", data_model=model_data(shown))
+    work = tag("div", Html(left), right, class_="place", id="place", data_model=model_data(shown))
     return html(_jumps(shown), work)
 
 

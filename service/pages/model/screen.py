@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Annotated, Any
 
 import orjson
@@ -16,7 +16,7 @@ from service.operations import modules
 from service.pages.html import Html, tag
 from service.pages.model.entry import panel
 from service.pages.model.grid import grid, integrals_table, posed
-from service.pages.model.place import formulas, place
+from service.pages.model.place import formulas, place, state
 from service.pages.model.shown import INTEGRALS, Shown, read_entry
 from service.store.store import Store
 from substructures.array import Array
@@ -62,7 +62,9 @@ def first_screen(store: Store, shown: Shown, subject: Subject, worker: Worker, a
     key = (*shown.digests, shown.path, quantity, asked.slice_)
     right = posed(make() if has_numbers else store.caches.pictures.once(key, make), shown.pose if asked.q else ())
     entry = entry_of(shown, subject, worker, asked.entry) if asked.entry else None
-    return place(shown, right, entry, picture_of(shown))
+    make_state = partial(state, shown, picture_of(shown))
+    left = make_state() if shown.pose else store.caches.pictures.once((*shown.digests, shown.path), make_state)
+    return place(shown, left, right, entry)
 
 
 def entries_of(
