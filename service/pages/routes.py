@@ -184,8 +184,8 @@ def interface(request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     part = f"{some[0].name}@{some[0].version}" if some else ""
     job = latest[0].id if latest else ""
     stored = Stored(newest[0] if newest else None, part, job, _address(request))
-    page = lambda: Answer(200, interface_page(request.app.openapi(), stored), {})  # noqa: E731
-    made = scripted(store.caches.printed.once(stored, page).body, "send.js")
+    kept = store.caches.printed.once(stored, lambda: Answer(200, interface_page(request.app.openapi(), stored), {}))
+    made = scripted(kept.body, "send.js")
     return with_scripts(answer(request, made), compiles=False)
 
 

@@ -34,9 +34,9 @@ def joined(*meshes: Triangles) -> Triangles:
     return Triangles(np.concatenate([mesh.corners for mesh in meshes]), np.concatenate(faces))
 
 
-def hollow() -> Triangles:
-    """A box of 3 x 4 x 5 without one of 1 x 2 x 3 about its middle."""
-    inner = Triangles(CUBE * [1, 2, 3] + [1, 1, 1], FACES[:, ::-1])
+def hollow(*at: float) -> Triangles:
+    """A box of 3 x 4 x 5 without one of 1 x 2 x 3 from a corner on, about its middle by default."""
+    inner = Triangles(CUBE * [1, 2, 3] + np.array(at or (1, 1, 1)), FACES[:, ::-1])
     return joined(box(3, 4, 5), inner)
 
 
@@ -169,7 +169,10 @@ def model(mesh: Triangles, mode: str, file: str = "") -> str:
 def inertial(definition: Any) -> tuple[float, Array, Array]:
     """Mass, mass centre and tensor about it, of the only body."""
     (body,) = (each for each in definition["bodies"] if each.get("mass") is not None)
-    value = lambda text: float(definition["parameters"].get(text, {"value": 0})["value"])  # noqa: E731
+
+    def value(name: str) -> float:
+        return float(definition["parameters"].get(name, {"value": 0})["value"])
+
     six = {name: value(f"I{name}_b") for name in ("xx", "yy", "zz", "xy", "xz", "yz")}
     rows = [[six["".join(sorted(a + b))] for b in "xyz"] for a in "xyz"]
     assert body["mass"] == "m_b"
@@ -177,7 +180,7 @@ def inertial(definition: Any) -> tuple[float, Array, Array]:
 
 
 @pytest.mark.parametrize("mode", MODES)
-@pytest.mark.parametrize("mesh", [box(2, 3, 4), hollow()], ids=["box", "hollow"])
+@pytest.mark.parametrize("mesh", [box(2, 3, 4), hollow(), hollow(0.25, 1.75, 0.5)], ids=["box", "hollow", "lopsided"])
 def test_masses_are_what_mujoco_makes_of_them(mesh: Triangles, mode: str) -> None:
     mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
     text = model(mesh, mode)

@@ -157,9 +157,17 @@ def test_first_integrals_without_scripts(filled: TestClient) -> None:
 
 
 def test_first_screens_are_kept_for_each_reference(filled: TestClient) -> None:
+    """Also for revisions with one content: a change that was taken back."""
     assert filled.post("/v1/trees", json={**TREE, "name": "cell-too"}).status_code == 201
-    assert "/trees/cell-too@1?entry=" not in filled.get("/trees/cell@1").text
-    assert "/trees/cell@1?entry=" not in filled.get("/trees/cell-too@1").text
+    assert filled.post("/v1/trees/cell-too/couplings", json=HAND).status_code == 201
+    assert filled.delete("/v1/trees/cell-too/couplings/hand").status_code in (200, 201)
+    digests = [filled.get(f"/v1/trees/cell-too@{number}").json()["digest"] for number in (1, 3)]
+    assert digests[0] == digests[1]
+    pages = {number: filled.get(f"/trees/cell-too@{number}").text for number in (1, 3)}
+    for number, other in ((1, 3), (3, 1)):
+        assert f"/trees/cell-too@{number}?entry=" in pages[number]
+        assert f"/trees/cell-too@{other}?entry=" not in pages[number]
+        assert f'action="/trees/cell-too@{other}"' not in pages[number]
     assert 'value="0.25"' in filled.get("/trees/cell@1?pose=0.25").text
     assert 'value="0.25"' not in filled.get("/trees/cell@1").text
 
