@@ -4,7 +4,8 @@ python -m benchmarks.shapes [--quick] [--json FILE]
 
 POST: a server in a process of its own with one worker, on an SQLite file; median wall time. A new shape has its hand
 mounted elsewhere; a known one has an arm with other numbers. Items: CPU time of the work of an item of the kind
-``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the items.
+``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the items; and
+of as many with numbers bound in instances.
 """
 
 from __future__ import annotations
@@ -95,15 +96,30 @@ def items_of(arms: Sequence[Part], hands: Sequence[Part]) -> tuple[list[dict[str
     return items, blobs
 
 
+def bound_items(items: Sequence[dict[str, Any]], hand: Part) -> list[dict[str, Any]]:
+    """The first item with other numbers bound in its instances, as many as there are items."""
+    found = []
+    name = next(iter(hand.parameters))
+    for k in range(len(items)):
+        item = deepcopy(items[0])
+        item["tree"]["name"] = f"bound-{k}"
+        for instance, parameter in zip(item["tree"]["instances"], ("m2", name), strict=True):
+            instance["parameters"] = {parameter: round(0.2017 + 0.00131 * k, 6)}
+        found.append(item)
+    return found
+
+
 def jobs(count: int, figures: dict[str, float]) -> None:
     """So many arms with as many hands."""
     parts = [[derive(Definition.read(varied(name, k))) for k in range(count)] for name in (ARM, HAND)]
     items, blobs = items_of(*parts)
     slow, size = worked(items[:: max(1, len(items) // SLOW)], blobs)
     fast, _ = worked(items, blobs, **{SHARE: "benchmark"})
-    figures |= {"item_slow_ms": slow, "item_ms": fast, "item_bytes": size, "items": len(items)}
+    bound, _ = worked(bound_items(items, parts[1][0]), blobs, **{SHARE: "benchmark"})
+    figures |= {"item_slow_ms": slow, "item_ms": fast, "item_bound_ms": bound, "item_bytes": size, "items": len(items)}
     total = f"{fast * len(items) / 1e3:.1f} s of CPU, slow {slow * len(items) / 1e3:.0f} s"
     print(f"{len(items):,} trees of one shape: {total}; an item {fast:.2f} ms, slow {slow:.1f} ms; {size:,.0f} bytes")
+    print(f"as many with numbers bound in instances: {bound * len(items) / 1e3:.1f} s of CPU, an item {bound:.2f} ms")
 
 
 def main() -> None:

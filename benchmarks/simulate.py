@@ -1,8 +1,9 @@
 """Time of a simulation at equal accuracy, beside heyoka by itself, SciPy on SymPy's right-hand side, and MuJoCo.
 
-A spatial revolute chain falls freely. Every engine is run with tighter and tighter settings; for each accuracy the
+Spatial revolute chains fall freely. Every engine is run with tighter and tighter settings; for each accuracy the
 fastest run that reaches it against a tight reference counts.
-``python -m benchmarks.simulate [--links N] [--json FILE]``
+``python -m benchmarks.simulate [--links N ...] [--json FILE] [--picture FILE]``: the picture is the work-precision
+diagram, a panel for every chain.
 """
 
 from __future__ import annotations
@@ -10,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
+from pathlib import Path
 from time import perf_counter
 from typing import Any
 
@@ -33,12 +35,14 @@ from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.taylor import taylor_stepper
 from substructures.analysis.simulate import FixedStep, Integrator, Outputs, simulate
 from substructures.compile import compile_program
+from substructures.pictures.plot import Line, Panel, plot
 from substructures.tree.model import Model
 
 Array = Any
 SPAN = 5.0
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 GRAVITY = 9.81
+LEAST = 1e-12  # error that is looked at: the reference has some, too
 
 
 @dataclass(frozen=True)
@@ -250,32 +254,50 @@ def table(runs: dict[str, list[Run]], reference: Array) -> dict[str, float]:
     return figures
 
 
-def main() -> None:
-    """Print the table; with --json FILE write the figures."""
-    parser = options(__doc__)
-    parser.add_argument("--links", type=int, default=3)
-    arguments = parser.parse_args()
-    system = Chain.random(arguments.links)
+def diagram(links: int, runs: dict[str, list[Run]], reference: Array) -> Panel:
+    """Largest error at the end over the time it takes, both as powers of ten."""
+    lines = []
+    for name, some in runs.items():
+        errors = np.array([np.abs(r.q - reference).max() for r in some])
+        times = np.array([r.seconds for r in some])
+        seen = (errors > LEAST) & (errors < 1)
+        lines.append(Line(name, np.log10(times[seen] * 1e3), np.log10(errors[seen])))
+    title = f"{links} links, {SPAN:g} s"
+    return Panel(title, "lg of the time [ms]", "lg of the largest error at the end [rad]", tuple(lines))
+
+
+def measured(links: int) -> tuple[dict[str, float], Panel]:
+    """Figures of one chain, printed, and its diagram."""
+    system = Chain.random(links)
     start = perf_counter()
     model = system.model()
-    print(f"{arguments.links} links, {SPAN:g} s; derived and coupled in {(perf_counter() - start) * 1e3:.0f} ms")
+    print(f"{links} links, {SPAN:g} s; derived and coupled in {(perf_counter() - start) * 1e3:.0f} ms")
     start = perf_counter()
     peer = sympy_function(system)
     derived = perf_counter() - start
     figures = evaluation_times(model, system, peer) | {"sympy_s": derived}
     print(f"SymPy: derived and lambdified in {derived:.1f} s; ours compiled in {figures['compile_ms']:.0f} ms")
     print(f"one right-hand side: {figures['rhs_ours_us']:.1f} us; SymPy's {figures['rhs_sympy_us']:.0f} us")
-    runs = {"DOP853": ours(model, system, "DOP853"), "DOP853, no verdict": without_verdict(model, system)}
-    runs["fixed steps, RK4"] = ours_fixed(model, system)
+    runs = {"DOP853": ours(model, system, "DOP853"), "no verdict": without_verdict(model, system)}
+    runs["RK4"] = ours_fixed(model, system)
     if find_spec("heyoka"):
-        runs |= {"Taylor (heyoka)": ours(model, system, TAYLOR), "heyoka by itself": heyoka_by_itself(model, system)}
-    runs |= {
-        "DOP853 on SymPy's function": scipy_on_sympy(peer, system),
-        f"MuJoCo {mujoco.__version__}, RK4": in_mujoco(system),
-    }
+        runs |= {"Taylor": ours(model, system, TAYLOR), "heyoka itself": heyoka_by_itself(model, system)}
+    runs |= {"SciPy, SymPy": scipy_on_sympy(peer, system), f"MuJoCo {mujoco.__version__}": in_mujoco(system)}
     reference = runs["DOP853"][-1].q
-    figures |= table(runs, reference)
-    keep(figures, arguments.json)
+    return figures | table(runs, reference), diagram(links, runs, reference)
+
+
+def main() -> None:
+    """Print the tables; with --json FILE write the figures."""
+    parser = options(__doc__)
+    parser.add_argument("--links", type=int, nargs="+", default=[3])
+    parser.add_argument("--picture", type=Path)
+    arguments = parser.parse_args()
+    found = {links: measured(links) for links in arguments.links}
+    keep({f"{n} links, {name}": x for n, (some, _) in found.items() for name, x in some.items()}, arguments.json)
+    if arguments.picture:
+        panels = [panel for _, panel in found.values()]
+        arguments.picture.write_text(plot("Accuracy against time: free fall of chains", panels))
 
 
 if __name__ == "__main__":

@@ -154,8 +154,10 @@ def million(client: Client, address: str, figures: dict[str, float], count: int)
 
 def catalogue(client: Client, figures: dict[str, float], count: int) -> None:
     """Arms with tools of the catalogue, so many rows each."""
-    arms, tools = ["puma560", "ur5", "ur10", "kuka-iiwa-14", "scara"], ["camera", "welding-torch", "flange-tool"]
-    placed = [{"substructure": tool, "at": place} for tool in tools for place in ("arm.flange",)]
+    arms = ["puma560", "ur5", "ur10", "kuka-iiwa-14", "scara", "gantry", "planar-2r", "planar-3r", "humanoid-arm"]
+    arms += ["spherical-wrist"]
+    tools = ["camera", "welding-torch", "flange-tool", "parallel-gripper", "screw-gripper"]
+    placed = [{"substructure": tool, "at": "arm.flange"} for tool in tools]
     samples = {"method": "random", "count": count, "of": {"g": {"uniform": [1, 10]}}}
     choices = {"arm": [{"substructure": arm} for arm in arms], "hand": placed}
     start = perf_counter()

@@ -141,6 +141,7 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         redirect_slashes=False,
         telemetry={"tracing": False, "metrics": False, "logs": False},  # /metrics and the log are our own
         responses=openapi.PROBLEM,
+        generate_unique_id_function=openapi.operation_id,
     )
     routers = [models.evaluations, *(module.router for module in ROUTES)]  # what is asked for most is looked for first
     for router in routers:

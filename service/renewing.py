@@ -18,7 +18,7 @@ from time import perf_counter
 from sqlalchemy.exc import DBAPIError
 
 from service.messages.refusals import NotDerived, Refused
-from service.operations.renewal import is_part_newest, is_tree_newest, renew_part, renew_tree
+from service.operations.renewal import OPERATOR, is_part_newest, is_tree_newest, renew_part, renew_tree
 from service.operations.verification import told
 from service.queries import content, renewals, trees
 from service.store.store import Store
@@ -61,10 +61,11 @@ class Renewal:
                 is_done = is_tree_newest(connection, name, int(number), is_served)
         if is_done:
             return
+        worker = self._store.job_worker(OPERATOR.owner)
         if wanted.kind == "part":
-            renew_part(database, wanted.key, nodes)
+            renew_part(database, wanted.key, nodes, compute=worker)
         else:
-            renew_tree(database, name, int(number), nodes)
+            renew_tree(database, name, int(number), nodes, compute=worker)
 
     def all(self, is_stopped: Callable[[float], bool] = lambda _seconds: False) -> int:
         """Derive anew all that needs it; the number of those that could not be. ``is_stopped``: waits for so long, and

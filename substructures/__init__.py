@@ -25,6 +25,7 @@ g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric)
                mechanics.parallel_axes
 Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: the same modules (christoffel)
 N_ai           dq^a / dq^i of joints that relations move (gears, mimic joints): mechanics.ratios, part.relations
+g_a0, ...      what given motions of coordinates make of these (Gamma_ab0, Gamma_a00, T_0, ...): tree.driven
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
                (loads.kinds), summed in part.applied_forces (own forces of a part), tree.coupling (gravity, and
                wrenches on what others carry) and tree.loads (between parts)
@@ -56,7 +57,7 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures import catalogue
     from substructures.abbreviation.abbreviate import abbreviate
     from substructures.analysis.control.cost_gradient import cost_gradient
-    from substructures.analysis.control.nonlinear_program import Demands, End
+    from substructures.analysis.control.demands import Demands, End
     from substructures.analysis.control.optimal_control import optimal_control
     from substructures.analysis.control.problem import ControlProblem, Cost
     from substructures.analysis.equations.first_integrals import first_integrals
@@ -66,6 +67,7 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
         Closed,
         ClosedMotion,
         ConstrainedMotion,
+        Contact,
         Event,
         FixedStep,
         Geodesic,
@@ -110,6 +112,7 @@ __all__ = [
     "Closed",
     "ClosedMotion",
     "ConstrainedMotion",
+    "Contact",
     "ControlProblem",
     "Cost",
     "Definition",
@@ -173,15 +176,15 @@ __version__: str
 _WHERE = {
     "substructures.abbreviation.abbreviate": ("abbreviate",),
     "substructures.analysis.control.cost_gradient": ("cost_gradient",),
-    "substructures.analysis.control.nonlinear_program": ("Demands", "End"),
+    "substructures.analysis.control.demands": ("Demands", "End"),
     "substructures.analysis.control.optimal_control": ("optimal_control",),
     "substructures.analysis.control.problem": ("ControlProblem", "Cost"),
     "substructures.analysis.equations.first_integrals": ("first_integrals",),
     "substructures.analysis.motion.parameter_sensitivity": ("sensitivities",),
     "substructures.analysis.motion.problems.outputs": ("Outputs", "SensitivityOutputs"),
     "substructures.analysis.simulate": (
-        *("Closed", "ClosedMotion", "ConstrainedMotion", "Event", "FixedStep", "Geodesic", "Integrator"),
-        *("KnifeEdge", "Linear", "Rolling", "Table", "TreeMotion", "simulate"),
+        *("Closed", "ClosedMotion", "ConstrainedMotion", "Contact", "Event", "FixedStep", "Geodesic"),
+        *("Integrator", "KnifeEdge", "Linear", "Rolling", "Table", "TreeMotion", "simulate"),
     ),
     "substructures.analysis.stability.equilibria": ("equilibria",),
     "substructures.analysis.stability.frequency_response": ("frequency_response",),

@@ -18,7 +18,7 @@ from substructures.export.reference import arguments
 def maxima(script: str, folder: Path) -> list[str]:
     (folder / "script.mac").write_text(script)
     command = [tool("maxima"), "--very-quiet", '--batch-string=load("script.mac")$']
-    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
     assert run.returncode == 0, run.stdout + run.stderr
     assert "error" not in run.stdout.lower(), run.stdout
     return run.stdout.splitlines()
@@ -27,7 +27,7 @@ def maxima(script: str, folder: Path) -> list[str]:
 def fricas(script: str, folder: Path) -> str:
     (folder / "script.input").write_text(script)
     command = [tool("fricas"), "-nosman", "-eval", ")read script.input )quiet", "-eval", ")quit"]
-    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=120)
+    run = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, text=True, timeout=900)
     return run.stdout
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from functools import cache
 from typing import Any
 
@@ -9,7 +10,7 @@ import numpy as np
 from made_once import coupled_once
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
-from substructures import Model, catalogue
+from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.quantities.numbers.states import default_number
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
@@ -59,3 +60,19 @@ def values_at(model: Model, q: Any, qd: Any, **more: Any) -> dict[str, Any]:
     values |= defaults(model) | {"t": 0.0} | more
     values |= {name: q[:, a] for a, name in enumerate(model.coordinates)}
     return values | {f"{name}'": qd[:, a] for a, name in enumerate(model.coordinates)}
+
+
+def walker(slope: float) -> Model:
+    """In the plane x, y, x normal to the slope: stance leg at ``theta`` from x, swing leg at ``phi`` against it."""
+    legs = {
+        "name": "legs",
+        "bodies": [
+            {"name": "stance", "parent": "base", "mass": 1, "com": [1, 0, 0],
+             "joint": {"type": "revolute", "coordinate": "theta"}},
+            {"name": "swing", "parent": "stance", "mass": "1/10^9", "com": [-1, 0, 0],
+             "joint": {"type": "revolute", "coordinate": "psi", "d": 1}},
+        ],
+    }  # fmt: skip
+    gravity = [-math.cos(slope), -math.sin(slope), 0]
+    spec = TreeSpec.read({"name": "tree", "gravity": gravity, "instances": [{"name": "w", "substructure": "legs"}]})
+    return couple(spec, {"w": derive(Definition.read(legs))})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
 from typing import Any
 
 import numpy as np
@@ -97,6 +98,29 @@ def parallelogram() -> Model:
     rod = {"name": "rod", "type": "rod", "from": "x.end_a", "to": "x.end_b", "length": 0.3}
     document = {"instances": [{"name": "x", "substructure": "cranks"}], "closures": [rod]}
     return tree_model(document, {"cranks": {"name": "cranks", "bodies": bodies, "ports": ports}})
+
+
+def held_bar(joints: Collection[str] = ("q1",), velocity: float = 0.001) -> Model:
+    """A four-bar some of whose joints are held by 5 N m each."""
+
+    def joint(name: str, **place: Any) -> Plain:
+        """A revolute joint that may rub."""
+        law = {"friction": {"coulomb": 5, "velocity": velocity}} if name in joints else {}
+        return {"type": "revolute", "coordinate": name, **place, **law}
+
+    rocker = joint("q3", placement={"position": [0.45, 0, 0]})
+    bodies = [
+        {"name": "crank", "parent": "base", "joint": joint("q1"), "mass": 1, "com": [0.1, 0, 0]},
+        {"name": "coupler", "parent": "crank", "joint": joint("q2", d=0.2), "mass": 1, "com": [0.25, 0, 0]},
+        {"name": "rocker", "parent": "base", "joint": rocker, "mass": 1, "com": [0.2, 0, 0]},
+    ]
+    ports = [
+        {"name": "e", "body": "coupler", "position": [0.5, 0, 0]},
+        {"name": "r", "body": "rocker", "position": [0.4, 0, 0]},
+    ]
+    pin = {"name": "pin", "type": "pin", "from": "f.e", "to": "f.r"}
+    document = {"gravity": [0, 0, 0], "instances": [{"name": "f", "substructure": "bar"}], "closures": [pin]}
+    return tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
 
 
 def at(model: Model, **values: float) -> np.ndarray:

@@ -33,6 +33,8 @@ def flat_arguments(function: Callable[..., Any]) -> dict[str, Any]:
         classes = TYPED.get(name, ()) if function is not sensitivities or name != "outputs" else (SensitivityOutputs,)
         if name == "outputs" and "Mapping" in str(parameter.annotation):  # of linearise: names and expressions
             classes = ()
+        if name == "kind" and "MotionKind" not in str(parameter.annotation):  # of linearise: with velocity constraints
+            classes = (ConstrainedMotion,)
         for each in classes:
             found |= {field.name: _default(field) for field in fields(each)}
         if not classes:

@@ -61,11 +61,12 @@ class Engine:
         return [self.index[c] for c in coordinates]
 
 
-def engine_of(definition: Plain, gravity: Any) -> Engine:
-    """Joints are added depth first, as Pinocchio's algorithms expect."""
+def engine_of(definition: Plain, gravity: Any, floats: bool = False) -> Engine:
+    """Joints are added depth first, as Pinocchio's algorithms expect; ``floats``: the base, by a free flyer."""
     model = pin.Model()
     model.gravity.linear = np.asarray(gravity, dtype=float)
-    engine = Engine(model, {"base": (0, pin.SE3.Identity())}, {})
+    root = model.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), "root") if floats else 0
+    engine = Engine(model, {"base": (root, pin.SE3.Identity())}, {})
     waiting = [b for b in definition["bodies"] if b["parent"] == "base"]
     while waiting:
         body = waiting.pop()

@@ -116,7 +116,7 @@ def call_c(library: ctypes.CDLL, exported: Exported, function: Function, values:
 def octave(script: str, folder: Path) -> list[str]:
     """The lines that a script prints. Fails when Octave does."""
     command = [tool("octave-cli", "octave"), "--no-gui", "--norc", "--eval", script]
-    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120)
+    run = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900)
     assert run.returncode == 0, run.stderr
     return run.stdout.split("\n")
 

@@ -11,7 +11,7 @@ from rolling_bodies import BLADE, FORWARD, sleigh
 from substructures import Model, Program, catalogue
 from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
 from substructures.quantities.formulas import derived
 

@@ -17,7 +17,7 @@ from service.cli.documents import is_document, named, read_document
 from service.cli.options import Server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
-from service.models.numbers import ANALYSES
+from service.models.numbers import ANALYSES, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, written
 
 #: what is said of results that are not known to be right
@@ -56,7 +56,7 @@ def numbers(wanted: Wanted, name: str, given: Path | None) -> int:
     source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
     with waiting(name), nullcontext() if given is None else named(given):
         if source is not None:
-            result = ANALYSES[name].compute(source, request, lambda _: None)
+            result = analysis_of(name, source.model).compute(source, request, lambda _: None)
             told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
         else:
             with wanted.server.client() as client:
@@ -96,8 +96,9 @@ def _summary(told: Mapping[str, Any]) -> None:
     tell_warnings(told)
     for event in told.get("events", []):
         act = f", the energy changes by {event['energy_change']:.6g} J" if "after" in event else ""
-        print(f"{event['name']} at t = {event['t']:.9g} s{act}")
-    if "t" in told and "q" in told:
+        kind = f", {event['kind']}" if "kind" in event else ""
+        print(f"{event['name']}{kind} at t = {event['t']:.9g} s{act}")
+    if told.get("t") and "q" in told:
         last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
         print(f"t = {told['t'][-1]:.9g} s: {last}")
 

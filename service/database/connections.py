@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, closing, contextmanager
 from datetime import UTC, datetime
 from importlib import import_module
@@ -179,11 +179,21 @@ def _snapshots(engine: Engine) -> Engine:
     return engine.execution_options(isolation_level="REPEATABLE READ", postgresql_readonly=True)
 
 
+def set_clock(connection: Connection) -> None:
+    """Set the clock of the store by that of PostgreSQL, in case somebody has set this host's; SQLite has none."""
+    if connection.dialect.name != "sqlite":
+        _set_clock_by(connection.exec_driver_sql)
+
+
 def _set_clock(connection: Any, _record: object) -> None:
-    asked = datetime.now(UTC)
-    ((told,),) = connection.execute("SELECT clock_timestamp()").fetchall()
-    set_by(asked, told, datetime.now(UTC))
+    _set_clock_by(connection.execute)
     connection.commit()
+
+
+def _set_clock_by(ask: Callable[[str], Any]) -> None:
+    asked = datetime.now(UTC)
+    ((told,),) = ask("SELECT clock_timestamp()").fetchall()
+    set_by(asked, told, datetime.now(UTC))
 
 
 def _configure(connection: Any, _record: object) -> None:

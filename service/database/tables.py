@@ -114,7 +114,7 @@ substructures = Table(  # one row a name; locked while a version number is alloc
     "substructures",
     metadata,
     _text("name", primary_key=True),
-    _number("latest", nullable=True),  # highest version that is not yanked
+    _number("latest", nullable=True),  # highest version that is not withdrawn
     # of that version, so that searches read narrow rows
     _text("digest", nullable=True),
     _text("created", nullable=True),
@@ -143,8 +143,8 @@ versions = Table(
     _number("version", primary_key=True),
     _text("digest", ForeignKey("parts.digest")),
     _text("created"),
-    _text("yanked", nullable=True),
-    _text("yank_reason", nullable=True),
+    _text("withdrawn_at", nullable=True),
+    _text("withdrawal_reason", nullable=True),
     _default("author", ""),  # id of an API key
     _default("note", ""),  # of whoever submitted it
     _default("origin", ""),  # what it came as

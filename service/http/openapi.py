@@ -8,6 +8,7 @@ from typing import Any
 import orjson
 from fastapi import FastAPI, Request, Response
 from fastapi.openapi.utils import get_openapi
+from fastapi.routing import APIRoute
 from pydantic import BaseModel
 from pydantic.json_schema import models_json_schema
 
@@ -18,7 +19,7 @@ from service.schemas.equivalences import EquivalenceRequest
 from service.schemas.jobs import CancelRequest, JobRequest, RetryRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
 from service.schemas.publishing import PublishRequest
-from service.schemas.resources import AliasRequest, Problem, YankRequest
+from service.schemas.resources import AliasRequest, Problem, WithdrawalRequest
 from service.schemas.sweeps import RowTree
 from substructures.loads.kinds import AnyTreeLoad
 from substructures.part.definition import Definition
@@ -46,7 +47,7 @@ PREFER = {
 }
 _ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
 _REQUESTS = (
-    *(AliasRequest, YankRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest),
+    *(AliasRequest, WithdrawalRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest),
     EquivalenceRequest,
     PublishRequest,
     RetryRequest,
@@ -66,12 +67,20 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
 )
 
 
+def operation_id(route: APIRoute) -> str:
+    """The name of an operation, and of a method of a generated client: that of the function that answers."""
+    return route.name
+
+
 def document(app: FastAPI) -> dict[str, Any]:
     """The document of an app."""
     result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
     _, extra = models_json_schema([(model, "validation") for model in _READ_BY_US], ref_template=TEMPLATE)
     schemas = result.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra["$defs"])
+    for schema in schemas.values():
+        if "d" in (fields := schema.get("properties", {})):
+            fields["d"] = fields.pop("d")  # last: openapi-python-client reads from a variable of this name
     result["components"]["schemas"] = dict(sorted(schemas.items()))
     result["components"]["securitySchemes"] = {"key": {"type": "http", "scheme": "bearer"}}
     result["security"] = [{}, {"key": []}]
@@ -93,7 +102,7 @@ def _describe_job(operation: dict[str, Any]) -> None:
 
 def text(app: FastAPI) -> str:
     """The document as it is committed."""
-    return json.dumps(document(app), indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+    return json.dumps(document(app), indent=1, ensure_ascii=False) + "\n"
 
 
 class DocumentedApp(FastAPI):

@@ -55,6 +55,8 @@ class Viewer:
 
 #: whoever asks a server without keys: it listens on loopback only
 ANYBODY = Viewer(OPEN, OPEN, SCOPES)
+#: who sees what is public alone
+PUBLIC_ONLY = Viewer("", "", ())
 #: who stores what is in the folder of a server
 FOLDER = Viewer("folder", OPEN, ("write",))
 #: who imports what is shipped

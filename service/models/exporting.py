@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
@@ -43,6 +44,8 @@ _MEDIA = {
 OF_TREES, OF_PARTS = ("metric", "christoffel", "forces"), ("metric", "christoffel")
 
 
+#: names of robots, which files are called by
+ROBOT = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 #: a tree as a model to be simulated, with its energies and the poses of its frames where nothing is named
 FMU, FMU2 = "fmu", "fmu2"
 MOVING = (FMU, "simulink")  # targets that need accelerations
@@ -173,7 +176,10 @@ def _check(request: ExportRequest) -> None:
 
 
 def _urdf_name(request: ExportRequest, called: str) -> str:
-    """The name of the robot. Raises InvalidArgument."""
+    """The name of the robot and of its file. Raises InvalidArgument."""
+    if request.name and not ROBOT.fullmatch(request.name):
+        message = f"{request.name[:40]!r} names no robot: at most 64 letters, digits, _, - and ., no sign first"
+        raise InvalidArgument.at("/name", "bad-name", message)
     return prefix(request.name, called)
 
 

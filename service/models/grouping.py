@@ -32,7 +32,7 @@ QUANTITIES = (
     *(name for name in DERIVED if name not in OUTPUTS and {*PROGRAMS[name].needs.split()} <= {*OUTPUTS}),
 )
 
-_grouped: Cache[Grouped] = Cache(2_000_000, lambda found: len(found.model.program))
+_grouped: Cache[Grouped] = Cache(300_000, lambda found: len(found.model.program))
 
 
 def check_group(quantity: str, style: Style) -> None:

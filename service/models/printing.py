@@ -29,7 +29,8 @@ from substructures.quantities.numbers.warnings import not_judged_warnings
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
 from substructures.quantities.sources import Sources
 from substructures.tree.glossary import glossary
-from substructures.tree.model import Model, require_stored
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import require_stored
 
 JSON = "json"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"

@@ -23,7 +23,7 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
     require_object(body)
     if schema is not AnySimulationRequest:
         return read_measured(schema, body, model)
-    chosen = _motion(body, model is not None and bool(model.closures))
+    chosen = _motion(body, model)
     _require_fields_of(chosen, body)
     return read_measured(chosen, body, model)
 
@@ -32,7 +32,7 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
 MOTIONS: dict[type[BaseModel], str] = {
     SimulationRequest: "of trees without closures",
     ClosedRequest: "with closures or 'prescribed' coordinates",
-    RollingRequest: "with velocity constraints ('constraints')",
+    RollingRequest: "with velocity constraints",
 }
 
 
@@ -42,30 +42,36 @@ def _require_fields_of(chosen: type[BaseModel], body: Mapping[str, Any]) -> None
     for name in body:
         others = [what for schema, what in MOTIONS.items() if name in schema.model_fields]
         if others and name not in chosen.model_fields:
-            why = "; its reactions are the series 'multipliers'" if name == "reactions" else ""
-            message = f"'{name}' is a field of simulations {' and '.join(others)}, not of those {MOTIONS[chosen]}{why}"
+            message = f"'{name}' is a field of simulations {' and '.join(others)}, not of those {MOTIONS[chosen]}"
             faults.append(Fault(f"/{escape(name)}", "extra-forbidden", message))
     if faults:
         raise InvalidArgument(faults)
 
 
-def _motion(body: Mapping[str, Any], is_closed: bool) -> type[BaseModel]:
+def _motion(body: Mapping[str, Any], model: Model | None) -> type[BaseModel]:
     """Which of the requests for simulations it is, as :func:`substructures.analysis.simulate.simulate` chooses."""
-    if body.get("constraints"):
+    if body.get("constraints") or (model is not None and model.velocity_constraints):
         return RollingRequest
-    return ClosedRequest if is_closed or body.get("prescribed") else SimulationRequest
+    return ClosedRequest if (model is not None and model.closures) or body.get("prescribed") else SimulationRequest
 
 
 def arguments(request: BaseModel) -> dict[str, Any]:
     """The fields that were given, by name, with values of the science; it has the same defaults for all others."""
-    return {name: _value(getattr(request, name)) for name in request.model_fields_set}
+    return {name: _value(getattr(request, name), f"/{name}") for name in request.model_fields_set}
 
 
-def _value(given: Any) -> Any:
+def _value(given: Any, place: str) -> Any:
     if isinstance(given, RequestPart):
         return given.value()
     if isinstance(given, dict):
-        return {name: _value(item) for name, item in given.items()}
+        return {name: _value(item, f"{place}/{escape(name)}") for name, item in given.items()}
     if isinstance(given, tuple) and given and isinstance(given[0], RequestPart):
-        return tuple(_value(item) for item in given)
+        return tuple(_item(item, f"{place}/{i}") for i, item in enumerate(given))
     return given
+
+
+def _item(given: RequestPart, place: str) -> Any:
+    try:
+        return given.value()
+    except InvalidArgument as error:
+        raise error.below(place) from None

@@ -20,14 +20,16 @@ DRAWINGS = "substructures.analysis.drawings"
 JSON, CSV, SVG = "application/json", "text/csv", "image/svg+xml"
 #: formats by their names in files and items of jobs
 MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "arrow": arrow.MEDIA_TYPE}
-#: what every result can be, what trajectories can be, and what root loci can be
+#: what every result can be, what trajectories can be, and what root loci and steady motions can be
 PLAIN = (JSON, arrays.MEDIA_TYPE)
 TRAJECTORY = (*PLAIN, CSV, SVG, arrow.MEDIA_TYPE)
 DRAWN = (*PLAIN, SVG)
 #: by class, properties that are written beside the fields, each with the field that it is written before
 PROPERTIES: dict[str, dict[str, str]] = {
     "Linearisation": {"is_equilibrium": "modes"},
+    "ConstrainedLinearisation": {"is_steady": "modes"},
     "Identification": {"is_right": "checks"},
+    "ConsistentInertia": {"is_right": "checks"},
     "Orbit": {"is_right": "checks"},
     "Family": {"is_right": "found"},
     "LyapunovExponents": {"is_right": "checks"},
@@ -35,6 +37,7 @@ PROPERTIES: dict[str, dict[str, str]] = {
     "CostGradient": {"is_right": "trajectory", "checks": "trajectory"},
     "ReducedEquations": {"is_right": "checks"},
     "Optimum": {"is_right": "trajectory", "checks": "trajectory"},
+    "BestParameters": {"is_right": "checks"},
     "FrequencyResponse": {"magnitude": "response", "phase": "response"},
     "Regulator": {"is_right": "checks"},
     "Mode": {"frequency": "shape", "hertz": "shape", "damping_ratio": "shape"},

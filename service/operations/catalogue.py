@@ -1,4 +1,4 @@
-"""Submit, find, name and yank substructures."""
+"""Submit, find, name and withdraw substructures."""
 
 from __future__ import annotations
 
@@ -183,7 +183,7 @@ def alias_tag(alias: aliases.Alias) -> str:
     return f'"{alias.revision}"'
 
 
-def yank(
+def withdraw(
     connection: Connection, viewer: Viewer, text: str, reason: str, successor: str | None = None
 ) -> catalogue.Version:
     """Withdraw a version: it stays where it is used, and no longer is anybody's latest; ``successor``: reference to
@@ -194,9 +194,9 @@ def yank(
     instead = None if successor is None else pinned(connection, viewer, successor, "/successor")
     if instead == (version.name, version.version):
         raise unprocessable("own-successor", f"'{text[:80]}' cannot take its own place", "/successor")
-    catalogue.yank(connection, version.name, version.version, reason, instead)
+    catalogue.withdraw(connection, version.name, version.version, reason, instead)
     told = {"reason": reason} | ({} if instead is None else {"successor": "{}@{}".format(*instead)})
-    audit.note(connection, viewer, "substructure.yank", f"{version.name}@{version.version}", **told)
+    audit.note(connection, viewer, "substructure.withdraw", f"{version.name}@{version.version}", **told)
     return _resolved(connection, viewer, Reference(version.name, number=version.version))
 
 
@@ -209,22 +209,22 @@ def follow(connection: Connection, viewer: Viewer, name: str, version: int) -> s
     remark where another one is.
     """
     for each in folders.versions_of(connection, name, viewer.key):
-        if each.yank_reason == GONE or (each.yank_reason == EARLIER and each.version <= version):
+        if each.withdrawal_reason == GONE or (each.withdrawal_reason == EARLIER and each.version <= version):
             catalogue.offer(connection, name, each.version)
             audit.note(connection, viewer, "substructure.offer", f"{name}@{each.version}")
-        if each.version > version and each.yank_reason in (None, GONE):
-            catalogue.yank(connection, name, each.version, EARLIER, (name, version))
+        if each.version > version and each.withdrawal_reason in (None, GONE):
+            catalogue.withdraw(connection, name, each.version, EARLIER, (name, version))
             told = {"reason": EARLIER, "successor": f"{name}@{version}"}
-            audit.note(connection, viewer, "substructure.yank", f"{name}@{each.version}", **told)
+            audit.note(connection, viewer, "substructure.withdraw", f"{name}@{each.version}", **told)
     latest = folders.latest(connection, name)
     offered = "none is" if latest is None else f"{name}@{latest} is"
     return "" if latest == version else f"others have withdrawn it, or stored a later one: {offered} offered"
 
 
-def withdraw(connection: Connection, viewer: Viewer, name: str) -> list[int]:
+def withdraw_all(connection: Connection, viewer: Viewer, name: str) -> list[int]:
     """Withdraw all versions of a file that is gone; only those that ``viewer`` stored, of which the numbers."""
-    found = [each.version for each in folders.versions_of(connection, name, viewer.key) if each.yanked is None]
+    found = [each.version for each in folders.versions_of(connection, name, viewer.key) if each.withdrawn_at is None]
     for number in found:
-        catalogue.yank(connection, name, number, GONE)
-        audit.note(connection, viewer, "substructure.yank", f"{name}@{number}", reason=GONE)
+        catalogue.withdraw(connection, name, number, GONE)
+        audit.note(connection, viewer, "substructure.withdraw", f"{name}@{number}", reason=GONE)
     return found

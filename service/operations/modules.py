@@ -69,24 +69,24 @@ def program(subject: Subject, worker: Worker, quantities: Sequence[str]) -> File
     def make() -> Answer:
         """Both in one body, the length of the first in a header."""
         try:
-            files = _made(subject, worker, "program", quantities=list(quantities))
+            files = made(subject, worker, "program", quantities=list(quantities))
         except InvalidInput as error:
             raise error.moved(lambda pointer: f"/query{pointer}") from None
         return Answer(200, files["wasm"] + files["json"], {"Length": str(len(files["wasm"]))})
 
-    kept = _kept(subject, make, "program", *quantities)
-    middle = int(kept.headers["Length"])
-    return {"wasm": kept.body[:middle], "json": kept.body[middle:]}
+    both = kept(subject, make, "program", *quantities)
+    middle = int(both.headers["Length"])
+    return {"wasm": both.body[:middle], "json": both.body[middle:]}
 
 
 def origins(subject: Subject, worker: Worker) -> bytes:
     """The JSON document. Raises TimeoutError."""
-    return _kept(subject, lambda: Answer(200, _made(subject, worker, "origins")["json"], {}), "origins").body
+    return kept(subject, lambda: Answer(200, made(subject, worker, "origins")["json"], {}), "origins").body
 
 
 def integrals(subject: Subject, worker: Worker) -> bytes:
     """First integrals of a tree as JSON, without formulas. Raises TooLarge, TimeoutError."""
-    return _kept(subject, lambda: Answer(200, _made(subject, worker, "integrals")["json"], {}), "integrals").body
+    return kept(subject, lambda: Answer(200, made(subject, worker, "integrals")["json"], {}), "integrals").body
 
 
 def entry(subject: Subject, worker: Worker, quantity: str, index: Sequence[int]) -> bytes:
@@ -94,17 +94,19 @@ def entry(subject: Subject, worker: Worker, quantity: str, index: Sequence[int])
 
     def make() -> Answer:
         """One file."""
-        return Answer(200, _made(subject, worker, "entry", quantity=quantity, index=list(index))["json"], {})
+        return Answer(200, made(subject, worker, "entry", quantity=quantity, index=list(index))["json"], {})
 
-    return _kept(subject, make, "entry", quantity, *map(str, index)).body
+    return kept(subject, make, "entry", quantity, *map(str, index)).body
 
 
-def _made(subject: Subject, worker: Worker, kind: str, **more: object) -> Files:
+def made(subject: Subject, worker: Worker, kind: str, **more: object) -> Files:
+    """What a work about a subject makes. Raises as the worker does."""
     about = {"digest": subject.digest, "reference": subject.reference}
     nodes = subject.store.settings.limits.program_nodes
     return worker(kind, {**subject.item, **about, "nodes": nodes, **more}, subject.blobs).files
 
 
-def _kept(subject: Subject, make: Callable[[], Answer], *names: str) -> Answer:
+def kept(subject: Subject, make: Callable[[], Answer], *names: str) -> Answer:
+    """What was made of a subject under these names, made unless it is remembered."""
     key = (subject.digest, subject.program, subject.reference, *names)
     return subject.store.caches.printed.once(key, make)

@@ -73,7 +73,7 @@ def absent_part(connection: Connection, viewer: Viewer, text: str, what: str = "
     if ref is not None and last is not None and ref.number is not None:
         return f"there is no {what} '{text[:80]}'; the last version is {last.name}@{last.version}"
     if last is not None and text == last.name:
-        why = f": {last.yank_reason}" if last.yank_reason else ""
+        why = f": {last.withdrawal_reason}" if last.withdrawal_reason else ""
         instead = f"; take {last.successor}" if last.successor else ""
         return f"all versions of '{last.name}' are withdrawn, the last one as {last.name}@{last.version}{why}{instead}"
     return f"there is no {what} '{text[:80]}'{candidates(connection, viewer, 'substructure', text)}"

@@ -9,25 +9,25 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Protocol
 
-from service.content.derivation import coupled_tree, derived_part, software
+from service.content.derivation import software
 from service.content.integrity import checked, digest_of
-from service.content.summaries import PartContent, part_content, tree_summary
+from service.content.summaries import PartContent
 from service.database.connections import Connection, Database
-from service.database.packed import pack
+from service.database.packed import unpack
+from service.jobs.engines.engine import Outcome
+from service.jobs.kinds.requested.renewed import RENEWED
 from service.messages.refusals import Refused
 from service.messages.viewer import CONSOLE, OPEN, SCOPES, Viewer
 from service.operations.catalogue import mend_part
 from service.queries import audit, catalogue, content, trees
 from service.queries.trees import Tree
+from service.schemas.jobs import ItemDocument
 from substructures.documents import read_json
-from substructures.expr.program import Program
 from substructures.part.definition import Definition
-from substructures.part.part import MAX_NODES, Part
+from substructures.part.part import MAX_NODES
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model
-from substructures.tree.plausibility import Plausibility
 
 #: who works on a store directly
 OPERATOR = Viewer(CONSOLE, OPEN, SCOPES)
@@ -35,54 +35,69 @@ OPERATOR = Viewer(CONSOLE, OPEN, SCOPES)
 
 @dataclass(frozen=True, slots=True)
 class CoupledAnew:
-    """A revision as it has to be stored, its model, and the digests of its parts by instance."""
+    """A revision as it has to be stored, its packed program of so many operations, digests of its parts by instance."""
 
     tree: Tree
-    model: Model
+    packed: bytes
+    nodes: int
     parts: Mapping[str, str]
 
-    @property
-    def program(self) -> Program:
-        """Of the model."""
-        return self.model.program
+
+class Compute(Protocol):
+    """Computes a work of :data:`service.jobs.kinds.requested.renewed.RENEWED`, here or elsewhere."""
+
+    def __call__(self, kind: str, item: ItemDocument, blobs: Mapping[str, bytes], /) -> Outcome:
+        """What it has made. Raises what the work raises."""
 
 
-def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES) -> tuple[Part, PartContent]:
-    """A part derived of its stored definition, and what has to be stored of it. Raises ValueError, Refused for a
-    definition that is gone or damaged, and as :func:`substructures.part.part.derive`.
+def here(kind: str, item: ItemDocument, blobs: Mapping[str, bytes]) -> Outcome:
+    """Compute in this process, for who works on a store directly."""
+    return RENEWED[kind](item, blobs)
+
+
+def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES, compute: Compute = here) -> PartContent:
+    """What has to be stored of a part, derived of its stored definition. Raises ValueError, Refused for a definition
+    that is gone or damaged, and as :func:`substructures.part.part.derive`.
     """
     definition = content.get_definition(connection, digest)
     if definition is None:
         raise ValueError("its definition is gone from the store; submit it again")
-    recipe = content.get_recipe(connection, digest)
-    part = derived_part(definition, recipe, max_nodes)
-    return part, part_content(part, recipe)
+    item = {"definition": digest, "recipe": content.get_recipe(connection, digest), "nodes": max_nodes}
+    return PartContent.of_files(compute("renew-part", item, {digest: definition}).files)
 
 
-def tree_anew(connection: Connection, name: str, revision: int, max_nodes: int = MAX_NODES) -> CoupledAnew:
+def tree_anew(
+    connection: Connection, name: str, revision: int, max_nodes: int = MAX_NODES, compute: Compute = here
+) -> CoupledAnew:
     """A revision coupled of its stored document, and of its parts as they are stored; one that is not as this software
     derives it is derived. Raises as :func:`part_anew`.
     """
     tree, spec = read_tree(connection, name, revision)
-    definitions = stored_definitions(connection, spec)
-    parts = {each: _newest(connection, definition, max_nodes) for each, definition in definitions.items()}
-    spec, model = coupled_tree(tree.spec.encode(), parts, max_nodes)
-    summary = tree_summary(spec, model)
-    made: dict[str, Any] = {"dof": model.dof, "joints": model.joints, "mass": Plausibility(spec, definitions).mass}
-    made |= {"program": model.program.digest, "summary": summary.decode(), "summary_digest": digest_of(summary)}
-    digests = {each: definition.digest for each, definition in definitions.items()}
-    return CoupledAnew(replace(tree, **made), model, digests)
+    digests = {each: definition.digest for each, definition in stored_definitions(connection, spec).items()}
+    blobs, programs = dict[str, bytes](), dict[str, str]()
+    for digest in dict.fromkeys(digests.values()):
+        definition, program = _newest(connection, digest, max_nodes, compute)
+        programs[digest] = digest_of(program)
+        blobs |= {digest: definition, programs[digest]: program}
+    parts = {each: [digest, programs[digest]] for each, digest in digests.items()}
+    item = {"tree": read_json(tree.spec.encode()), "parts": parts, "nodes": max_nodes}
+    outcome = compute("renew-tree", item, blobs)
+    told, summary = outcome.summary, outcome.files["summary"]
+    made = {each: told[each] for each in ("program", "dof", "joints", "mass")}
+    made |= {"summary": summary.decode(), "summary_digest": digest_of(summary)}
+    return CoupledAnew(replace(tree, **made), outcome.files["program"], told["nodes"], digests)
 
 
-def _newest(connection: Connection, definition: Definition, max_nodes: int) -> Part:
+def _newest(connection: Connection, digest: str, max_nodes: int, compute: Compute) -> tuple[bytes, bytes]:
+    """Definition and program of a part, as they are stored or derived of what is stored."""
     try:
-        stored = content.get_part(connection, definition.digest)
+        stored = content.get_part(connection, digest)
     except Refused:  # damaged
         stored = None
     if stored is not None and stored.is_derived and stored.software == software():
-        return Part.load(definition, stored.program, read_json(stored.certificate))
-    recipe = content.get_recipe(connection, definition.digest)
-    return derived_part(definition.canonical(), recipe, max_nodes)
+        return stored.definition, stored.program
+    found = part_anew(connection, digest, max_nodes, compute)
+    return found.row["definition"].encode(), unpack(found.program)
 
 
 def read_tree(connection: Connection, name: str, revision: int) -> tuple[Tree, TreeSpec]:
@@ -106,7 +121,13 @@ def stored_definitions(connection: Connection, spec: TreeSpec) -> Mapping[str, D
     return found
 
 
-def renew_part(database: Database, digest: str, max_nodes: int = MAX_NODES, viewer: Viewer = OPERATOR) -> PartContent:
+def renew_part(
+    database: Database,
+    digest: str,
+    max_nodes: int = MAX_NODES,
+    viewer: Viewer = OPERATOR,
+    compute: Compute = here,
+) -> PartContent:
     """Derive a part anew, and write it over what is stored under its digest. Raises as :func:`part_anew`.
 
     The old program stays under its digest, for items of jobs that are queued with it, if this server derived it.
@@ -114,7 +135,7 @@ def renew_part(database: Database, digest: str, max_nodes: int = MAX_NODES, view
     with database.read() as connection:
         row = content.get_row(connection, digest)
         before, is_ours = row["program"], row["seal"] == content.seal_of_part(connection, row)
-        made = part_anew(connection, digest, max_nodes)[1]
+        made = part_anew(connection, digest, max_nodes, compute)
     with database.write() as connection:
         mend_part(connection, made)
         catalogue.show_again(connection, digest)
@@ -126,27 +147,31 @@ def renew_part(database: Database, digest: str, max_nodes: int = MAX_NODES, view
 
 
 def renew_tree(
-    database: Database, name: str, revision: int, max_nodes: int = MAX_NODES, viewer: Viewer = OPERATOR
+    database: Database,
+    name: str,
+    revision: int,
+    max_nodes: int = MAX_NODES,
+    viewer: Viewer = OPERATOR,
+    compute: Compute = here,
 ) -> CoupledAnew:
     """Couple a revision anew, of parts that are derived anew where they need it, and write it over what is stored.
 
     Raises as :func:`tree_anew`.
     """
     for digest in _stale_parts_of(database, name, revision):
-        renew_part(database, digest, max_nodes, viewer)
+        renew_part(database, digest, max_nodes, viewer, compute)
     with database.read() as connection:
         was = read_tree(connection, name, revision)[0]
         before = was.program
-        found = tree_anew(connection, name, revision, max_nodes)
-    packed, nodes = pack(found.program), len(found.program)
+        found = tree_anew(connection, name, revision, max_nodes, compute)
     with database.write() as connection:
-        content.replace_program(connection, found.program.digest, packed, nodes)
+        content.replace_program(connection, found.tree.program, found.packed, found.nodes)
         trees.replace_model(connection, found.tree)
         trees.put_parts(connection, name, revision, found.parts)
-        if found.program.digest != before:
+        if found.tree.program != before:
             if not was.is_derived:
                 content.forget_program(connection, before)
-            told = {"program": found.program.digest, "was": before}
+            told = {"program": found.tree.program, "was": before}
             audit.note(connection, viewer, "tree.renew", f"{name}@{revision}", **told)
     return found
 

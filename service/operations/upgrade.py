@@ -15,6 +15,7 @@ from service.content.improvement import AS_IT_WAS, Improvement, improvement
 from service.content.integrity import digest_of
 from service.content.summaries import PartContent
 from service.database.connections import Connection, Database
+from service.database.packed import unpack
 from service.messages.viewer import Viewer
 from service.operations.catalogue import mend_part
 from service.operations.renewal import OPERATOR, read_tree, renew_part, renew_tree
@@ -111,7 +112,7 @@ def _tree(database: Database, viewer: Viewer, name: str, number: int, max_nodes:
     if data is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
     made = renew_tree(database, name, number, max_nodes, viewer)
-    found = improvement(Program.from_bytes(data), made.program)
+    found = improvement(Program.from_bytes(data), Program.from_bytes(unpack(made.packed)))
     return Upgraded(f"tree {name}@{number}", tree.digest, found.before, found.after, found.outcome)
 
 

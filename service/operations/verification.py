@@ -121,7 +121,7 @@ def _check_part(connection: Connection, digest: str) -> None:
     stored = content.get_part(connection, digest)
     if stored is None:
         raise ValueError("its definition is gone from the store; submit it again")
-    _, made = part_anew(connection, digest)
+    made = part_anew(connection, digest)
     row = content.get_row(connection, digest)
     wrong = [name for name in made.row if name not in APART and row[name] != made.row[name]]
     if _lasting(read_json(row["certificate"].encode())) != _lasting(read_json(made.row["certificate"].encode())):

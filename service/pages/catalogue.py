@@ -119,12 +119,12 @@ def _example(versions: Sequence[Version], address: str, with_key: bool) -> list[
     ]
 
 
-KINDS = ".urdf,.xml,.mjcf,.sdf,.csv,.json,.par,.zip"
+KINDS = ".urdf,.xml,.mjcf,.sdf,.usd,.usda,.usdc,.usdz,.csv,.json,.par,.zip"
 
 
 def _bring(address: str, may_write: bool) -> list[Html]:
     """A place for files, or for those whose key only reads, the command that sends one with another key."""
-    kinds = "URDF, MJCF, SDF, Denavit-Hartenberg tables, SYMORO"
+    kinds = "URDF, MJCF, SDF, USD, Denavit-Hartenberg tables, SYMORO"
     label = f"A robot file of yours ({kinds}): it is read, derived and drawn, and every remark is told"
     if not may_write:
         command = f'substructures submit FILE --server {address} --key "$SUBSTRUCTURES_KEY"'

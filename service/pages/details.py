@@ -98,6 +98,8 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
         *_loads(summary.get("loads", ())),
         *_closures(model),
+        *_driven(model, read_json(tree.spec.encode()).get("driven", {})),
+        *_constraints(model),
         *_sections(
             words.coordinates(model.coordinates, model.joints),
             words.parameters(summary["parameters"]),
@@ -163,6 +165,25 @@ def _closures(model: Model) -> list[Html]:
     return [tag("h2", "Closures"), table(("name", "type", "from", "to", "rows"), rows)] if rows else []
 
 
+def _driven(model: Model, given: Mapping[str, Any]) -> list[Html]:
+    """The coordinates of a tree that move as is given."""
+    rows = [(name, _motion(given[name])) for name in model.driven]
+    return [tag("h2", "Given motions"), table(("coordinate", "motion"), rows)] if rows else []
+
+
+def _constraints(model: Model) -> list[Html]:
+    """The velocity constraints of a tree."""
+    rows = [(x["name"], x["type"], x.get("frame", x.get("expression", ""))) for x in model.velocity_constraints]
+    return [tag("h2", "Velocity constraints"), table(("name", "type", "of"), rows)] if rows else []
+
+
+def _motion(given: Any) -> str:
+    """What moves a coordinate."""
+    if isinstance(given, Mapping) and "times" in given:
+        return f"through {len(given['times'])} points, {given.get('interpolation', 'smooth')}"
+    return "an input, with two derivatives" if isinstance(given, Mapping) and "input" in given else _number(given)
+
+
 def _number(given: Any) -> str:
     """A number of a document, with its unit if it has one."""
     return f"{given['value']} {given['unit']}" if isinstance(given, Mapping) else str(given)
@@ -179,11 +200,11 @@ def _instance(instance: Mapping[str, Any]) -> tuple[Content, ...]:
 
 
 def _withdrawn(version: Version) -> Html:
-    if version.yanked is None:
+    if version.withdrawn_at is None:
         return Html()
-    reason = f": {version.yank_reason}" if version.yank_reason else ""
+    reason = f": {version.withdrawal_reason}" if version.withdrawal_reason else ""
     instead = html("; take ", link(version.successor, f"/substructures/{version.successor}"))
-    said = f"Withdrawn on {version.yanked[:10]}{reason}"
+    said = f"Withdrawn on {version.withdrawn_at[:10]}{reason}"
     return tag("p", said, instead if version.successor else None, class_="warn")
 
 

@@ -54,13 +54,13 @@ def _form(whole: Table, query: dict[str, str]) -> Html:
         """A field."""
         return tag("label", f"{about} ", tag("input", name=name, value=query.get(name, ""), placeholder=hint))
 
-    last = names[-1] if names else ROW
+    last, (x, y) = names[-1] if names else ROW, _axes(whole)
     return tag(
         "form",
         one("where", "where", f"{last} < 3"),
         one("sort", "sort", f"-{last}"),
-        one("x", "x", names[0] if names else ROW),
-        one("y", "y", last),
+        one("x", "x", x or ROW),
+        one("y", "y", y or last),
         tag("button", "Show", type="submit"),
         class_="bar",
     )
@@ -93,15 +93,22 @@ def _cell(value: object) -> str:
 
 def _plot(whole: Table, shown: Table, query: dict[str, str]) -> Html | None:
     """Points of two columns, those of the Pareto front apart."""
-    names = whole.numeric[1:]
-    goals = whole.plan.document.pareto
-    chosen = [*goals.minimise, *goals.maximise] if goals else []
-    defaults = [*chosen, *(name for name in reversed(names) if name not in chosen)]
-    x = query.get("x") if query.get("x") in names else next(iter(defaults), None)
-    y = query.get("y") if query.get("y") in names else next((name for name in defaults if name != x), None)
+    names, (x, y) = whole.numeric[1:], _axes(whole, query.get("x", ""))
+    y = query.get("y") if query.get("y") in names else y
     if x is None or y is None or shown.count < 2:
         return None
     return _drawn(shown, x, y)
+
+
+def _axes(whole: Table, wanted: str = "") -> tuple[str | None, str | None]:
+    """The columns of the front, or the last ones that are not the same in all rows; ``wanted``: the first of them."""
+    names, goals = whole.numeric[1:], whole.plan.document.pareto
+    chosen = [*goals.minimise, *goals.maximise] if goals else []
+    same = [name for name in names if not np.ptp(whole.columns[name].astype(float)) > 0] if whole.count else []
+    rest = [name for name in reversed(names) if name not in chosen]
+    ordered = [*chosen, *(name for name in rest if name not in same), *(name for name in rest if name in same)]
+    x = wanted if wanted in names else next(iter(ordered), None)
+    return x, next((name for name in ordered if name != x), None)
 
 
 def _drawn(shown: Table, x: str, y: str) -> Html:

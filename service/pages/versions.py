@@ -5,12 +5,17 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from service.operations.differences import Level
 from service.pages.html import Content, Html, html, joined, link, table, tag
 from service.pages.layout import document
+from service.queries.catalogue import Version
 from service.queries.uses import Use, Withdrawn
 from service.queries.versions import RevisionEntry, VersionEntry
+from substructures.documents import read_json
+from substructures.interchange.difference.formulas import RANGE, STATES
 
 SHOWN = 20  # versions, revisions, uses
+MOST_COMPARED = 10_000  # operations of parts whose levels are compared while their page is made, about two seconds
 
 
 def versions_section(entries: Sequence[VersionEntry]) -> list[Html]:
@@ -42,6 +47,45 @@ def revisions_section(entries: Sequence[RevisionEntry]) -> list[Html]:
     ]
     address = f"/v1/trees/{entries[0].name}/revisions" if entries else ""
     return _section("Revisions", ("revision", "stored", "note", ""), rows, len(entries) > SHOWN, address)
+
+
+def levels_section(levels: Sequence[Level]) -> list[Html]:
+    """The other levels of a part, each with the errors of the shorter one."""
+    rows = [
+        (
+            link(f"{each.version.name}@{each.version.version}", version_page(each.version)),
+            each.level,
+            each.version.dof,
+            read_json(each.version.operations.encode())["total"],
+            link(
+                _error(each),
+                f"{version_page(each.full)}/difference?to={each.shorter.name}@{each.shorter.version}",
+            ),
+        )
+        for each in levels
+    ]
+    measured = f"error of the shorter at {STATES} states, q and q' from {RANGE[0]:g} to {RANGE[1]:g}: largest (rms)"
+    return _section("Levels", ("", "level", "coordinates", "operations", measured), rows, False, "", "levels")
+
+
+def _error(level: Level) -> str:
+    """The errors of the quantities that the equations of motion are made of; ``none``: they are the same."""
+    if level.error is None or level.rms is None:
+        return "what changed"
+    told = {"metric": "M", "christoffel": "Gamma", "applied": "Q", "potential": "V"}
+    shown = {letter: (level.error[name], level.rms[name]) for name, letter in told.items() if name in level.error}
+    return ", ".join(f"{k} {_percent(x)} ({_percent(rms)})" for k, (x, rms) in shown.items()) or "none"
+
+
+def _percent(x: float | None) -> str:
+    if x is None:
+        return "?"
+    return f"{100 * x:.2g} %" if x < 0.1 else f"{100 * x:.0f} %"
+
+
+def version_page(version: Version) -> str:
+    """The address of the page of a version."""
+    return f"/substructures/{version.name}@{version.version}"
 
 
 def uses_section(uses: Sequence[Use], reference: str) -> list[Html]:
@@ -97,7 +141,7 @@ COLUMNS = ("quantity", "entries", "changed", "new", "gone", "other numbers at th
 
 
 def _quantity(name: str, each: Mapping[str, Any]) -> tuple[Content, ...]:
-    size = "" if each["change"] is None else f"{100 * each['change']:.2g} %"
+    size = "" if each["change"] is None else _percent(float(each["change"]))
     counts = [each[state] for state in ("changed", "new", "gone")]
     return tag("code", name), each["entries"], *counts, each["moved"], size
 
@@ -109,9 +153,9 @@ def _whence(entry: VersionEntry) -> Html:
         said.append(html("the tree ", link(entry.tree, f"/trees/{entry.tree}")))
     if entry.derived_from:
         said.append(link(entry.derived_from, f"/substructures/{entry.derived_from}"))
-    if entry.yanked:
+    if entry.withdrawn_at:
         instead = f"; take {entry.successor}" if entry.successor else ""
-        reason = f": {entry.yank_reason}" if entry.yank_reason else ""
+        reason = f": {entry.withdrawal_reason}" if entry.withdrawal_reason else ""
         said.append(tag("span", f"withdrawn{reason}{instead}", class_="warn"))
     return joined(said or [entry.origin])
 

@@ -1,4 +1,4 @@
-"""Versions of substructures: allocate, resolve, yank."""
+"""Versions of substructures: allocate, resolve, withdraw."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ from service.queries.content import seal_of_part
 from service.queries.owners import reference, seen_by, visible
 from service.queries.searching.terms import Term, exchange, stored_terms, terms_of
 
-_NAMES = ("name", "version", "digest", "created", "yanked", "yank_reason", "author")
+_NAMES = ("name", "version", "digest", "created", "withdrawn_at", "withdrawal_reason", "author")
 _DETAILS = ("title", "description", "tags", "dof", "joints", "mass", "coordinates", "bodies", "ports", "parameters")
 _REPORTS = ("operations", "certificate", "program", "software", "index_digest", "seal")
 _OWNED = ("owner", "visibility")
@@ -54,8 +54,8 @@ class Version:
     version: int
     digest: str
     created: str
-    yanked: str | None
-    yank_reason: str | None
+    withdrawn_at: str | None
+    withdrawal_reason: str | None
     author: str
     title: str
     description: str
@@ -172,28 +172,28 @@ def wrong_latest(connection: Connection, digest: str) -> list[str]:
     return wrong if stored_terms(connection, name or "") == (terms or set()) else [*wrong, "words, tags and ports"]
 
 
-def yank(
+def withdraw(
     connection: Connection, name: str, version: int, reason: str, successor: tuple[str, int] | None = None
 ) -> None:
     """Mark a version as withdrawn; the first mark stays. Until the end nobody else changes the name's versions."""
     connection.execute(_LOCKED, {"of_name": name})
-    chosen = and_(versions.c.name == name, versions.c.version == version, versions.c.yanked.is_(None))
+    chosen = and_(versions.c.name == name, versions.c.version == version, versions.c.withdrawn_at.is_(None))
     instead = dict(zip(("successor_name", "successor_version"), successor or (None, None), strict=True))
-    connection.execute(update(versions).where(chosen).values(yanked=now(), yank_reason=reason, **instead))
+    connection.execute(update(versions).where(chosen).values(withdrawn_at=now(), withdrawal_reason=reason, **instead))
     _set_latest(connection, name)
 
 
 def offer(connection: Connection, name: str, version: int) -> None:
-    """Take the mark of a version that is withdrawn away, as :func:`yank` sets it."""
+    """Take the mark of a version that is withdrawn away, as :func:`withdraw` sets it."""
     connection.execute(_LOCKED, {"of_name": name})
-    marks = dict.fromkeys(("yanked", "yank_reason", "successor_name", "successor_version"))
+    marks = dict.fromkeys(("withdrawn_at", "withdrawal_reason", "successor_name", "successor_version"))
     chosen = and_(versions.c.name == name, versions.c.version == version)
     connection.execute(update(versions).where(chosen).values(**marks))
     _set_latest(connection, name)
 
 
 def resolve(connection: Connection, viewer: Viewer, ref: Reference) -> Version | None:
-    """The version that a reference means; None when the viewer sees none (or, for a bare name, all are yanked).
+    """The version that a reference means; None when the viewer sees none (or, for a bare name, all are withdrawn).
 
     Raises Refused (``missing-content``) for a version whose content is gone from the store, NotDerived for one that
     this server has not derived as it is.
@@ -257,7 +257,7 @@ def own_contents(connection: Connection, viewer: Viewer) -> dict[str, str]:
 def all_versions(connection: Connection, viewer: Viewer) -> list[tuple[str, int]]:
     """Name and number of every version that a viewer sees and that is not withdrawn."""
     query = select(versions.c.name, versions.c.version).join(substructures, substructures.c.name == versions.c.name)
-    query = query.where(versions.c.yanked.is_(None), _VISIBLE).order_by(versions.c.name, versions.c.version)
+    query = query.where(versions.c.withdrawn_at.is_(None), _VISIBLE).order_by(versions.c.name, versions.c.version)
     return [(name, number) for name, number in connection.execute(query, seen_by(viewer))]
 
 
@@ -277,7 +277,7 @@ _IS_OF_NAME = versions.c.name == bindparam("of_name")
 _HIGHEST = select(func.coalesce(func.max(versions.c.version), 0)).where(_IS_OF_NAME)
 _OFFERED = (  # from the highest number down: of 10,000 versions one row is read
     select(versions.c.version)
-    .where(_IS_OF_NAME, versions.c.yanked.is_(None))
+    .where(_IS_OF_NAME, versions.c.withdrawn_at.is_(None))
     .order_by(versions.c.version.desc())
     .limit(1)
 )

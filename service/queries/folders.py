@@ -20,8 +20,8 @@ class Stored:
     """A version of a name."""
 
     version: int
-    yanked: str | None
-    yank_reason: str | None
+    withdrawn_at: str | None
+    withdrawal_reason: str | None
 
 
 def state(connection: Connection, settings: Settings) -> dict[str, Any] | None:

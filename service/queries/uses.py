@@ -149,10 +149,10 @@ def _withdrawn_rows(instance: ColumnElement[str], used: ColumnElement[str], chos
     deeper = select(direct.c.instance + "." + part_uses.c.instance, part_uses.c.used)
     all_used = direct.union(deeper.join(direct, direct.c.part == part_uses.c.part))
     successor = reference(substructures, versions.c.successor_name, versions.c.successor_version)
-    columns = (all_used.c.instance, versions.c.name, versions.c.version, versions.c.yank_reason, successor)
+    columns = (all_used.c.instance, versions.c.name, versions.c.version, versions.c.withdrawal_reason, successor)
     joined = all_used.join(versions, versions.c.digest == all_used.c.part)
     joined = joined.join(substructures, substructures.c.name == versions.c.name)
-    query: Select[Any] = select(*columns).select_from(joined).where(versions.c.yanked.is_not(None))
+    query: Select[Any] = select(*columns).select_from(joined).where(versions.c.withdrawn_at.is_not(None))
     return query.where(visible(substructures)).order_by(all_used.c.instance)
 
 

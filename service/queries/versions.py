@@ -28,8 +28,8 @@ class VersionEntry:
     tree: str | None
     dof: int
     operations: str
-    yanked: str | None
-    yank_reason: str | None
+    withdrawn_at: str | None
+    withdrawal_reason: str | None
     successor: str | None
     before: int | None
 
@@ -80,7 +80,7 @@ _VERSIONS: Select[Any] = (
         reference(substructures, versions.c.derived_name, versions.c.derived_version),
         reference(tree_names, versions.c.tree, versions.c.tree_revision),
         *(parts.c[name] for name in ("dof", "operations")),
-        *(versions.c[name] for name in ("yanked", "yank_reason")),
+        *(versions.c[name] for name in ("withdrawn_at", "withdrawal_reason")),
         reference(substructures, versions.c.successor_name, versions.c.successor_version),
         select(func.max(_EARLIER.c.version))
         .where(_EARLIER.c.name == versions.c.name, _EARLIER.c.version < versions.c.version)

@@ -19,6 +19,7 @@ from collections.abc import Callable
 from datetime import timedelta
 from time import monotonic
 
+from service.database.connections import set_clock
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Outcome, Work
 from service.jobs.kinds.shapes import SHARE
 from service.messages.refusals import Refused, problem
@@ -227,6 +228,7 @@ class Supervisor:
     def _renew(self, engine: Engine) -> None:
         """Keep the leases. What was taken over by others is stopped; what a failed round left to us is put back."""
         with self._store.database.write() as connection:
+            set_clock(connection)
             lock_owned(connection, self._owner)
             mine = queue.renew(connection, self._owner, self._lease)
             known = [(self._running[i][0], fraction) for i, fraction in self._fractions.items() if i in self._running]

@@ -50,7 +50,7 @@ def get_alias(name: str, alias: str, store: StoreOf, viewer: ViewerOf) -> Respon
     openapi_extra=body_of("AliasRequest"),
     responses={201: {"description": "The alias is new", "model": AliasView}},
 )
-def put_alias(
+def set_alias(
     name: str,
     alias: str,
     body: JsonBody,

@@ -40,7 +40,7 @@ def _add(name: str, analysis: Analysis) -> None:
         f"/{name}",
         _endpoint(name, analysis),
         methods=["POST"],
-        name=name,
+        name=f"compute_{name.replace('-', '_')}",
         summary=analysis.text,
         response_model=AnalysisResult,
         dependencies=READ,
@@ -60,7 +60,7 @@ for _name, _analysis in ANALYSES.items():
     responses={**printed(PRINTED), **ACCEPTED},
 )
 @timed("analyse")
-def get_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf, style: StyleOf) -> Response:
+def compute_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: ActOf, style: StyleOf) -> Response:
     """Voronets' and Boltzmann-Hamel equations with velocity constraints (rolling, knife edges, closures) as formulas.
 
     Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.

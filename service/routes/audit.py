@@ -19,7 +19,7 @@ Filter = Annotated[str | None, Query(max_length=200)]
 
 
 @router.get("", response_model=AuditPage)
-def list_audit(
+def list_audit_entries(
     request: Request,
     store: StoreOf,
     owner: Filter = None,

@@ -19,7 +19,7 @@ router = APIRouter(prefix="/v1/equivalences", tags=["imports"])
     "", response_model=EquivalenceView, dependencies=[needs("read")], openapi_extra=body_of("EquivalenceRequest")
 )
 @timed("derive")
-def compare(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def compare_models(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Compare two models: by formulas, else by numbers; the culprit is named."""
     wanted = read_model(EquivalenceRequest, body)
 

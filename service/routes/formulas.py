@@ -38,7 +38,7 @@ Filter = Annotated[str | None, Query(max_length=200)]
 
 
 @router.get("", response_model=FormulaIndex, dependencies=READ)
-def list_formulas(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+def list_substructure_formulas(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The index of the stored formulas."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
@@ -70,7 +70,7 @@ async def chosen_of(
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
-async def get_formula(
+async def get_substructure_formula(
     ref: str,
     quantity: str,
     request: Request,

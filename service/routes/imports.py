@@ -38,7 +38,7 @@ BODY: dict[str, Any] = {"requestBody": {"required": True, "content": {m: binary(
 
 @router.post("", response_model=ImportView, dependencies=[needs("read")], openapi_extra=BODY, responses=MADE)
 @timed("derive")
-def read_file(
+def import_file(
     request: Request,
     body: RawBody,
     store: StoreOf,

@@ -49,7 +49,7 @@ RESULT: dict[int | str, dict[str, Any]] = {200: {"content": BINARY}, **ACCEPTED}
 @evaluations.post(
     "/evaluations", response_model=EvaluationResult, dependencies=READ, openapi_extra=BODY, responses=RESULT
 )
-async def evaluate(ref: str, request: Request, act: SpooledActOf) -> Response:
+async def evaluate_tree(ref: str, request: Request, act: SpooledActOf) -> Response:
     """Numbers for one state or many: JSON, npz or an Arrow stream by Content-Type, and any of them back by Accept.
 
     npz: arrays by the names of the JSON request, nested ones joined by dots (`inputs.tau.arm.q1`, `parameters.arm.m`).
@@ -79,7 +79,8 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
     with store.database.read() as connection:
         tree = trees.find(connection, act.viewer, ref)
         model = store.model(connection, tree)
-    evaluation = TreeEvaluation(sources_of(store, tree, model), tree.digest, limits, engine_of(store, tree, model))
+    sources = sources_of(store, tree, model, act.worker)
+    evaluation = TreeEvaluation(sources, tree.digest, limits, engine_of(store, tree, model))
 
     def work() -> Answer | Stream:
         """Read the states and evaluate."""
@@ -104,7 +105,7 @@ def _evaluate(ref: str, sent: str, wanted: str, act: SpooledAct) -> Response:
 
 
 @router.get("/export", dependencies=READ, responses=EXPORTED)
-async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
+async def export_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
     """Functions of the tree for a target: C, MATLAB, Fortran, computer algebra, ..., on one calling convention.
 
     What takes longer than a request may becomes a job of kind `export`, as with `Prefer: respond-async`.
@@ -138,7 +139,7 @@ def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
 
 
 @router.get("/{quantity}", dependencies=READ, responses=printed(MEDIA_TYPES))
-async def get_quantity(
+async def get_tree_quantity(
     ref: str, quantity: str, request: Request, store: StoreOf, style: StyleOf, options: OptionsOf, group: Group = False
 ) -> Response:
     """The formulas of a quantity: metric, christoffel, forces, gravity, coriolis, kinematics, regressor, ...

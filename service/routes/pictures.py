@@ -3,16 +3,26 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import partial
 from typing import Annotated, Any
 
 from fastapi import APIRouter, Query, Request, Response
 
+from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional
+from service.jobs.worker import Worker
 from service.messages.answers import JSON, Answer, etag
 from service.messages.references import is_pinned
-from service.operations import catalogue, pictures, trees
+from service.operations import catalogue, modules, pictures, trees
+from service.operations.modules import Subject
+from service.queries.catalogue import Version
+from service.queries.trees import Tree
 from service.schemas.scenes import SceneView
+
+#: what is drawn, and who draws it, when it is not in memory
+Found = Callable[[], tuple[Subject, Worker]]
+ADVICE = "draw its parts"
 
 MEDIA_TYPE = "image/svg+xml"
 #: nothing inside of a picture may run or be fetched, even when it is opened as a document of its own
@@ -31,50 +41,75 @@ router = APIRouter(prefix="/v1", tags=["pictures"], dependencies=[needs("read")]
 
 
 @router.get("/substructures/{ref}/picture", response_class=Response, responses=DRAWN)
-def substructure_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
+async def get_substructure_picture(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None
+) -> Response:
     """A part alone, in the pose given or at home."""
-    with store.database.read() as connection:
-        version = catalogue.find(connection, viewer, ref)
-    pose = pictures.read_pose(q, version.joints)
-    pinned = is_pinned(ref) and version.is_public
-    return _answer(request, version.digest, pose, pinned, lambda: pictures.draw_part(store, version, pose))
+
+    def answer(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            version = catalogue.find(connection, viewer, ref)
+        pose = pictures.read_pose(q, version.joints)
+        find = partial(modules.of_version, store, version)
+        return _picture(request, version.digest, pose, _lasts(ref, version), lambda: (find(), worker))
+
+    return await in_time(request, answer, ADVICE)
 
 
 @router.get("/trees/{ref}/picture", response_class=Response, responses=DRAWN)
-def tree_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
+async def get_tree_picture(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, q: Q = None) -> Response:
     """A tree, in the pose given or at home."""
-    with store.database.read() as connection:
-        tree = trees.find(connection, viewer, ref)
-    pose = pictures.read_pose(q, pictures.joints_of(tree))
-    pinned = is_pinned(ref) and tree.is_public
-    return _answer(request, tree.digest, pose, pinned, lambda: pictures.draw_tree(store, tree, pose))
+
+    def answer(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            tree = trees.find(connection, viewer, ref)
+        pose = pictures.read_pose(q, pictures.joints_of(tree))
+        find = partial(modules.of_revision, store, tree, has_parts=True)
+        return _picture(request, tree.digest, pose, _lasts(ref, tree), lambda: (find(), worker))
+
+    return await in_time(request, answer, ADVICE)
 
 
 @router.get("/substructures/{ref}/scene", response_model=SceneView)
-def substructure_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+async def get_substructure_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What there is to draw of a part alone: frames, joints, bodies with their inertia, loads, poses."""
-    with store.database.read() as connection:
-        version = catalogue.find(connection, viewer, ref)
-    pinned = is_pinned(ref) and version.is_public
-    return _scene(request, version.digest, pinned, lambda: pictures.scene_of_part(store, version))
+
+    def answer(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            version = catalogue.find(connection, viewer, ref)
+        find = partial(modules.of_version, store, version)
+        return _scene(request, version.digest, _lasts(ref, version), lambda: (find(), worker))
+
+    return await in_time(request, answer, ADVICE)
 
 
 @router.get("/trees/{ref}/scene", response_model=SceneView)
-def tree_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+async def get_tree_scene(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """What there is to draw of a tree: frames, joints, bodies with their inertia, loads, closures, poses."""
-    with store.database.read() as connection:
-        tree = trees.find(connection, viewer, ref)
-    pinned = is_pinned(ref) and tree.is_public
-    return _scene(request, tree.digest, pinned, lambda: pictures.scene_of_tree(store, tree))
+
+    def answer(worker: Worker) -> Response:
+        """In a thread."""
+        with store.database.read() as connection:
+            tree = trees.find(connection, viewer, ref)
+        find = partial(modules.of_revision, store, tree, has_parts=True)
+        return _scene(request, tree.digest, _lasts(ref, tree), lambda: (find(), worker))
+
+    return await in_time(request, answer, ADVICE)
 
 
-def _scene(request: Request, digest: str, pinned: bool, draw: Callable[[], str]) -> Response:
+def _lasts(ref: str, found: Version | Tree) -> bool:
+    """Whether what is told under this reference never changes."""
+    return is_pinned(ref) and found.is_public
+
+
+def _scene(request: Request, digest: str, lasts: bool, find: Found) -> Response:
     headers = {"Content-Type": JSON}
-    return conditional(request, etag(digest, "scene"), pinned, lambda: Answer(200, draw().encode(), headers))
+    return conditional(request, etag(digest, "scene"), lasts, lambda: Answer(200, pictures.scene(*find()), headers))
 
 
-def _answer(
-    request: Request, digest: str, pose: pictures.PoseValues | None, pinned: bool, draw: Callable[[], str]
-) -> Response:
+def _picture(request: Request, digest: str, pose: pictures.PoseValues | None, lasts: bool, find: Found) -> Response:
     tag = etag(digest, "picture", repr(pose))
-    return conditional(request, tag, pinned, lambda: Answer(200, draw().encode(), HEADERS))
+    return conditional(request, tag, lasts, lambda: Answer(200, pictures.picture(*find(), pose), HEADERS))

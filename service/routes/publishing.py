@@ -29,7 +29,7 @@ router = APIRouter(prefix="/v1/trees", tags=["trees"])
     responses=made(PublishedView),
 )
 @timed("derive")
-def publish(ref: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+def publish_tree(ref: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Make a part of a tree, with its ports and free parameters and a certificate of its own."""
     read_model(PublishRequest, body)  # whatever becomes of it
 

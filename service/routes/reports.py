@@ -13,7 +13,6 @@ from service.http.responses import remembered
 from service.jobs.worker import Worker
 from service.messages.answers import etag
 from service.messages.negotiation import choose_format
-from service.messages.references import is_pinned
 from service.operations import catalogue, reports, trees
 from service.operations.sharing.sources import part_programs
 from service.routes.bodies import reference
@@ -58,7 +57,9 @@ WantedOf = Annotated[Wanted, Depends(wanted_of)]
 
 
 @router.get("/substructures/{ref}/report", response_model=ReportView, responses=REPORTED, tags=["formulas"])
-async def part_report(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: WantedOf) -> Response:
+async def get_substructure_report(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: WantedOf
+) -> Response:
     """A part alone, told to people: structure and symmetries of its formulas in words, sizes of terms at the defaults;
     in LaTeX a document, as XHTML a page, both with picture, symbols, derivation, formulas and sources.
     """
@@ -69,11 +70,11 @@ async def part_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
             version = catalogue.find(connection, viewer, ref)
         named = f"{version.name}@{version.version}"
         tag = etag(version.digest, version.program, named, "report", wanted.format, str(wanted.document))
-        lasting = is_pinned(ref) and version.is_public
+        # what a report says changes with the software: it is asked for again, by its ETag
         return remembered(
             request,
             tag,
-            lasting,
+            False,
             lambda: reports.of_part(store, worker, version, wanted.format, wanted.document),
         )
 
@@ -81,7 +82,7 @@ async def part_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
 
 
 @router.get("/trees/{ref}/report", response_model=ReportView, responses=REPORTED, tags=["models"])
-async def tree_report(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: WantedOf) -> Response:
+async def get_tree_report(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: WantedOf) -> Response:
     """A tree, told to people, as the report of a part."""
 
     def answered(worker: Worker) -> Response:
@@ -94,7 +95,7 @@ async def tree_report(ref: str, request: Request, store: StoreOf, viewer: Viewer
         return remembered(
             request,
             tag,
-            is_pinned(ref) and tree.is_public,
+            False,
             lambda: reports.of_tree(store, worker, tree, wanted.format, wanted.document),
         )
 

@@ -28,7 +28,7 @@ from service.routes.bodies import body_of, content_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf, PortName
 from service.schemas.entries import PartEntry
-from service.schemas.resources import VersionPage, VersionView, YankRequest
+from service.schemas.resources import VersionPage, VersionView, WithdrawalRequest
 from service.views.resources import dump, page_view, version_view
 from substructures.documents import read_model
 from substructures.part.definition import Definition
@@ -58,7 +58,7 @@ def whole_view(connection: Connection, viewer: Viewer, version: Version) -> dict
     responses=made(VersionView),
 )
 @timed("derive")
-def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def submit_substructure(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     entry, document = PartEntry.parted(body)
     definition = Definition.read(document)
@@ -80,7 +80,7 @@ def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
 
 
 @router.get("", response_model=VersionPage, dependencies=READ)
-def search(
+def list_substructures(
     request: Request,
     store: StoreOf,
     viewer: ViewerOf,
@@ -107,12 +107,12 @@ def version_tag(version: Version, names: Sequence[str], withdrawn: Sequence[With
     """The ETag of a version: what it refers to may become visible, or be withdrawn."""
     seen = (version.derived_from, version.successor, version.tree)
     shown = [*(each for each in seen if each), *(f"{each.instance}:{each.successor}" for each in withdrawn)]
-    said = version.digest, version.program, str(version.version), str(version.yanked), version.visibility
+    said = version.digest, version.program, str(version.version), str(version.withdrawn_at), version.visibility
     return etag(*said, *shown, *names)
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)
-def get_version(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_substructure(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """One version. Aliases and withdrawal may change, so clients revalidate by ETag."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
@@ -123,7 +123,7 @@ def get_version(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) ->
 
 
 @router.get("/{ref}/definition", dependencies=READ, responses=content_of("Definition"))
-def get_definition(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_substructure_definition(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The definition as stored."""
     with store.database.read() as connection:
         version = catalogue.find(connection, viewer, ref)
@@ -134,14 +134,16 @@ def get_definition(ref: str, request: Request, store: StoreOf, viewer: ViewerOf)
     return conditional(request, tag, is_pinned(ref) and version.is_public, lambda: json_answer(definition))
 
 
-@router.post("/{ref}/yank", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("YankRequest", False))
-def yank(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
+@router.post(
+    "/{ref}/withdraw", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("WithdrawalRequest", False)
+)
+def withdraw_substructure(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
     """Withdraw a version: it stays usable by number and digest but is no longer offered as the latest."""
-    wanted = read_model(YankRequest, body)
+    wanted = read_model(WithdrawalRequest, body)
 
     def commit(connection: Connection) -> Answer:
         """Withdraw the version and answer it."""
-        version = catalogue.yank(connection, act.viewer, ref, wanted.reason, wanted.successor)
+        version = catalogue.withdraw(connection, act.viewer, ref, wanted.reason, wanted.successor)
         return json_answer(dump(whole_view(connection, act.viewer, version)))
 
     return act.submit(lambda: commit)

@@ -24,13 +24,13 @@ OK = json_answer(b'{"status":"ok"}', headers={"Cache-Control": "no-store"})
 
 
 @router.get("/livez", response_model=Health)
-async def livez() -> Response:
+async def get_livez() -> Response:
     """The process answers; the database is not touched."""
     return response_of(OK)
 
 
 @router.get("/readyz", response_model=Health)
-def readyz(store: StoreOf) -> Response:
+def get_readyz(store: StoreOf) -> Response:
     """The database answers and has room; the catalogue was imported before the server began to listen."""
     store.database.ping()
     if not store.database.has_room:
@@ -39,7 +39,7 @@ def readyz(store: StoreOf) -> Response:
 
 
 @router.get("/metrics", dependencies=READ, response_class=Response)
-def metrics(store: StoreOf) -> Response:
+def get_metrics(store: StoreOf) -> Response:
     """Metrics for Prometheus."""
     with store.database.read() as connection:
         store.metrics.queue(counts(connection))
@@ -47,14 +47,14 @@ def metrics(store: StoreOf) -> Response:
 
 
 @router.get("/v1/limits", response_model=LimitsView, dependencies=READ)
-def limits(store: StoreOf) -> Response:
+def get_limits(store: StoreOf) -> Response:
     """Every limit with its value."""
     shown = store.settings.limits.model_dump() | FORMAT_LIMITS
     return response_of(json_answer(dump(shown)))
 
 
 @router.get("/v1/folder", response_model=FolderView, dependencies=READ)
-def folder(store: StoreOf) -> Response:
+def get_folder(store: StoreOf) -> Response:
     """What was read of the folder that this server follows, and what is refused."""
     with store.database.read() as connection:
         found = folders.state(connection, store.settings)

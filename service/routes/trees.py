@@ -79,7 +79,7 @@ def shown_soon(act: Act, answer: Response) -> Response:
     responses=made(TreeView),
 )
 @timed("derive")
-def create(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def create_tree(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     entry, document = Entry.parted(body)
     prepared = revision(act, lambda: trees.prepare(store, act.viewer, act.worker, document, entry))

@@ -31,7 +31,7 @@ def _page(request: Request, items: Sequence[Any], token: str | None) -> Response
 
 
 @router.get("/substructures/{name}/versions", response_model=VersionList, dependencies=READ, tags=["catalogue"])
-def list_versions(
+def list_substructure_versions(
     name: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """All versions of a part, the newest first: who made them, when, of what and why; those that are withdrawn, too."""
@@ -45,7 +45,7 @@ def list_versions(
 
 
 @router.get("/trees/{name}/revisions", response_model=RevisionList, dependencies=READ, tags=["trees"])
-def list_revisions(
+def list_tree_revisions(
     name: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """All revisions of a tree, the newest first: who made them, when, of which one and why."""
@@ -59,7 +59,7 @@ def list_revisions(
 
 
 @router.get("/substructures/{ref}/uses", response_model=UsePage, dependencies=READ, tags=["catalogue"])
-def list_uses(
+def list_substructure_uses(
     ref: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """Trees with the part, parts that such trees became, parts made from it; of all versions for a bare name."""

@@ -36,7 +36,7 @@ def _change(kind: Kind, name: str, body: JsonBody, store: StoreOf, viewer: Viewe
 
 
 @router.get("/substructures/{name}/visibility", response_model=OwnershipView, dependencies=READ, tags=["catalogue"])
-def substructure_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_substructure_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Whose a name is, and who sees its versions."""
     return _read("substructure", name, store, viewer)
 
@@ -48,13 +48,13 @@ def substructure_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Resp
     openapi_extra=BODY,
     tags=["catalogue"],
 )
-def publish_substructure(name: str, body: JsonBody, store: StoreOf, viewer: ViewerOf) -> Response:
+def set_substructure_visibility(name: str, body: JsonBody, store: StoreOf, viewer: ViewerOf) -> Response:
     """Let everybody see all versions. What is public stays so (409)."""
     return _change("substructure", name, body, store, viewer)
 
 
 @router.get("/trees/{name}/visibility", response_model=OwnershipView, dependencies=READ, tags=["trees"])
-def tree_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_tree_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Whose a name is, and who sees its revisions."""
     return _read("tree", name, store, viewer)
 
@@ -62,6 +62,6 @@ def tree_visibility(name: str, store: StoreOf, viewer: ViewerOf) -> Response:
 @router.put(
     "/trees/{name}/visibility", response_model=OwnershipView, dependencies=WRITE, openapi_extra=BODY, tags=["trees"]
 )
-def publish_tree(name: str, body: JsonBody, store: StoreOf, viewer: ViewerOf) -> Response:
+def set_tree_visibility(name: str, body: JsonBody, store: StoreOf, viewer: ViewerOf) -> Response:
     """Let everybody see all revisions, whose parts have to be public (409). What is public stays so (409)."""
     return _change("tree", name, body, store, viewer)

@@ -28,7 +28,7 @@ class ComparedView(Shape):
     error: float = Field(description="relative difference of the numbers at random states")
 
 
-class DifferenceView(Shape):
+class FirstDifferenceView(Shape):
     """Where numbers differ first; of coordinates their names."""
 
     quantity: str
@@ -53,5 +53,5 @@ class EquivalenceView(Shape):
     equal: bool
     level: Literal["formulas", "values"]
     quantities: dict[str, ComparedView]
-    first_difference: DifferenceView | None
+    first_difference: FirstDifferenceView | None
     culprits: list[CulpritView]

@@ -135,6 +135,13 @@ def _varied_units(model: Model) -> dict[str, str]:
     return {**model.units, **states["q"], **{f"{name}'": unit for name, unit in states["qd"].items()}}
 
 
+def _steady_units(model: Model, read_before: Plain) -> Mapping[str, str]:
+    """Of parameters, and of the rates of coordinates, or their momenta where these are given."""
+    kinds = zip(model.coordinates, model.joints, strict=True)
+    moving = {name: MOMENTA[kind] for name, kind in kinds} if read_before.get("momenta") is not None else {}
+    return {**model.units, **model.state_units["qd"], **moving}
+
+
 def _in_order(units: Mapping[str, str]) -> Place:
     """By the kind of a coordinate's joint, for all coordinates."""
     return lambda model, _, __: {name: units[kind] for name, kind in zip(model.coordinates, model.joints, strict=True)}
@@ -185,6 +192,7 @@ def _quasi_velocities(model: Model, read_before: Plain, _: Any) -> PlaceUnits:
 
 
 SECONDS, METRES, RADIANS_PER_SECOND = Measured("s"), Measured("m"), Measured("rad/s")
+METRES_PER_SECOND = Measured("m/s")
 COORDINATES = Measured(place=lambda model, _, __: model.state_units["q"])
 VELOCITIES = Measured(place=lambda model, _, __: model.state_units["qd"])
 ACCELERATIONS = Measured(place=lambda model, _, __: model.state_units["qdd"])
@@ -201,6 +209,7 @@ COORDINATE_SIGNALS = Measured(place=lambda model, _, given: _signals(model.state
 EXPRESSION = Measured(place=lambda _, __, ___: "")
 EXPRESSIONS = Measured(place=lambda _, __, given: dict.fromkeys(given if isinstance(given, Mapping) else (), ""))
 OF_VARIED = Measured(place=lambda model, before, _: _varied_units(model).get(str(before.get("vary")), ""))
+OF_STEADY = Measured(place=lambda model, before, _: _steady_units(model, before).get(str(before.get("vary")), ""))
 OF_PARAMETER = Measured(place=lambda model, before, _: model.units.get(str(before.get("parameter")), ""))
 OF_QUANTITY = Measured(place=lambda model, before, _: expression_unit(model, before.get("quantity", "")))
 QUASI_VELOCITIES = Measured(place=_quasi_velocities)

@@ -36,6 +36,18 @@ class IdentificationRequest(ExcitationRequest):
 
     tau: Annotated[Any, EFFORTS_OF_ACTUATORS] = Field(description="forces of the actuators, as q; N m, N")
     known: bool = Field(True, description="the tree's springs, dampers, loads and armatures act and are known")
+    held_out: float = Field(
+        0, ge=0, lt=1, description="part of the samples, the last, that is predicted and not fitted"
+    )
+    consistent: bool = Field(
+        False, description="also inertia of every body that a mass distribution has, and new parts"
+    )
+    prior_deviation: float = Field(
+        1,
+        gt=0,
+        allow_inf_nan=False,
+        description="relative deviation of the inertia that the tree has, where consistent",
+    )
     error_limit: float = Field(
         ERROR_LIMIT,
         gt=0,

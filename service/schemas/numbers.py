@@ -163,6 +163,7 @@ class EvaluationResult(BaseModel):
     joints: list[str] = Field([], description="with reactions: coordinates of joints, and instance.base, by row")
     loads: list[str] = Field([], description="with powers: what each is of")
     links: list[str] = Field([], description="with moments of inertia: instance.body by row")
+    rates: list[str] = Field([], description="with a floating base: its velocities, and those of the joints")
     rows: list[str] = Field([], description="with closures: closure.row by row")
 
 

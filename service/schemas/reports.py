@@ -7,18 +7,29 @@ from typing import Literal
 from pydantic import BaseModel, Field
 
 
-class ReportStatement(BaseModel):
-    """A sentence about the formulas, and what it is about."""
+class ReportFigure(BaseModel):
+    """A number that carries a sentence."""
 
-    about: Literal["metric", "christoffel", "forces", "symmetries"]
+    name: str
+    value: float
+    unit: str
+
+
+class ReportStatement(BaseModel):
+    """A sentence about the formulas, what it is about, and the numbers that carry it."""
+
+    about: Literal["metric", "christoffel", "forces", "symmetries", "rest", "parameters", "omissions", "singular"]
     code: str = Field(
         description="constant, zero, coordinate, equal, blocks; independent, no-velocity-forces, "
         "no-centrifugal-forces, not-stored; acting; cyclic, energy, symmetry, linear_momentum, angular_momentum, none, "
-        "not-searched"
+        "not-searched; searched, held, asymptotically-stable, stable, undecided, unstable, failed; "
+        "lowest-frequency, largest-element, potential-range, not-ranked; may-be-zero, not-looked-for; singular, regular"
     )
     text: str
     entries: list[list[int]] = Field(description="elements of the array, from 0")
     coordinates: list[str]
+    figures: list[ReportFigure]
+    request: str = Field(description="method and path that tell more; empty for a part alone")
 
 
 class ReportTerm(BaseModel):

@@ -85,9 +85,9 @@ class VersionView(Shape):
     derived_here: bool = Field(description=DERIVED)
     created: Time
     aliases: list[str]
-    yanked: bool
-    yanked_at: Time | None
-    yank_reason: str | None
+    is_withdrawn: bool
+    withdrawn_at: Time | None
+    withdrawal_reason: str | None
     author: str = Field(description="id of the API key that submitted it; empty in older stores")
     note: str = Field(description="why it was submitted, in words")
     origin: str = Field(description="what it came as: definition, import, catalogue, tree; empty in older stores")
@@ -172,7 +172,7 @@ class AliasList(Shape):
     items: list[AliasView]
 
 
-class YankRequest(Shape):
+class WithdrawalRequest(Shape):
     """Why a version is withdrawn."""
 
     reason: Words = Field("", max_length=2000)
@@ -200,6 +200,10 @@ class TreeView(Shape):
         {}, description="independent coordinates, start and ranges, as the parts say; left out if none does"
     )
     loads: list[dict[str, Any]] = Field([], description="of the tree, as they were given; left out if none")
+    driven: list[str] = Field([], description="coordinates whose motion is given; left out if none is")
+    velocity_constraints: list[dict[str, Any]] = Field(
+        [], description="of motions of the tree, numbers in SI as texts; left out if none"
+    )
     limited: list[str] = Field([], description="coordinates with limits, which are the quantity limits")
     operations: dict[str, Any]
     certificate: dict[str, Any]

@@ -24,9 +24,9 @@ class VersionItem(Shape):
     tree: str | None = Field(description="the revision of a tree that was published as this version")
     dof: int
     operations: dict[str, Any]
-    yanked: bool
-    yanked_at: Time | None
-    yank_reason: str | None
+    is_withdrawn: bool
+    withdrawn_at: Time | None
+    withdrawal_reason: str | None
     successor: str | None
     links: Links
 
@@ -82,6 +82,34 @@ class UsePage(Shape):
     links: Links
 
 
+class LevelItem(Shape):
+    """Another level of a part."""
+
+    name: str
+    version: int
+    level: Literal["full", "reduced", "abbreviated"] = Field(
+        description="full: this one was made from it; made from this one are: reduced, with fewer coordinates, and "
+        "abbreviated, with fewer operations in the same ones"
+    )
+    dof: int
+    operations: dict[str, Any]
+    error: dict[str, float | None] = Field(
+        description="of the shorter of both, by quantity that is not the same: the largest change of an entry relative "
+        "to its largest number at random states, 1 where only one has it, null where there are no numbers"
+    )
+    rms: dict[str, float | None] = Field(description="the same over the root of the mean square of the states")
+    links: Links
+
+
+class LevelList(Shape):
+    """The other levels of a version."""
+
+    items: list[LevelItem]
+    states: int = Field(description="random states at which errors are computed, evenly in range")
+    range: tuple[float, float] = Field(description="of coordinates, velocities and accelerations [rad, m, s]")
+    links: Links
+
+
 class FieldChange(Shape):
     """A field of the documents that differs."""
 
@@ -110,6 +138,7 @@ class QuantityChange(Shape):
     gone: int
     moved: int = Field(description="with other numbers at the defaults of both, at random states")
     change: float | None = Field(description="the largest relative change of numbers")
+    rms: float | None = Field(description="the largest root mean square of the changes of an entry over the states")
     differing: list[EntryChange] = Field(description="the first 200 of which anything differs")
 
 

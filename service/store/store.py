@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable
 from pathlib import Path
 from time import monotonic
 from typing import Any
@@ -26,10 +26,9 @@ from substructures.documents import read_json
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
 from substructures.part.part import Part
-from substructures.quantities.formulas import derived
 from substructures.tree.assembly import declared
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 
 class Store:
@@ -136,22 +135,12 @@ class Store:
         known = {name: part for name, part in parts.items() if part is not None}
         return declared(spec, known) if len(known) == len(parts) else {}
 
-    def coupled(self, spec: TreeSpec, parts: Mapping[str, Part]) -> Model:
-        """The model of a tree that is not stored, coupled unless it is remembered. Raises as ``couple`` does."""
-        programs = tuple(part.program.digest for part in parts.values())
-        model = self.caches.models.get((spec.digest, *programs))
-        self.metrics.cache("model", model is not None)
-        if model is None:
-            model = couple(spec, parts, self.settings.limits.program_nodes)
-            self.caches.models.put((spec.digest, *programs), model)
-        return model
-
-    def derived(self, model: Model, quantity: str) -> Program:
-        """A program of :data:`substructures.quantities.formulas.DERIVED`. Raises as ``derived`` does."""
+    def derived(self, model: Model, quantity: str, make: Callable[[], Program]) -> Program:
+        """A program of :data:`substructures.quantities.quantity.DERIVED`, made unless it is remembered."""
         key = model.program.digest, model.coordinates, quantity
         program = self.caches.derived.get(key)
         self.metrics.cache("derived", program is not None)
         if program is None:
-            program = derived(model, quantity, self.settings.limits.program_nodes)
+            program = make()
             self.caches.derived.put(key, program)
         return program

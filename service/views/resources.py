@@ -19,6 +19,8 @@ from substructures.expr.units.unit_check import Notice
 from substructures.part.parameters import uncounted
 from substructures.quantities.numbers.warnings import no_coordinates
 
+#: what there is at addresses below that of a version
+_BELOW = ("definition", "formulas", "picture", "scene", "report", "uses", "levels")
 _STORED = ("tags", "coordinates", "bodies", "ports", "parameters", "operations", "certificate")
 
 
@@ -56,23 +58,18 @@ def version_view(
         "derived_here": version.is_derived,
         "created": version.created,
         "aliases": aliases,
-        "yanked": version.yanked is not None,
-        "yanked_at": version.yanked,
-        "yank_reason": version.yank_reason,
+        "is_withdrawn": version.withdrawn_at is not None,
+        "withdrawn_at": version.withdrawn_at,
+        "withdrawal_reason": version.withdrawal_reason,
         **provenance_view(version),
         "owner": version.owner,
         "visibility": version.visibility,
         "links": {
             "self": path,
-            "definition": f"{path}/definition",
-            "formulas": f"{path}/formulas",
-            "picture": f"{path}/picture",
-            "scene": f"{path}/scene",
-            "report": f"{path}/report",
+            **{each: f"{path}/{each}" for each in _BELOW},
             "latest": f"{BASE}/substructures/{version.name}",
             "aliases": f"{BASE}/substructures/{version.name}/aliases",
             "versions": f"{BASE}/substructures/{version.name}/versions",
-            "uses": f"{path}/uses",
         },
     }
 

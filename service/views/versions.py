@@ -1,4 +1,4 @@
-"""JSON of lists of versions and revisions, and of what uses a part."""
+"""JSON of lists of versions and revisions, of the levels of a part, and of what uses it."""
 
 from __future__ import annotations
 
@@ -6,7 +6,8 @@ from typing import Any
 
 import orjson
 
-from service.messages.addresses import BASE
+from service.messages.addresses import BASE, version_path
+from service.operations.differences import Level
 from service.queries.uses import Use
 from service.queries.versions import RevisionEntry, VersionEntry
 
@@ -19,9 +20,9 @@ def version_item(entry: VersionEntry) -> dict[str, Any]:
     return {
         **{name: getattr(entry, name) for name in names},
         "operations": orjson.Fragment(entry.operations),
-        "yanked": entry.yanked is not None,
-        "yanked_at": entry.yanked,
-        "yank_reason": entry.yank_reason,
+        "is_withdrawn": entry.withdrawn_at is not None,
+        "withdrawn_at": entry.withdrawn_at,
+        "withdrawal_reason": entry.withdrawal_reason,
         "successor": entry.successor,
         "links": {"self": path} | ({"difference": before} if entry.before else {}),
     }
@@ -34,6 +35,25 @@ def revision_item(entry: RevisionEntry) -> dict[str, Any]:
     return {
         **{name: getattr(entry, name) for name in RevisionEntry.__slots__},
         "links": {"self": path} | ({"difference": before} if entry.based_on else {}),
+    }
+
+
+def level_view(level: Level) -> dict[str, Any]:
+    """Another level of a part."""
+    version, full, shorter = level.version, level.full, level.shorter
+    return {
+        "name": version.name,
+        "version": version.version,
+        "level": level.level,
+        "dof": version.dof,
+        "operations": orjson.Fragment(version.operations),
+        "error": level.error,
+        "rms": level.rms,
+        "links": {
+            "self": version_path(version),
+            "levels": f"{version_path(version)}/levels",
+            "difference": f"{version_path(full)}/difference?to={shorter.name}@{shorter.version}",
+        },
     }
 
 

@@ -9,6 +9,7 @@ folder           what is there
 ===============  ===================================================================================================
 simulate         ``simulate``: motions of trees, closed loops and rolling bodies; ``drawings``: results as diagrams
 stability        positions of rest, steady motions; M, D, K and A, B, C, D, modes (``vibrations``), stability; root loci
+orbits           periodic orbits, Poincare sections, Lyapunov exponents
 control          equations of the adjoint as formulas; the gradient of a cost; optimal control by shooting
 identification   which inertial parameters the motion depends on, and their values from measurements
 closed           ``loops``: mobility, redundancy, reactions at a state; motions that stay on the closures
@@ -19,8 +20,8 @@ motion           ``problems``: what is asked of a motion (its kind, integrator, 
                  one side of them; ``judges`` and ``trajectory``: checks and results; ``second_judges``
                  (``second_run``, ``single_steps``): judge what no first integral does; ``limits``;
                  ``parameter_sensitivity``; ``writers``: trajectories as files
-equations        ``quasi_velocities``: Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``: its rule;
-                 ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
+equations        ``nonholonomic``: velocity constraints, Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``:
+                 its rule; ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
                  dependencies between functions; ``formulas``: a model in a new graph
 report           a model told in words: structure, symmetries, sizes of terms; as text, LaTeX, a page
 verdict          what checks found, and what they say together: right, wrong, or nobody knows

@@ -1,4 +1,6 @@
-"""Results as diagrams: coordinates over time with the drift of first integrals, eigenvalues over a parameter."""
+"""Results as diagrams: coordinates over time with the drift of first integrals, eigenvalues and steady motions over a
+parameter.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +10,7 @@ import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.stability.root_locus import RootLocus
+from substructures.analysis.stability.steady_motions import SteadyMotions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.pictures.plot import Line, Panel, plot
@@ -15,10 +18,12 @@ from substructures.pictures.plot import Line, Panel, plot
 TIME = "t in s"
 
 
-def draw(found: Trajectory | RootLocus, joints: str) -> str:
-    """A motion or a root locus as SVG. Raises ValueError for what is neither."""
+def draw(found: Trajectory | RootLocus | SteadyMotions, joints: str) -> str:
+    """A motion, a root locus or steady motions as SVG. Raises ValueError for what is none of them."""
     if isinstance(found, RootLocus):
         return draw_root_locus(found)
+    if isinstance(found, SteadyMotions):
+        return draw_steady_motions(found, joints)
     if not isinstance(found, Trajectory):
         raise ValueError(f"there is no picture of a {type(found).__name__}")
     return draw_trajectory(found, joints)
@@ -89,3 +94,21 @@ def draw_root_locus(locus: RootLocus) -> str:
         Panel("real parts over the parameter", "parameter", "1/s", parts),
     ]
     return plot(f"root locus, {locus.status}: {len(locus.values)} values", panels)
+
+
+def draw_steady_motions(steady: SteadyMotions, joints: str) -> str:
+    """SVG: each coordinate that keeps still over what varies, or over the first rate, by verdict; with bifurcations."""
+    found = steady.found
+    names = found[0].coordinates if found else ()
+    q = np.array([motion.q for motion in found]).reshape(len(found), len(names))
+    over = np.array([motion.rates[0] if motion.value is None else motion.value for motion in found], dtype=np.float64)
+    verdicts = np.array([motion.verdict for motion in found], dtype=object)
+    marks = tuple((one.kind, one.at.value) for one in steady.bifurcations if one.at.value is not None)
+    label = steady.vary or f"rate of {steady.moving[0]}"
+    panels = []
+    for a, name in enumerate(names):
+        if name not in steady.moving:
+            by_verdict = {verdict: verdicts == verdict for verdict in sorted(set(verdicts))}
+            lines = tuple(Line(verdict, over[these], q[these, a], dots=True) for verdict, these in by_verdict.items())
+            panels.append(Panel(name, label, "rad" if joints[a] == "R" else "m", lines, marks))
+    return plot(f"steady motions: {len(found)} found, {len(marks)} bifurcations", panels)

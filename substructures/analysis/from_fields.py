@@ -6,10 +6,11 @@ only ``fixed_step`` is a method. What is no field of them, as ``q``, stays as it
 
 from __future__ import annotations
 
-from collections.abc import Sized
+from collections.abc import Mapping, Sized
 from dataclasses import fields
 from typing import Any
 
+from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.motion.problems.kinds import (
     ClosedMotion,
     ConstrainedMotion,
@@ -37,7 +38,7 @@ USUAL = ("friction", "regularised")
 
 def motion_arguments(model: Model, /, **given: Any) -> dict[str, Any]:
     """Arguments of simulate. Raises InvalidArgument for a field that means nothing to the kind of motion."""
-    rest = dict(given)
+    rest = _constrained(model, given)
     kind = _kind(model, rest)
     fixed = rest.pop("fixed_step", None)
     if fixed is not None and kind in (ConstrainedMotion, ClosedMotion):
@@ -54,6 +55,22 @@ def sensitivity_arguments(**given: Any) -> dict[str, Any]:
     """Arguments of sensitivities."""
     rest = dict(given)
     return {"integrator": take(Integrator, rest), "outputs": take(SensitivityOutputs, rest), **rest}
+
+
+def linearisation_arguments(model: Model, /, **given: Any) -> dict[str, Any]:
+    """Arguments of linearise. Raises InvalidArgument for fields of velocity constraints without any."""
+    rest = _constrained(model, given)
+    if rest.get("constraints"):
+        return {"kind": take(ConstrainedMotion, rest), **rest}
+    of_constraints = {field.name for field in fields(ConstrainedMotion)} & set(rest)
+    _refuse(TreeMotion, {name: rest.pop(name) for name in sorted(of_constraints)})
+    return rest
+
+
+def _constrained(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:
+    """Fields with the velocity constraints of the tree."""
+    found = constraints_of(model, given.get("constraints") or ())
+    return {**given, "constraints": found} if found else dict(given)
 
 
 def _kind(model: Model, given: dict[str, Any]) -> type[MotionKind]:

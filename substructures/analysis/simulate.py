@@ -6,12 +6,19 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
-from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
+from substructures.analysis.equations.nonholonomic.velocity_constraints import (
+    Closed,
+    KnifeEdge,
+    Linear,
+    Rolling,
+    constraints_of,
+)
 from substructures.analysis.motion.friction.transmitted import with_reactions
 from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.load_powers import with_powers
+from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.kinds import (
     ClosedMotion,
@@ -28,12 +35,14 @@ from substructures.analysis.motion.rolling import RollingProblem, simulate_rolli
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.errors import Fault, InvalidArgument
+from substructures.tree.document import require_unconstrained, require_undriven
 from substructures.tree.model import Model
 
 __all__ = [
     "Closed",
     "ClosedMotion",
     "ConstrainedMotion",
+    "Contact",
     "Event",
     "FixedStep",
     "Geodesic",
@@ -48,8 +57,8 @@ __all__ = [
 ]
 
 UNPLACED = (
-    "reactions are not known with velocity constraints: these act on coordinates, by B^T lambda, and a linear one does "
-    "not say where on which body; leave 'reactions' out"
+    "reactions are those of the tree, and so of its own 'velocity_constraints' alone: make the constraints part of the "
+    "tree, or leave 'reactions' out"
 )
 DEFAULT, PLAIN = Integrator(), Outputs()
 
@@ -70,9 +79,11 @@ def simulate(
 
     State: ``q`` [rad, m] and ``qd`` [rad/s, m/s; 0 by default], (n,) in the order of the coordinates or by name.
     ``inputs`` [N m, N] by name: a number, an expression in coordinates, velocities, parameters and t, or a Table;
-    ``parameters``: in place of their defaults. ``kind``: TreeMotion (default; of a model with closures ClosedMotion),
-    ClosedMotion, ConstrainedMotion or Geodesic, which say how joints rub, how loops close, what rolls; ``integrator``:
-    its method and accuracy, real time, progress; ``outputs``: when results are wanted, and what of them.
+    ``parameters``: in place of their defaults. ``kind``: TreeMotion (default; with closures ClosedMotion, with
+    velocity constraints of the tree ConstrainedMotion), ClosedMotion, ConstrainedMotion or Geodesic, which say how
+    joints rub, what touches, how loops close, what rolls;
+    ``integrator``: its method and accuracy, real time, progress; ``outputs``: when results are wanted, and what of
+    them.
 
     The series of the result: see simulate_tree, simulate_closed, simulate_rolling. What goes wrong on the way is a
     trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (pointers start with
@@ -87,11 +98,13 @@ def simulate(
     >>> round(float(motion.t[-1]), 3), motion.is_right
     (0.509, True)
     """
-    kind = kind or (ClosedMotion() if model.closures else TreeMotion())
+    kind = kind or _usual(model)
     _require_kind(model, kind)
     if isinstance(kind, Geodesic):
         _refuse("no forces", inputs=inputs, reactions=outputs.reactions, powers=outputs.powers)
         model = without_forces(model)
+    if isinstance(kind, TreeMotion) and kind.contacts:
+        _refuse("contacts", reactions=outputs.reactions, powers=outputs.powers)
     given: dict[str, Any] = {
         "model": model,
         "start": Start(q, qd, parameters or {}, inputs or {}),
@@ -105,7 +118,7 @@ def simulate(
     # B q' = 0: quasi-velocities; phi(q, t) = 0: multipliers; else q'' = g^-1 (Q - Gamma q' q')
     if isinstance(kind, ConstrainedMotion):
         _refuse("velocity constraints", powers=outputs.powers)
-        if outputs.reactions is not None:
+        if outputs.reactions is not None and not model.velocity_constraints:
             raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
         motion = simulate_rolling(RollingProblem(**given, kind=kind))
     elif isinstance(kind, ClosedMotion):
@@ -116,14 +129,26 @@ def simulate(
     if outputs.reactions is not None:
         found = with_reactions(model, outputs.reactions, found, given["start"])
     if outputs.powers is not None:
+        require_undriven(model.driven if model.closures else (), "leave 'powers' out")
         moved = tuple(kind.prescribed) if isinstance(kind, ClosedMotion) else ()
         found = with_powers(model, outputs.powers, found, given["start"], moved, integrator.drift_limit)
     return found
 
 
+def _usual(model: Model) -> MotionKind:
+    """The kind of motion where none is given."""
+    if model.velocity_constraints:
+        return ConstrainedMotion(constraints_of(model))
+    return ClosedMotion() if model.closures else TreeMotion()
+
+
 def _require_kind(model: Model, kind: MotionKind) -> None:
-    """Raises InvalidArgument for a kind of motion that the model cannot have."""
+    """Raises InvalidInput for a kind of motion that the model cannot have."""
     found = type(kind).__name__
+    if not isinstance(kind, ConstrainedMotion):
+        require_unconstrained(model.constraint_names, found)
+    if isinstance(kind, (ConstrainedMotion, Geodesic)):
+        require_undriven(model.driven, f"take the tree without 'driven' for a {found}")
     if isinstance(kind, ClosedMotion):
         if not model.closures and not kind.prescribed:
             message = f"a tree without closures and 'prescribed' coordinates moves as TreeMotion, found {found}"

@@ -8,6 +8,7 @@ True
 
 from __future__ import annotations
 
+import json
 from functools import cache
 from importlib import resources
 from typing import Any
@@ -22,6 +23,15 @@ def names() -> tuple[str, ...]:
     """The names of all entries, sorted."""
     files = (entry.name for entry in resources.files(__name__).iterdir())
     return tuple(sorted(name.removesuffix(_SUFFIX) for name in files if name.endswith(_SUFFIX)))
+
+
+def digests() -> dict[str, str]:
+    """The digest of the definition of every entry by name: what is stored of them is found without reading them.
+
+    It stands beside the entries; a test holds it against them.
+    """
+    found: dict[str, str] = json.loads(resources.files(__name__).joinpath("digests.json").read_bytes())
+    return found
 
 
 def load(name: str) -> dict[str, Any]:

@@ -10,8 +10,8 @@ from substructures.certificate.bodies import Bodies
 from substructures.certificate.linear import Ball
 from substructures.certificate.outputs import Outputs, Values, images_of
 
-#: axes of outputs that are joints
-_AXES: dict[str, tuple[int, ...]] = {
+#: axes of outputs that are joints, or coordinates
+AXES: dict[str, tuple[int, ...]] = {
     "metric": (0, 1),
     "christoffel": (0, 1, 2),
     "kappa": (0, 1),
@@ -21,6 +21,9 @@ _AXES: dict[str, tuple[int, ...]] = {
     **dict.fromkeys(("inverse_dynamics", "linear_momentum", "angular_momentum", "regressor"), (0,)),
     **dict.fromkeys(("U", "Omega", "port.U", "port.Omega", "closure.jacobian", "centroidal_momentum_matrix"), (1,)),
     **dict.fromkeys(("limits", "friction", "friction_load"), (0,)),
+    "g_a0": (0,),
+    "Gamma_a00": (0,),
+    "Gamma_ab0": (0, 1),
 }
 
 
@@ -48,7 +51,7 @@ def of_coordinates(result: Outputs, bodies: Bodies) -> Outputs:
     left = along(bodies)
     if len(left) < len(bodies.joints):
         number = {bodies.joints[a].coordinate: i for i, a in enumerate(left)}
-        for name, axes in _AXES.items():
+        for name, axes in AXES.items():
             if name in result:
                 result[name] = _of_coordinates(name, result[name], bodies, axes, number)
     return result

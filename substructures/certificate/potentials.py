@@ -63,6 +63,11 @@ def is_found(some: Iterable[Forces]) -> bool:
     return any(forces.given or forces.bent for forces in some)
 
 
+def integrated(forces: Forces) -> set[int]:
+    """The joints whose forces may have potentials that were found so."""
+    return {*forces.given, *(a for pulls in forces.bent for a in pulls)}
+
+
 def _at_rest_names(forces: Forces) -> dict[str, Ball]:
     """The names of a definition; velocities and inputs are zero."""
     names, definition = forces.numbers.names, forces.definition

@@ -86,6 +86,15 @@ def slope(given: Any, names: Mapping[str, Ball], along: str) -> Ball:
     return _series(steps, {**used, along: arb_series([names[along], 1])})[1]
 
 
+def with_rates(given: Any, names: Mapping[str, Ball], along: str) -> tuple[Ball, Ball, Ball]:
+    """The value of a number or of an expression, and its first two derivatives by a name."""
+    steps = steps_of(given)
+    used = {name: names[name] for name in names_of(steps)}
+    # x + h: the coefficients of 1, h and h^2
+    x = _series(steps, {**used, along: arb_series([names[along], 1])})
+    return x[0], x[1], 2 * x[2]
+
+
 def value(steps: Steps, names: Mapping[str, Ball]) -> Ball:
     """The value of steps; not finite where there is none."""
     return _series(steps, names)[0]

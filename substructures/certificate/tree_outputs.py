@@ -2,25 +2,22 @@
 
 from __future__ import annotations
 
-import heapq
 from collections.abc import Iterable, Mapping, Sequence
-from typing import Any
 
 from flint import arb
 
 from substructures.certificate.bodies import (
-    CHAINS,
     GROUND,
     NONE,
     Bodies,
     Frame,
     coordinates_of,
-    in_order,
-    limits_of,
     massless,
 )
 from substructures.certificate.by_coordinate import of_coordinates, rates
-from substructures.certificate.closures import ROWS, closure_outputs
+from substructures.certificate.closures import closure_outputs
+from substructures.certificate.described import closures_in, coordinates_in, hosts_first
+from substructures.certificate.driven import driven_outputs, driven_symbols, of_free, with_driven
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
 from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
@@ -28,8 +25,8 @@ from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
-from substructures.certificate.potentials import gradient_instead, is_found
-from substructures.certificate.relations import Related, moved, mover, written
+from substructures.certificate.potentials import UNKNOWN, gradient_instead, integrated, is_found
+from substructures.certificate.relations import Related, mover, written
 from substructures.certificate.slopes import at_start
 from substructures.certificate.tree_loads import TreeForces
 from substructures.expr.operations import Output
@@ -48,7 +45,7 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
             for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
                 q = f"{name}.{c}"
                 kinds |= {q: "coordinate", f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
-    return kinds
+    return driven_symbols(tree, kinds)
 
 
 def tree_outputs(
@@ -56,7 +53,8 @@ def tree_outputs(
 ) -> Outputs:
     """All outputs of the model; ``values``: of all symbols; ``stored``: see
     :func:`substructures.certificate.part_outputs.part_outputs`."""
-    result = Outputs()
+    result, given, driven = Outputs(), values, tree.get("driven", ())
+    values = with_driven(tree, given)
     numbers, bodies, loads, acting = built(tree, definitions, values)
     moving, second = (rates(bodies, values, mark) for mark in ("'", "''"))
     gravity, others = numbers.vector(tree.get("gravity", NONE)), beside(tree, definitions, bodies, numbers)
@@ -69,9 +67,12 @@ def tree_outputs(
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
         known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes)), others.slopes])
-        some, start, _, there = built(tree, definitions, at_start(values, tree_symbols(tree, definitions)), acting)
+        begin_at = with_driven(tree, at_start(given, tree_symbols(tree, definitions)))
+        some, start, _, there = built(tree, definitions, begin_at, acting)
         begin = _potential_energy(start, gravity, there) + beside(tree, definitions, start, some).potential
-        gradient_instead(result, "potential_energy", acting, known, begin)
+        # of a coordinate that need not be zero there
+        is_known = not any(bodies.joints[a].mover in driven for forces in acting for a in integrated(forces))
+        gradient_instead(result, "potential_energy", acting, known, begin if is_known else UNKNOWN)
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
     limits(result, bodies, definitions, loads)
@@ -81,7 +82,10 @@ def tree_outputs(
     closed = closures_in(tree, definitions, numbers, loads)
     if closed:
         closure_outputs(result, bodies, closed, moving)
-    return of_coordinates(result, bodies)
+    more = driven_outputs(result, bodies, values, driven) if driven else {}
+    result = of_coordinates(result, bodies)
+    result.update(more)
+    return of_free(result, list(coordinates_in(tree, definitions)), driven)
 
 
 def built(
@@ -108,107 +112,6 @@ def beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, number
     """What the loads of the tree do beside those of its parts."""
     inside = (f"{name}.{p}" for name, definition in definitions.items() for p in definition.get("parameters", ()))
     return TreeForces(tree, bodies, numbers, frozenset((*tree.get("parameters", ()), *inside)))
-
-
-def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
-    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits."""
-    coordinates: list[str] = []
-    frames: list[str] = []
-    limited: list[str] = []
-    kinds = ""
-    for instance in hosts_first(tree):
-        name, definition, first = instance["name"], definitions[instance["name"]], len(coordinates)
-        bodies = in_order(definition)
-        for body in bodies:
-            own = coordinates_of(body)
-            left = [(step, c) for step, c in enumerate(own) if mover(definition, c) == c]
-            coordinates += [f"{name}.{c}" for _, c in left]
-            chain = CHAINS[body["joint"]["type"]]
-            kinds += "".join("P" if chain[step][0] else "R" for step, _ in left)
-        # of joints that move with a coordinate without moving it, none
-        bound = [
-            q for joint, step, q in _joints_of(definition) if limits_of(joint, step) and not _is_still(definition, q)
-        ]
-        known = {mover(definition, q) for q in bound}
-        limited += [q for q in coordinates[first:] if q.rpartition(".")[2] in known]
-        ports = definition.get("ports", ())
-        frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*bodies, *ports)))]
-    closures = [
-        {**{x: c[x] for x in ("name", "type", "from")}, "to": c.get("to", "world"), "rows": [*ROWS[c["type"]]]}
-        for c, _ in closures_of(tree, definitions)
-    ]
-    found = {"coordinates": coordinates, "joints": kinds, "frames": frames, "closures": closures, "limited": limited}
-    reduction = reduced(tree, definitions)
-    return found | ({"reduction": reduction} if any(reduction.values()) else {})
-
-
-def reduced(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
-    """Independent coordinates of the tree, where its closed parts name all of theirs, their starts and ranges."""
-    order = [(i["name"], definitions[i["name"]]) for i in hosts_first(tree)]
-    closed = [definition for _, definition in order if definition.get("closures")]
-    independent: list[str] = []
-    start: dict[str, str] = {}
-    ranges: dict[str, list[str]] = {}
-    for name, d in order:
-        own = [
-            c
-            for _, _, c in _joints_of(d)
-            if mover(d, c) == c and (not d.get("closures") or c in d.get("independent", ()))
-        ]
-        independent += [f"{name}.{c}" for c in own]
-        start |= {f"{name}.{c}": str(x) for c, x in d.get("start", {}).items()}
-        ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in d.get("ranges", {}).items()}
-    is_said = closed and all(d.get("independent") for d in closed) and not tree.get("closures")
-    return {"independent": independent if is_said else [], "start": start, "ranges": ranges}
-
-
-def closures_of(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[tuple[Plain, str]]:
-    """The closures of the tree, then those of its parts with the names of the tree; the instance that has them."""
-    yield from ((closure, "") for closure in tree.get("closures", ()))
-    for instance in hosts_first(tree):
-        name = instance["name"]
-        for closure in definitions[name].get("closures", ()):
-            ends = {"name": closure["name"], "from": closure["from"], "to": closure.get("to", "base")}
-            yield {**closure, **{field: f"{name}.{x}" for field, x in ends.items()}}, name
-
-
-def closures_in(
-    tree: Plain, definitions: Mapping[str, Plain], numbers: Numbers, inside: Sequence[tuple[str, Numbers, range]]
-) -> list[tuple[Plain, Numbers]]:
-    """All closures with the numbers of the tree, or of the instance that has them."""
-    known = {"": numbers} | {name: own for name, own, _ in inside}
-    return [(closure, known[name]) for closure, name in closures_of(tree, definitions)]
-
-
-def _joints_of(definition: Plain) -> Iterable[tuple[Plain, int, str]]:
-    """The joint of every coordinate, its place in the joint, its name."""
-    for body in in_order(definition):
-        for step, name in enumerate(coordinates_of(body)):
-            yield body["joint"], step, name
-
-
-def _is_still(definition: Plain, name: str) -> bool:
-    """Whether a relation holds a joint at rest: its multiplier is the number 0."""
-    relations = moved(definition)
-    while name in relations:
-        if relations[name].get("multiplier", 1) == 0:
-            return True
-        name = relations[name]["of"]
-    return False
-
-
-def hosts_first(tree: Plain) -> list[Plain]:
-    """The instances in the order of the model: hosts first, otherwise as given."""
-    instances = list(tree.get("instances", ()))
-    ready = [i for i, instance in enumerate(instances) if instance.get("at", "world") == "world"]
-    order = []
-    while ready:
-        i = heapq.heappop(ready)
-        order.append(instances[i])
-        for k, other in enumerate(instances):
-            if other.get("at", "world").partition(".")[0] == instances[i]["name"]:
-                heapq.heappush(ready, k)
-    return order
 
 
 def _names(instance: str, definition: Plain, names: Mapping[str, Ball], values: Mapping[str, Ball]) -> dict[str, Ball]:

@@ -33,7 +33,7 @@ class Version(Drawn):
     certificate: dict[str, Any]
     warnings: list[dict[str, Any]]
     aliases: list[str]
-    yanked: bool
+    is_withdrawn: bool
     owner: str
     visibility: str
 
@@ -92,10 +92,14 @@ class CatalogueCaller(PictureCaller):
         """What is built of a part."""
         return self._pages(f"/v1/substructures/{step(ref)}/uses", {}, Answer)
 
-    def yank(self, ref: str | Referable, reason: str = "", successor: str | None = None) -> Version:
+    def levels(self, ref: str | Referable) -> list[Answer]:
+        """The other levels of a part, full, reduced or abbreviated, with the errors of the shorter ones."""
+        return [Answer(each) for each in self.told("GET", f"/v1/substructures/{step(ref)}/levels")["items"]]
+
+    def withdraw(self, ref: str | Referable, reason: str = "", successor: str | None = None) -> Version:
         """Withdraw a version; ``successor``: what to take instead."""
         body = {"reason": reason} | ({} if successor is None else {"successor": successor})
-        return self.version_of(self.told("POST", f"/v1/substructures/{step(ref)}/yank", body))
+        return self.version_of(self.told("POST", f"/v1/substructures/{step(ref)}/withdraw", body))
 
     def aliases(self, name: str) -> list[Answer]:
         """All aliases of a part with their history."""

@@ -10,6 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.compile import target
@@ -23,9 +24,34 @@ _Words = ctypes.c_int64 * len(RUN)
 
 
 @dataclass(frozen=True)
+class SaddlePoint:
+    """[g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c] of arrays that kernels write: ``metric`` (n, n), ``jacobian``
+    (m, n), ``acceleration`` c (m,), ``forces``, ``bias`` (n,). ``rows`` (r,): the independent ones of G and c, others
+    at the next call where they have changed.
+    """
+
+    metric: Array
+    jacobian: Array
+    acceleration: Array
+    forces: Array
+    bias: Array
+    rows: NDArray[np.int64]
+
+    def words(self, width: int) -> tuple[NDArray[np.int64], Scratch]:
+        """The table SADDLE, and the memory of its matrix."""
+        n = len(self.forces)
+        size = n + len(self.rows)
+        matrix = Scratch.zeros(size, -(-(size + 1) // width) * width)
+        arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows
+        table = [*map(address, arrays), matrix.address, n, size, matrix.array.shape[1]]
+        return np.array(table, dtype=np.int64), matrix
+
+
+@dataclass(frozen=True)
 class CompiledRates:
     """x' = (q', q'', power) as calls of kernels, one after the other, that share memory: they read ``t`` (1,) and ``x``
     (1, 2n), and write ``second`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
+    ``saddle``: q'' is its solution, in place of what kernels write to ``second``.
     """
 
     calls: tuple[BoundCall, ...]
@@ -34,6 +60,7 @@ class CompiledRates:
     second: Array
     power: Array | None
     folder: Path | None = None
+    saddle: SaddlePoint | None = None
 
     @property
     def size(self) -> int:
@@ -75,7 +102,9 @@ class CompiledRun:
         own = [runtime.loaded.names["drive"], address(calls), len(calls)]
         own += [address(rates.t), address(rates.x), address(rates.second), power, rates.x.size // 2, size, rows]
         own += [target.math_library()["pow"], address(self._memory), row[0], row[2], row[1], address(self._steps)]
-        self._alive = rates, calls, runtime
+        saddle = None if rates.saddle is None else rates.saddle.words(width)
+        own.append(0 if saddle is None else address(saddle[0]))
+        self._alive = rates, calls, runtime, saddle
         self._run = _Words(*own, 0)
         self._loaded, self._advance = _loaded(tableau, width, rates.folder)
 
@@ -109,6 +138,11 @@ class CompiledRun:
     def evaluations(self) -> int:
         """Of x' since the state that it began at."""
         return int(self._words[WORDS.index("evaluations")])
+
+    @property
+    def next_step(self) -> float:
+        """The size of the step that is tried next."""
+        return float(self._memory[NUMBERS.index("h")])
 
     @property
     def state(self) -> Array:

@@ -12,11 +12,12 @@ from dataclasses import dataclass
 from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.emission import attributes, literal
 from substructures.compile.runtime import CONTEXT
+from substructures.compile.saddle import saddle_point
 
 #: words of a run: addresses, sizes, and how many steps are tried at most
 RUN = (
     *("drive", "calls", "n_calls", "time", "state", "second", "power", "n", "size", "rows"),
-    *("pow", "numbers", "y", "stages", "new", "steps", "most"),
+    *("pow", "numbers", "y", "stages", "new", "steps", "saddle", "most"),
 )
 #: squares of the two errors, summed up
 SUMS = ("first", "second")
@@ -54,11 +55,11 @@ class Tableau:
 def stepping(tableau: Tableau, width: int) -> str:
     """The module: advance, which tries ``most`` steps of a run (words RUN) and writes those that are accepted."""
     declared = "declare double @llvm.fabs.f64(double)\ndeclare double @llvm.sqrt.f64(double)\n"
-    return declared + _rates(width) + _Advance(tableau, width).text() + attributes(width)
+    return declared + saddle_point(width) + _rates(width) + _Advance(tableau, width).text() + attributes(width)
 
 
 def _rates(width: int) -> str:
-    """x' = (q', q'', power) of (t, x), by the calls of a run one after the other."""
+    """x' = (q', q'', power) of (t, x), by the calls of a run one after the other, and its saddle point."""
     w = AssemblyWriter(width)
     c = w.words("%run", RUN)
     at = {name: w.pointer(c[name]) for name in ("drive", "calls", "time", "state", "second", "power")}
@@ -71,6 +72,8 @@ def _rates(width: int) -> str:
         place = w.offset(context, CONTEXT.index("counter"), "i64")
         w.put(f"store i64 0, ptr {w.pointer(w.do(f'load i64, ptr {place}, align 8'))}, align 8")
         w.put(f"call void {at['drive']}(ptr {context})")
+    with w.when(w.do(f"icmp ne i64 {c['saddle']}, 0")):
+        w.put(f"call void @saddle_point(ptr {w.pointer(c['saddle'])}, ptr {at['second']})")
     with w.loop("0", c["n"]) as i:
         behind = w.arithmetic("add", i, c["n"])
         _copy(w, w.offset("%x", behind, "double"), w.offset("%f", i, "double"))

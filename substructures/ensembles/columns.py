@@ -17,21 +17,25 @@ from substructures.array import Array
 from substructures.compile.kernel import NO_PLACES, Places
 from substructures.documents import DocumentPart
 from substructures.documents.fields import PlainNumber
+from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
 from substructures.quantities.numbers.evaluation import Evaluation, EvaluationOptions, Sources, evaluate
-from substructures.sweeps.columns import TAKEN, check_quantity, numbers_of, row_of
-from substructures.sweeps.document import QuantityColumn
+from substructures.quantities.quantity import TABLE
 
-#: what becomes of the values at all times
-Take = Literal["end", "largest", "smallest", "largest_absolute", "mean", "rms"]
+MOST_COLUMNS = 100
+#: what becomes of the values at all times; the integral is one over the time of the motion
+Take = Literal["end", "largest", "smallest", "largest_absolute", "mean", "rms", "integral"]
+INTEGRANDS = "integrands"  # output of a program
+FORWARD = "forward_dynamics"  #: the accelerations of a motion
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _TAKEN: dict[str, Callable[[Array], Array]] = {**TAKEN, "end": lambda x: x[:, -1]}
 
 
 class MotionColumn(DocumentPart):
     """A number of a motion: an ``expression`` in coordinates, velocities, parameters, inputs and t, or a ``quantity``
-    (and which element of it, ``of``), and what to ``take`` of its values at all times.
+    (and which element of it, ``of``), and what to ``take`` of its values at all times, or its ``integral`` over the
+    time, with the tolerances of the motion.
     """
 
     expression: PlainNumber | None = None
@@ -43,6 +47,8 @@ class MotionColumn(DocumentPart):
     def _one(self) -> MotionColumn:
         if (self.expression is None) == (self.quantity is None):
             raise PydanticCustomError("one-source", "give either 'expression' or 'quantity'")
+        if self.take == "integral" and self.expression is None:
+            raise PydanticCustomError("no-integrand", "an 'integral' is one of an 'expression'")
         return self
 
 
@@ -53,6 +59,12 @@ class MotionColumns:
     columns: Mapping[str, MotionColumn]
     sources: Sources
     expressions: Program
+    integrands: Program | None
+
+    @property
+    def integrals(self) -> list[str]:
+        """The columns that are integrals over the time, in the order of the output ``integrands``."""
+        return [name for name, column in self.columns.items() if column.take == "integral"]
 
     @classmethod
     def read(cls, sources: Sources, columns: Mapping[str, MotionColumn]) -> MotionColumns:
@@ -65,17 +77,26 @@ class MotionColumns:
             for name, column in columns.items()
             if column.expression is not None
         }
-        return cls(columns, sources, read_expressions(sources.model, texts))
+        followed = {name: text for name, text in texts.items() if columns[name].take != "integral"}
+        integrated = [text for name, (text,) in texts.items() if columns[name].take == "integral"]
+        model, integrands = sources.model, None
+        if integrated:
+            integrands = read_expressions(model, {INTEGRANDS: integrated}, inputs=True)
+        return cls(columns, sources, read_expressions(model, followed, inputs=True), integrands)
 
-    def of(self, values: Mapping[str, float | Array], x: Array) -> dict[str, Array]:
-        """The columns (M,) of motions ``x`` (M, K, 2n); ``values``: of all other symbols, numbers or (M, K)."""
+    def of(self, values: Mapping[str, float | Array], x: Array, integrals: Array) -> dict[str, Array]:
+        """The columns (M,) of motions ``x`` (M, K, 2n); ``values``: of all other symbols, numbers or (M, K);
+        ``integrals`` (M, k): of :attr:`integrands` up to the end.
+        """
         model, (rows, times) = self.sources.model, x.shape[:2]
         state = np.ascontiguousarray(x).reshape(rows * times, -1)
         flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
         followed = program_kernel(self.expressions).evaluate(flat, columns=[(state_names(model), state)])
         answer = self._evaluated(flat, state)
-        found = {}
+        found = {name: integrals[:, k] for k, name in enumerate(self.integrals)}
         for name, column in self.columns.items():
+            if name in found:
+                continue
             if answer is None or column.quantity is None:
                 numbers = np.broadcast_to(followed[name].reshape(-1), (rows * times,))
             else:
@@ -85,24 +106,25 @@ class MotionColumns:
                 raise InvalidArgument.at(f"/columns/{name}/of", "several-numbers", message)
             with np.errstate(invalid="ignore"):
                 found[name] = _TAKEN[column.take](numbers.reshape(rows, times))
-        return found
+        return {name: found[name] for name in self.columns}
 
     def _evaluated(self, values: Mapping[str, Any], state: Array) -> Evaluation | None:
         """All quantities of the columns at all states, None where there are none."""
-        wanted = [c.quantity for c in self.columns.values() if c.quantity is not None]
+        wanted = {name: c.quantity for name, c in self.columns.items() if c.quantity is not None}
         if not wanted:
             return None
         model, n = self.sources.model, self.sources.model.dof
-        return evaluate(
-            self.sources,
-            list(dict.fromkeys(row_of(name) or name for name in wanted)),
-            state[:, :n],
-            state[:, n:],
-            inputs={name: values[name] for name in model.input_names if name in values},
-            parameters={name: values[name] for name in model.parameters if name in values},
-            t=values["t"],
-            options=EvaluationOptions(evaluator=_compiled),
-        )
+        asked = require_columns(wanted, model)
+        given: dict[str, Any] = {
+            "inputs": {name: values[name] for name in model.input_names if name in values},
+            "parameters": {name: values[name] for name in model.parameters if name in values},
+            "t": values["t"],
+            "options": EvaluationOptions(evaluator=_compiled),
+        }
+        if any("qdd" in TABLE[name].requires for name in asked):
+            moved = evaluate(self.sources, FORWARD, state[:, :n], state[:, n:], **given)
+            given["qdd"] = moved[FORWARD].reshape(-1, n)
+        return evaluate(self.sources, asked, state[:, :n], state[:, n:], **given)
 
 
 def _compiled(

@@ -163,15 +163,14 @@ class _Run:
     def run(self) -> Ensemble:
         """All members, or those up to where whoever watches the progress says that it is enough."""
         members, settings, grid = self.members, self._settings(), self._grid()
-        lanes = min(settings.lanes, members.count)
-        rates = KernelRates(members, lanes, self.integrator.folder)
         integrals = self._integrals()
-        size = max(lanes, STATES // len(grid))
+        size = max(settings.lanes, STATES // len(grid))
         is_cancelled = False
         for begin in range(0, members.count, size):
             chosen = slice(begin, min(begin + size, members.count))
-            rates.first = begin
             start = members.start[chosen]
+            lanes = min(settings.lanes, len(start))
+            rates = KernelRates(members, lanes, self.integrator.folder, self.columns.integrands, begin)
             start = np.concatenate([start, np.zeros((len(start), rates.size - 2 * rates.n))], axis=1)
             told = self._told(begin)
             found = march(rates, start, grid, settings, told)
@@ -220,7 +219,9 @@ class _Run:
         values = along(self.members, chosen, grid, x)
         work = x[..., 2 * n] if rates.has_power else np.zeros(x.shape[:2])
         motions = MotionStates(np.tile(grid, (len(x), 1)), x[..., :n], x[..., n : 2 * n], values, work)
-        found = {f"columns.{name}": v for name, v in self.columns.of(values, x[..., : 2 * n]).items()}
+        integrals_to_end = x[:, -1, rates.size - rates.integrals :]
+        columns = self.columns.of(values, x[..., : 2 * n], integrals_to_end)
+        found = {f"columns.{name}": v for name, v in columns.items()}
         found["violation"] = self._judged(motions, integrals)
         if self.keeps:
             found |= {"q": x[..., :n], "qd": x[..., n : 2 * n]}

@@ -18,8 +18,10 @@ from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, f
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.array import Array
 from substructures.documents import escape
+from substructures.ensembles.columns import INTEGRANDS
 from substructures.ensembles.lanes import Places
 from substructures.errors import InvalidArgument
+from substructures.expr.program import Program
 from substructures.quantities.numbers.states import StateInput, given_values, read_states, with_input_defaults
 from substructures.tree.model import Model
 
@@ -62,7 +64,7 @@ def read_members(
 
     Raises InvalidInput (``has-closures``; pointers ``/q``, ``/parameters/name``, ...) and MissingValue.
     """
-    require_tree(model)
+    require_tree(model, "ensembles")
     given = with_input_defaults(model, inputs)
     for name, x in given.items():
         if isinstance(x, Table):
@@ -87,13 +89,21 @@ def read_members(
 
 
 class KernelRates:
-    """x' = (q', q'', power) of many members as calls of kernels, x = (q, q', W); W only where there is any power.
+    """x' = (q', q'', power, integrands) of many members as calls of kernels, x = (q, q', W, integrals); W only where
+    there is any power.
 
-    ``first``: the member that is number 0 of :meth:`load`.
+    ``first``: the member that is number 0 of :meth:`load`; ``integrands``: a program with one output, INTEGRANDS.
     """
 
-    def __init__(self, members: Members, lanes: int, folder: Path | None = None) -> None:
-        self.members, self.first, model = members, 0, members.model
+    def __init__(
+        self,
+        members: Members,
+        lanes: int,
+        folder: Path | None = None,
+        integrands: Program | None = None,
+        first: int = 0,
+    ) -> None:
+        self.members, self.first, model = members, first, members.model
         self.n = model.dof
         self.kernel = forward_kernel(model, members.zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
@@ -101,11 +111,13 @@ class KernelRates:
         self._values = {name: np.zeros(lanes) for name in members.varied}
         self._formulas = members.conditions.formulas
         self._inputs = program_kernel(members.conditions.expressions, folder) if self._formulas else None
+        self._integrands = None if integrands is None else program_kernel(integrands, folder)
+        self.integrals = 0 if integrands is None else integrands.outputs[INTEGRANDS].shape[0]
 
     @property
     def size(self) -> int:
         """Length of a state."""
-        return 2 * self.n + self.has_power
+        return 2 * self.n + self.has_power + self.integrals
 
     def load(self, lanes: Places, members: Places) -> None:
         """The parameters of ``members`` become those of ``lanes``."""
@@ -122,7 +134,10 @@ class KernelRates:
             laws = self._inputs.bind({"inputs": followed}, values, columns=columns)
             columns = [*columns, (list(self._formulas), followed)]
         outputs = {ACCELERATION: found[:, n : 2 * n]} | ({POWER: found[:, 2 * n]} if self.has_power else {})
-        run = self.kernel.bind(outputs, values, columns=columns)
+        runs = [self.kernel.bind(outputs, values, columns=columns)]
+        if self._integrands is not None:
+            places = {INTEGRANDS: found[:, self.size - self.integrals :]}
+            runs.append(self._integrands.bind(places, values, columns=columns))
         rates, velocities = found[:, :n], x[:, n : 2 * n]
 
         def go() -> None:
@@ -130,7 +145,8 @@ class KernelRates:
             rates[:] = velocities
             if laws is not None:
                 laws()
-            run()
+            for run in runs:
+                run()
 
         return go
 

@@ -10,12 +10,11 @@ import numpy as np
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.documents.units import read_unit
+from substructures.ensembles.samples import Distribution, Sampler, Samples
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.units.dimensions import Dimensioned
 from substructures.expr.units.unit_check import dimension_of
 from substructures.quantities.numbers.states import longest, read_states
-from substructures.sweeps.document import Distribution, Samples
-from substructures.sweeps.samples import Sampler
 from substructures.tree.model import Model
 
 MOST = 10_000_000

@@ -23,7 +23,7 @@ from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.numbers.warnings import not_judged_warnings
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
-from substructures.tree.model import require_stored
+from substructures.tree.model_outputs import require_stored
 
 ALL = "all"
 #: operations of a program that names are looked for in
@@ -97,7 +97,7 @@ class Function:
     @cached_property
     def arguments(self) -> tuple[str, ...]:
         """Symbols of the arguments: those of the quantity, ``x`` where it has further symbols."""
-        found = {*signature(self.quantity), *(["x"] if self.further.names else [])}
+        found = {*signature(self.quantity), *self.interface.always, *(["x"] if self.further.names else [])}
         found |= {WORK} if WORK in self.interface.vectors and self.quantity != PREPARE else set()
         return tuple(symbol for symbol in (*ORDER, WORK) if symbol in found)
 

@@ -1,13 +1,14 @@
 """The calling convention: which arguments the function of a quantity has, and what stands where in them.
 
-The signature depends on the quantity alone, never on which symbols happen to occur. Vectors are complete, in the order
+The signature depends on the quantity alone, never on which symbols happen to occur; of a tree with given motions all
+functions have the time and the inputs, too. Vectors are complete, in the order
 of the tree; what was bound to a number is left out of ``p``.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from math import isnan
 from typing import Any
@@ -83,12 +84,13 @@ class Vector:
 @dataclass(frozen=True)
 class Interface:
     """All vectors of a tree or part by their symbols (``t`` has the length 1), and what it is that is exported:
-    ``reference`` and ``digest``; ``frames``: names along the axes of frames."""
+    ``reference`` and ``digest``; ``frames``: names along the axes of frames; ``always``: arguments of all functions."""
 
     vectors: Mapping[str, Vector]
     reference: str = ""
     digest: str = ""
     frames: tuple[str, ...] = ()
+    always: tuple[str, ...] = ()
 
     @classmethod
     def of_symbols(cls, symbols: Sequence[Symbol]) -> Interface:
@@ -106,9 +108,7 @@ class Interface:
 
     def bound(self, names: Iterable[str]) -> Interface:
         """The interface without parameters that were bound to numbers."""
-        return Interface(
-            {**self.vectors, "p": self.vectors["p"].without(names)}, self.reference, self.digest, self.frames
-        )
+        return replace(self, vectors={**self.vectors, "p": self.vectors["p"].without(names)})
 
     @cached_property
     def places(self) -> Mapping[str, tuple[str, int]]:

@@ -25,7 +25,8 @@ def interface_of_model(model: Model, reference: str = "", digest: str = "") -> I
     vectors = _states(model.coordinates, model.joints) | _others(
         model.parameters, inputs, model.units, input_defaults(model)
     )
-    return Interface(vectors, reference, digest or model.program.digest, model.frames)
+    always = ("t", "u") if model.driven else ()
+    return Interface(vectors, reference, digest or model.program.digest, model.frames, always)
 
 
 def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Interface:

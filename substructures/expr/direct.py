@@ -60,8 +60,13 @@ def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
     >>> float(value("2*(l + 1/2)", {"l": 0.25}))
     1.5
     """
+    if not isinstance(given, str):
+        return _float(_exact(given))
+    steps, known = read(given), names or {}
+    if len(steps) == 1 and steps[0].op == "name":
+        return _floats(_lookup(steps[0], known))
     with np.errstate(all="ignore"):
-        return _run(given, names or {}, _float, _floats, lambda: np.pi, _FLOAT_FUNCTIONS, _float_power)
+        return carried_out(steps, known, _float, _floats, lambda: np.pi, _FLOAT_FUNCTIONS, _float_power)
 
 
 def ball(given: Given, names: Mapping[str, Any] | None = None, precision: int = 128, complex_: bool = False) -> Any:
@@ -101,7 +106,11 @@ def steps_of(given: Given) -> tuple[Step, ...]:
     """The steps of a text; of a number the one that is the number itself. Raises as :func:`value`."""
     if isinstance(given, str):
         return read(given)
-    return (Step("number", decimal_number(str(given)) if isinstance(given, Decimal) else Fraction(given), 1),)
+    return (Step("number", _exact(given), 1),)
+
+
+def _exact(given: int | Decimal | Fraction) -> Fraction:
+    return decimal_number(str(given)) if isinstance(given, Decimal) else Fraction(given)
 
 
 def carried_out(

@@ -1,5 +1,5 @@
 """Functions of force laws straight from what they mean, by cases: in floating point, in balls, and in the power series
-of balls, of which the first two coefficients are right. Nothing here is made of formulas.
+of balls, of which the first three coefficients are right. Nothing here is made of formulas.
 """
 
 from __future__ import annotations
@@ -15,8 +15,8 @@ from flint import arb, arb_series, fmpq, fmpq_mat
 from substructures.expr.syntax import Knots
 
 UNKNOWN = arb("nan")
-#: a function with its partial derivatives
-Parted = tuple[Any, Sequence[Any]]
+#: a function with its partial derivatives, and with the second ones row by row, where these are not all 0
+Parted = tuple[Any, Sequence[Any]] | tuple[Any, Sequence[Any], Sequence[Sequence[Any]]]
 
 
 def _power_of_floats(x: Any, y: Any) -> Any:
@@ -48,7 +48,7 @@ def _sign(x: Any) -> Parted:
 
 def _tanh(x: Any) -> Parted:
     y = x.tanh()
-    return y, [1 - y * y]
+    return y, [1 - y * y], [[-2 * y * (1 - y * y)]]
 
 
 def _max(a: Any, b: Any) -> Parted:
@@ -64,18 +64,24 @@ def _min(a: Any, b: Any) -> Parted:
 
 def _atan2(y: Any, x: Any) -> Parted:
     square = x * x + y * y
-    return arb.atan2(y, x), [x / square, -y / square]
+    bend, mixed = 2 * x * y / (square * square), (y * y - x * x) / (square * square)
+    return arb.atan2(y, x), [x / square, -y / square], [[-bend, mixed], [mixed, bend]]
 
 
 def _step(x: Any, start: Any, width: Any) -> Parted:
     u = (x - start) / width + arb(fmpq(1, 2))
     if u < 0 or u > 1:
         return (arb(0) if u < 0 else arb(1)), [arb(0)] * 3
-    slope = 30 * u * u * (1 - u) * (1 - u)
+    slope, bend = 30 * u * u * (1 - u) * (1 - u), 60 * u * (1 - u) * (1 - 2 * u)
     value = u * u * u * (10 - 15 * u + 6 * u * u)
     if not (u >= 0 and u <= 1):
         return UNKNOWN, [UNKNOWN] * 3
-    return value, [slope / width, -slope / width, -slope * (x - start) / (width * width)]
+    # u by x, start and width, and its second derivatives by these
+    at, square = (x - start) / (width * width), width * width
+    du = [1 / width, -1 / width, -at]
+    ddu = [[0, 0, -1 / square], [0, 0, 1 / square], [-1 / square, 1 / square, 2 * at / width]]
+    seconds = [[bend * du[i] * du[j] + slope * ddu[i][j] for j in range(3)] for i in range(3)]
+    return value, [slope * each for each in du], seconds
 
 
 def _power(x: Any, y: Any) -> Parted:
@@ -83,7 +89,9 @@ def _power(x: Any, y: Any) -> Parted:
     if x == 0 and y > 0:
         return arb(0), [UNKNOWN, UNKNOWN]
     value = x**y if x > 0 else UNKNOWN
-    return value, [y * value / x, value * x.log()]
+    log = x.log()
+    mixed = value / x * (1 + y * log)
+    return value, [y * value / x, value * log], [[y * (y - 1) * value / (x * x), mixed], [mixed, value * log * log]]
 
 
 def _in_table(knots: Knots, x: Any) -> Parted:
@@ -105,7 +113,8 @@ def _in_table(knots: Knots, x: Any) -> Parted:
     one = 1 - u
     value = a * one * one * (1 + 2 * u) + b * u * u * (3 - 2 * u) + s * u * one * one - r * u * u * one
     slope = 6 * u * one * (b - a) + s * one * (1 - 3 * u) - r * u * (2 - 3 * u)
-    return value, [slope / _ball(h)]
+    bend = 6 * (1 - 2 * u) * (b - a) + s * (6 * u - 4) + r * (6 * u - 2)
+    return value, [slope / _ball(h)], [[bend / _ball(h * h)]]
 
 
 def _pchip(knots: Knots) -> list[Fraction]:
@@ -166,13 +175,17 @@ def _in_balls(parted: Callable[..., Parted]) -> Callable[..., Any]:
     """A function of balls, or of power series, from its value and its partial derivatives at balls."""
 
     def function(*args: Any) -> Any:
-        """f(a + a1 h, ...) = f(a, ...) + f_a a1 h + ..."""
-        first = [isinstance(x, arb_series) for x in args]
-        if not any(first):
+        """f(a + a1 h + a2 h^2, ...) = f + f_a a1 h + (f_a a2 + 1/2 f_ab a1 b1) h^2 + ..."""
+        if not any(isinstance(x, arb_series) for x in args):
             return parted(*args)[0]
-        value, slopes = parted(*(x[0] if is_series else x for x, is_series in zip(args, first, strict=True)))
-        terms = (d * x[1] for d, x, is_series in zip(slopes, args, first, strict=True) if is_series and x[1] != 0)
-        return arb_series([value, sum(terms, arb(0))])
+        rows = [[x[k] for k in range(3)] if isinstance(x, arb_series) else [x, arb(0), arb(0)] for x in args]
+        value, slopes, *seconds = parted(*(row[0] for row in rows))
+        moved = [i for i, row in enumerate(rows) if row[1] != 0]
+        first, second = (sum((slopes[i] * row[k] for i, row in enumerate(rows) if row[k] != 0), arb(0)) for k in (1, 2))
+        bends = seconds[0] if seconds else []
+        for i in moved if bends else ():
+            second += sum((bends[i][j] * rows[i][1] * rows[j][1] for j in moved), arb(0)) / 2
+        return arb_series([value, first, second])
 
     return function
 

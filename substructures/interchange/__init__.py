@@ -5,8 +5,9 @@ module              what is there
 ==================  ================================================================================================
 importing           all of it: bytes to definition (or tree), report, checks and names
 kinds               which format a file has, and its reader
-urdf, mjcf, sdf     readers of XML formats, all to ``robot.Robot``; ``known``: the names that each of them has
-tables, symoro      readers of rows of Denavit-Hartenberg parameters, straight to definitions
+urdf, mjcf, sdf     readers of XML formats, to ``robot.Robot``; ``known``: the names that each of them has
+usd                 reader of USD files with UsdPhysics, to the same
+rows                readers of Denavit-Hartenberg tables and SYMORO files, straight to definitions
 robot, merge        links on parents with motions between them; links that do not move against each other as one
 bindings            coordinates that follow others: mimic joints
 as_part, names      a robot as the definition of a substructure; names of files as names of definitions

@@ -7,7 +7,7 @@ carries them (or kept as bodies), their frames stay as ports. Several joints of 
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
@@ -55,6 +55,7 @@ class PartOfFile:
     coordinates: dict[str, str]  #: of every motion
     loop_ports: list[tuple[str, str | None]]  #: of every loop the ports of its ends, None: the world
     unbound: tuple[Mimic, ...] = ()  #: bindings that are no relations
+    seats: Mapping[str, tuple[str, Seat]] = field(default_factory=dict)  #: of every link its body, and where in it
 
 
 def as_part(robot: Robot, options: Options = Options(), name: str | None = None) -> PartOfFile:
@@ -92,6 +93,8 @@ class _Builder:
             self._add(link)
         for frame in self.robot.frames:
             self._port(f"frame {frame.name}", frame.link, Seat(frame.position, frame.rpy))
+        for tendon in self.robot.tendons:
+            self.loads += tendon.loads(self.joints.given, lambda link, at: place_of(self.seats, link, at))
         loop_ports = [self._loop(loop) for loop in self.robot.loops]
         if len(self.ports) > MAX_PORTS:
             message = f"{len(self.ports)} fixed frames; a part has at most {MAX_PORTS} ports: the others are left out"
@@ -120,6 +123,7 @@ class _Builder:
             self.joints.given,
             loop_ports,
             tuple(left),
+            self.seats,
         )
 
     def _joint_names(self) -> dict[str, str]:
@@ -192,10 +196,11 @@ class _Builder:
             steps = FREE if motion.type == "free" else TURNS
             joint["coordinate"] = [self.joints.new(f"{motion.name}_{step}") for step in steps]
             self.joints.given[motion.name] = ", ".join(joint["coordinate"])
-            for law in ("damping", "armature"):  # of the slides; of the turns: a load, a moment of inertia
+            for law in ("stiffness", "damping", "armature"):  # of the slides; of the turns: a load, a moment of inertia
                 if motion.type == "free" and not is_zero(getattr(motion, law)):
                     joint[law] = [*(getattr(motion, law),) * 3, 0, 0, 0]
-            self.loads += _turning_damping(joint["coordinate"][-3:], motion.damping)
+            turns = joint["coordinate"][-3:]
+            self.loads += [*motion.turning_damping(turns), *motion.turning_spring(turns)]
             return joint
         joint["coordinate"] = self.joints.of(motion.name)
         if motion.axis != (ZERO, ZERO, ONE):
@@ -270,6 +275,12 @@ class _Builder:
         return mimic.plain(self.joints.of(mimic.joint), self.joints.of(mimic.of))
 
 
+def place_of(seats: Mapping[str, tuple[str, Seat]], link: str | None, at: Triple) -> dict[str, Any]:
+    """A point of a link, None: of what carries all, as that of a body."""
+    body, seat = (BASE, Seat()) if link is None else seats[link]
+    return {"frame": body, "at": list(seat.point(at))}
+
+
 def _placement(seat: Seat) -> dict[str, Any]:
     """As a field of a joint; nothing where nothing is displaced."""
     placement: dict[str, Any] = {}
@@ -278,19 +289,3 @@ def _placement(seat: Seat) -> dict[str, Any]:
     if seat.is_turned:
         placement["rpy"] = list(seat.rpy)
     return {"placement": placement} if placement else {}
-
-
-def _turning_damping(coordinates: list[str], damping: Number) -> list[dict[str, Any]]:
-    """The moment -c omega of a joint that turns by yaw, pitch, roll, on its coordinates.
-
-    omega^2 = yaw'^2 + pitch'^2 + roll'^2 - 2 yaw' roll' sin(pitch), and Q_a = -c/2 d(omega^2)/dq'^a.
-    """
-    if is_zero(damping):
-        return []
-    yaw, pitch, roll = coordinates
-    forces = {
-        yaw: f"-({damping})*({yaw}' - {roll}'*sin({pitch}))",
-        pitch: f"-({damping})*{pitch}'",
-        roll: f"-({damping})*({roll}' - {yaw}'*sin({pitch}))",
-    }
-    return [{"type": "joint", "coordinate": q, "force": force} for q, force in forces.items()]

@@ -11,10 +11,11 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from substructures.errors import InvalidArgument, listed, meant
-from substructures.interchange.as_part import Options, PartOfFile, as_part
+from substructures.interchange.as_part import Options, PartOfFile, as_part, place_of
 from substructures.interchange.names import Names, library_name
+from substructures.interchange.numbers import Triple
 from substructures.interchange.report import refuse
-from substructures.interchange.robot import Loop, NamedFrame, Robot
+from substructures.interchange.robot import Loop, NamedFrame, Robot, Tendon
 from substructures.tree.document import MAX_INSTANCES
 
 #: the instance that keeps what was not cut off
@@ -57,6 +58,8 @@ def cut_robot(robot: Robot, links: Sequence[str], options: Options, name: str | 
     tree: dict[str, Any] = {"name": library, **gravity_of(robot), "instances": documents}
     if robot.loops:
         tree["closures"] = [_closure(loop, pieces, robot, instances, parts) for loop in robot.loops]
+    if loads := _loads(robot, pieces, instances, parts):
+        tree["loads"] = loads
     return TreeOfFile(tree, _names(instances, parts), _bindings(robot, instances, parts))
 
 
@@ -106,7 +109,43 @@ def _robot_of(robot: Robot, piece: str, pieces: Mapping[str, str]) -> Robot:
     frames = tuple(frame for frame in (*ends, *robot.frames) if pieces[frame.link] == piece)
     moved = {motion.name for link in links for motion in link.motions}
     mimics = tuple(mimic for mimic in robot.mimics if mimic.joint in moved)
-    return replace(robot, links=links, frames=frames, mimics=mimics, loops=())
+    tendons = tuple(tendon for tendon in robot.tendons if _home(tendon, robot, pieces) == piece)
+    return replace(robot, links=links, frames=frames, mimics=mimics, loops=(), tendons=tendons)
+
+
+def _home(tendon: Tendon, robot: Robot, pieces: Mapping[str, str]) -> str | None:
+    """The part that a tendon is a load of; None where it is one of the tree."""
+    carriers = {motion.name: link.name for link in robot.links for motion in link.motions}
+    parents: dict[str, str | None] = {link.name: link.parent for link in robot.links}
+    links = [*(carriers[joint] for joint, _ in tendon.joints), *(link for link, _ in tendon.points)]
+    found = {pieces[link] for link in links if link is not None}
+    piece = found.pop() if len(found) == 1 else None
+    # of a part that is mounted on another one, what carries all is not the world
+    return None if piece is None or (None in links and parents.get(piece) is not None) else piece
+
+
+def _loads(
+    robot: Robot, pieces: Mapping[str, str], instances: Mapping[str, str], parts: Mapping[str, PartOfFile]
+) -> list[dict[str, Any]]:
+    """The tendons between several parts; joints that follow others have no coordinate in a tree."""
+    coordinates: dict[str, str] = {}
+    for piece, part in parts.items():
+        moved = {relation["coordinate"] for relation in part.definition.get("relations", ())}
+        own = part.coordinates.items()
+        coordinates |= {joint: f"{instances[piece]}.{name}" for joint, name in own if name not in moved}
+
+    def point(link: str | None, at: Triple) -> dict[str, Any]:
+        place = place_of({} if link is None else parts[pieces[link]].seats, link, at)
+        return place | {"frame": WORLD if link is None else f"{instances[pieces[link]]}.{place['frame']}"}
+
+    loads, called = [], Names()
+    for tendon in (each for each in robot.tendons if _home(each, robot, pieces) is None):
+        if all(joint in coordinates for joint, _ in tendon.joints):
+            loads += [{"name": called.new(tendon.name), **load} for load in tendon.loads(coordinates, point)]
+        else:
+            message = "a tendon over joints of several parts, one of which moves with another, is left out"
+            robot.report.lost(tendon.place, message)
+    return loads
 
 
 def _options(robot: Robot, piece: str, options: Options) -> Options:

@@ -156,17 +156,19 @@ def _numbers(
     """Of every quantity both sides at random states, in the order of a, and the states."""
     states = {name: rng.uniform(-1, 1, (STATES, a.model.dof)) for name in ("q", "qd")}
     place = np.argsort(order)
-    names = list(QUANTITIES)
-    ours = a.evaluate(names, values, **states)
-    theirs = b.evaluate(names, values, **{name: x[:, place] for name, x in states.items()})
-    result = {}
+    names, own = list(QUANTITIES), {name: x[:, place] for name, x in states.items()}
+    # what varies beside the state: the time, and inputs of both sides
+    t, shared = rng.uniform(0.5, 1.5, STATES), sorted({*a.model.input_names} & {*b.model.input_names})
+    inputs = {name: rng.uniform(-1, 1, STATES) for name in shared if not name.startswith("tau.")}
+    ours, theirs = (s.evaluate(names, values, **x, t=t, inputs=inputs) for s, x in ((a, states), (b, own)))
+    result, told = {}, {**states, "t": t[:, None]}
     for name in names:
         other = np.asarray(theirs[name], dtype=float)[:, order]
         other = other[:, :, order] if name == "metric" else other
-        result[name] = np.asarray(ours[name], dtype=float), other, states
-    loops = a.closures(values, states["q"]), b.closures(values, states["q"][:, place])
+        result[name] = np.asarray(ours[name], dtype=float), other, told
+    loops = [s.closures(values, x["q"], t=t, inputs=inputs) for s, x in ((a, states), (b, own))]
     for name, rows in loops[0].items():
-        result[name] = rows, loops[1][name][:, :, order] if name == "closure.jacobian" else loops[1][name], states
+        result[name] = rows, loops[1][name][:, :, order] if name == "closure.jacobian" else loops[1][name], told
     return result
 
 

@@ -10,11 +10,11 @@ from typing import Any
 from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Options, PartOfFile, as_part
 from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
-from substructures.interchange.cut_rows import cut_rows
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
 from substructures.interchange.report import MOST_REMARKS, Report
 from substructures.interchange.robot import Robot
+from substructures.interchange.rows.cut import cut_rows
 
 #: most characters of the name of a file that are kept
 _LONGEST = 200

@@ -7,14 +7,15 @@ from typing import Any
 
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
-from substructures.interchange.files.content import is_par, is_table, is_xml
+from substructures.interchange.files.content import is_par, is_table, is_usd, is_xml
 from substructures.interchange.mjcf.reader import read_mjcf
-from substructures.interchange.report import Report, refuse
+from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Robot, tell_of_missing_masses
+from substructures.interchange.rows.symoro import read_par
+from substructures.interchange.rows.tables import read_csv, read_table
 from substructures.interchange.sdf.reader import read_sdf
-from substructures.interchange.symoro import read_par
-from substructures.interchange.tables import read_csv, read_table
 from substructures.interchange.urdf.reader import read_urdf
+from substructures.interchange.usd.reader import read_usd
 from substructures.interchange.xml import Node, read_xml
 
 #: a row of a table without its head
@@ -24,14 +25,14 @@ Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 _ROOTS: Mapping[str, tuple[str, Reader]] = {
     "robot": ("urdf", lambda root, _: read_urdf(root)),
     "mujoco": ("mjcf", read_mjcf),
-    "sdf": ("sdf", lambda root, _: read_sdf(root)),
+    "sdf": ("sdf", read_sdf),
 }
 #: most bytes of what is no XML: 200 rows with long expressions
 MAX_ROWS = 2**20
-KINDS = ("urdf", "mjcf", "sdf", "dh", "par")
+KINDS = ("urdf", "mjcf", "sdf", "usd", "dh", "par")
 _NO_XML = (
-    "this is neither XML (URDF, MJCF, SDF), nor a SYMORO file, nor a table of Denavit-Hartenberg parameters: the first "
-    "line of a table names its columns, a, alpha, d, theta among them (name,type,a,alpha,d,theta,mass, ...)"
+    "this is neither XML (URDF, MJCF, SDF), nor USD, nor a SYMORO file, nor a table of Denavit-Hartenberg parameters: "
+    "the first line of a table names its columns, a, alpha, d, theta among them (name,type,a,alpha,d,theta,mass, ...)"
 )
 
 
@@ -56,6 +57,12 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     """The kind of a file and the robot in it; ``kind``: what it has to be (None: anything). Raises InvalidDocument."""
     if kind is not None and kind not in KINDS:
         raise InvalidDocument.at("", "unknown-kind", f"kind '{kind[:40]}' is none of {', '.join(KINDS)}")
+    if is_usd(data):
+        if kind not in (None, "usd"):
+            raise refuse(Place(0, "USD"), "wrong-kind", f"this is USD, not {kind.upper()}")
+        robot = read_usd(data, included)
+        tell_of_missing_masses(robot)
+        return "usd", robot
     if data.strip() and b"\0" not in data and not is_xml(data):  # it is text
         raise InvalidDocument.at("", "unknown-format", _NO_XML)
     root = read_xml(data)

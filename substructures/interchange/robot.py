@@ -9,12 +9,12 @@ with anchors and axes in the axes of the link. A link without motions is fixed.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.errors import among
-from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, is_zero
+from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, decimal_of, is_zero, value
 from substructures.interchange.report import LONGEST, Place, Report, refuse
 
 MotionType = Literal["revolute", "prismatic", "spherical", "free"]
@@ -35,6 +35,42 @@ class Motion:
     damping: Number = ZERO
     armature: Number = ZERO
     limits: tuple[Number, Number] | None = None
+
+    def turning_damping(self, coordinates: list[str]) -> list[dict[str, object]]:
+        """The moment -c omega of a joint that turns by yaw, pitch, roll, as loads on its coordinates.
+
+        omega^2 = yaw'^2 + pitch'^2 + roll'^2 - 2 yaw' roll' sin(pitch), and Q_a = -c/2 d(omega^2)/dq'^a.
+        """
+        if is_zero(self.damping):
+            return []
+        yaw, pitch, roll = coordinates
+        forces = {
+            yaw: f"-({self.damping})*({yaw}' - {roll}'*sin({pitch}))",
+            pitch: f"-({self.damping})*{pitch}'",
+            roll: f"-({self.damping})*({roll}' - {yaw}'*sin({pitch}))",
+        }
+        return _on(forces)
+
+    def turning_spring(self, coordinates: list[str]) -> list[dict[str, object]]:
+        """The moment -k theta n of a joint that turns by yaw, pitch, roll, theta n its rotation vector, |theta| <= pi.
+
+        theta n = 2 f v of the quaternion (w, v), f = atan(s/w)/s with s = |v|, which is 0/0 at rest, with the limit 1.
+        For small s it is 1 + s^2/6, so that s = sqrt(v^2 + 1e-18) in place of |v| changes it by less than 1e-18: there
+        is a number everywhere, and a derivative, but at half a turn, where the moment changes its sign.
+        Q_a = -k theta n . omega_a, omega_a = e_z, (-sin(yaw), cos(yaw), 0) and, as R n = n, e_x in the body.
+        """
+        if is_zero(self.stiffness):
+            return []
+        (cy, sy), (cp, sp), (cr, sr) = ((f"cos({q}/2)", f"sin({q}/2)") for q in coordinates)
+        w = f"({cr}*{cp}*{cy} + {sr}*{sp}*{sy})"
+        x = f"({sr}*{cp}*{cy} - {cr}*{sp}*{sy})"
+        y = f"({cr}*{sp}*{cy} + {sr}*{cp}*{sy})"
+        z = f"({cr}*{cp}*{sy} - {sr}*{sp}*{cy})"
+        s = f"sqrt({x}^2 + {y}^2 + {z}^2 + 1e-18)"
+        moment = f"-2*({self.stiffness})*atan({s}/{w})/{s}"
+        yaw, pitch, roll = coordinates
+        ways = {yaw: z, pitch: f"(cos({yaw})*{y} - sin({yaw})*{x})", roll: x}
+        return _on({q: f"{moment}*{way}" for q, way in ways.items()})
 
 
 @dataclass(frozen=True)
@@ -115,18 +151,80 @@ class Mimic:
         return {**told, "constraint": constraint}
 
 
+def _on(forces: Mapping[str, str]) -> list[dict[str, object]]:
+    """Forces on coordinates as loads."""
+    return [{"type": "joint", "coordinate": q, "force": force} for q, force in forces.items()]
+
+
 @dataclass(frozen=True)
 class Loop:
-    """A cut joint: ``kind`` of a closure between points fixed in links (None: the world), axes of the second one."""
+    """A cut joint: ``kind`` of a closure of frames fixed in links (None: the world), whose third axes are its own."""
 
     name: str
-    kind: Literal["ball", "weld"]
+    kind: Literal["ball", "weld", "pin", "slider"]
     link: str
     other: str | None
     position: Triple
     rpy: Triple
     other_position: Triple
     other_rpy: Triple
+
+
+@dataclass(frozen=True)
+class Tendon:
+    """A spring and damper on a length: L = sum k_i q_i of ``joints``, or the one along ``points`` of links.
+
+    Its tension is k p + c L' with p = L - high beyond ``rest`` = (low, high), L - low below, and 0 within.
+    """
+
+    name: str
+    place: Place
+    stiffness: Number
+    damping: Number
+    rest: tuple[Number, Number]
+    joints: tuple[tuple[str, Number], ...] = ()
+    points: tuple[tuple[str | None, Triple], ...] = ()  #: by links, None: the world
+
+    def loads(self, names: Mapping[str, str], point: Callable[[str | None, Triple], object]) -> list[dict[str, object]]:
+        """As loads; ``names``: of coordinates, by joints; ``point``: a point of a link, as cables have them."""
+        if self.joints:
+            return [*self._potential(names), *self._dampers(names)]
+        return self._cables([point(*each) for each in self.points])
+
+    def _potential(self, names: Mapping[str, str]) -> list[dict[str, object]]:
+        """V = k/2 p^2, as k/4 x (x + |x|) of x = L - high and x = low - L where it is slack in between."""
+        if is_zero(self.stiffness):
+            return []
+        length = " + ".join(f"({k})*{names[joint]}" for joint, k in self.joints)
+        low, high = self.rest
+        if low == high:
+            return [{"type": "potential", "potential": f"({self.stiffness})/2*({length} - ({low}))^2"}]
+        sides = (f"({length} - ({high}))", f"(({low}) - ({length}))")
+        squares = " + ".join(f"{x}*({x} + abs({x}))" for x in sides)
+        return [{"type": "potential", "potential": f"({self.stiffness})/4*({squares})"}]
+
+    def _dampers(self, names: Mapping[str, str]) -> list[dict[str, object]]:
+        """Q_a = -c L' dL/dq^a."""
+        if is_zero(self.damping):
+            return []
+        rate = " + ".join(f"({k})*{names[joint]}'" for joint, k in self.joints)
+        return [
+            {"type": "joint", "coordinate": names[joint], "force": f"-({self.damping})*({k})*({rate})"}
+            for joint, k in self.joints
+        ]
+
+    def _cables(self, along: list[object]) -> list[dict[str, object]]:
+        """One; where it is slack between two lengths k (L - low) - k max(0, L - low) + k max(0, L - high)."""
+        low, high = self.rest
+        cable: dict[str, object] = {"type": "cable", "along": along}
+        whole = cable | {"stiffness": self.stiffness, "damping": self.damping, "length": low}
+        if low == high or is_zero(self.stiffness):
+            return [whole]
+        beyond = cable | {"stiffness": self.stiffness, "length": high, "slack": True}
+        if value(low) > 0:
+            back = decimal_of(-value(self.stiffness))
+            return [whole, cable | {"stiffness": back, "length": low, "slack": True}, beyond]
+        return [beyond] if is_zero(self.damping) else [cable | {"damping": self.damping}, beyond]
 
 
 @dataclass(frozen=True)
@@ -141,6 +239,7 @@ class Robot:
     frames: tuple[NamedFrame, ...] = ()
     mimics: tuple[Mimic, ...] = ()
     loops: tuple[Loop, ...] = ()
+    tendons: tuple[Tendon, ...] = ()
     gravity: Triple | None = None
     gravity_place: Place | None = None
 

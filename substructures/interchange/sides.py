@@ -16,7 +16,7 @@ from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.regressor import RegressorModel, regressor
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import TreeSpec, require_unconstrained
 from substructures.tree.model import Model, couple
 
 #: a tree and the parts of its instances
@@ -40,6 +40,7 @@ class Side:
     @classmethod
     def of_tree(cls, spec: TreeSpec, parts: Mapping[str, Part]) -> Side:
         """A tree with the parts of its instances. Raises InvalidDocument, TooLarge as :func:`couple`."""
+        require_unconstrained((each.name for each in spec.velocity_constraints), "equivalences")
         model = couple(spec, parts)
         single = f"{spec.instances[0].name}." if len(spec.instances) == 1 else ""
         return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates), single)
@@ -64,15 +65,17 @@ class Side:
         """Values by names as they are compared, by this model's names; those that it does not have are left out."""
         return {self.parameters[name]: x for name, x in values.items() if name in self.parameters}
 
-    def evaluate(self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None) -> Any:
-        """Numbers of quantities for these parameters, by their names as they are compared."""
-        return evaluate(self.model, names, q, qd, parameters=self.given(parameters))
+    def evaluate(
+        self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None, **more: Any
+    ) -> Any:
+        """Numbers of quantities for these parameters, by their names as they are compared; ``more``: t, inputs."""
+        return evaluate(self.model, names, q, qd, parameters=self.given(parameters), **more)
 
-    def closures(self, parameters: Mapping[str, float], q: Array) -> dict[str, Array]:
+    def closures(self, parameters: Mapping[str, float], q: Array, **more: Any) -> dict[str, Array]:
         """Residuals phi (N, m) and Jacobians dphi/dq (N, m, n) of all closures; nothing where there are none."""
         if not self.model.closures:
             return {}
-        given = {"q": q, "parameters": self.given(parameters)}
+        given = {"q": q, "parameters": self.given(parameters), **more}
         values = symbol_values(self.model, given, read_states(self.model, given, None), CLOSURES)
         return interpret_in_blocks(self.model.program, values, CLOSURES, len(q))
 

@@ -35,19 +35,21 @@ _DECLARATION = re.compile(rb"<\?xml\s[^<>]{0,200}\?>")
 
 @dataclass(slots=True)
 class Node:
-    """An element: tag (without namespace), attributes, children, text, line."""
+    """An element: tag (without namespace), attributes, children, text, line; ``file``: of one that is included."""
 
     tag: str
     attributes: dict[str, str]
     line: int
     children: list[Node] = field(default_factory=list)
     text: str = ""
+    file: str = ""
 
     @property
     def place(self) -> Place:
         """Line and element, with the attribute that names it."""
         named = next((f' {k}="{self.attributes[k][:SHOWN]}"' for k in _NAMED if k in self.attributes), "")
-        return Place(self.line, f"<{self.tag[:SHOWN]}{named}>")
+        file = f" of {self.file[:SHOWN]}" if self.file else ""
+        return Place(self.line, f"<{self.tag[:SHOWN]}{named}>{file}")
 
     def all(self, *tags: str) -> Iterator[Node]:
         """The children with one of the tags."""
@@ -92,9 +94,9 @@ def numbers_in(text: str, count: int | None, place: Place, name: str) -> tuple[N
 class _Builder(ContentHandler):
     """Builds nodes; counts depth and elements."""
 
-    def __init__(self, parser: DefusedExpatParser) -> None:
+    def __init__(self, parser: DefusedExpatParser, file: str) -> None:
         super().__init__()
-        self.parser = parser
+        self.parser, self.file = parser, file
         self.stack: list[Node] = []
         self.root: Node | None = None
         self.count = 0
@@ -105,7 +107,7 @@ class _Builder(ContentHandler):
         self.spaces |= {key[6:]: uri for key, uri in given.items() if key.startswith("xmlns:")}
         plain = {key: x for key, x in given.items() if ":" not in key and key != "xmlns"}
         prefixed = {_local(key): x for key, x in given.items() if ":" in key and not key.startswith("xmlns:")}
-        node = Node(_local(name), prefixed | plain, self.parser.getLineNumber())
+        node = Node(_local(name), prefixed | plain, self.parser.getLineNumber(), file=self.file)
         self.count += 1
         if self.count > MAX_ELEMENTS:
             raise refuse(node.place, "too-large", f"more than {MAX_ELEMENTS:,} elements")
@@ -149,23 +151,26 @@ def _declared_first(data: bytes) -> bytes:
     return declaration[0] + data[:here].removeprefix(b"\xef\xbb\xbf") + data[declaration.end() :]
 
 
-def read_xml(data: bytes) -> Node:
-    """The root element. Raises InvalidDocument with the line for what is not well-formed, too large, or dangerous."""
+def read_xml(data: bytes, file: str = "") -> Node:
+    """The root element; ``file``: the name of one that is included, which places tell.
+
+    Raises InvalidDocument with the line for what is not well-formed, too large, or dangerous.
+    """
     if len(data) > MAX_BYTES:
         raise InvalidDocument.at("", "too-large", f"the file has {len(data):,} bytes; the limit is {MAX_BYTES:,}")
     if _BEGINNING.match(data[:200]):
         raise refuse(Place(1, "<html>"), "html", "this is a web page, no robot: download the raw file")
     parser = DefusedExpatParser(forbid_dtd=True, forbid_entities=True, forbid_external=True)
-    target = _Builder(parser)
+    target, of_file = _Builder(parser, file), f" of {file[:SHOWN]}" if file else ""
     parser.setContentHandler(target)
     try:
         parser.feed(_declared_first(data))
         parser.close()
     except DefusedXmlException as error:
         message = f"document types, entities and external files are refused ({type(error).__name__}): write them out"
-        raise refuse(Place(parser.getLineNumber() or 1, "<!DOCTYPE>"), "forbidden-xml", message) from None
+        raise refuse(Place(parser.getLineNumber() or 1, f"<!DOCTYPE>{of_file}"), "forbidden-xml", message) from None
     except SAXParseException as error:
-        place = Place(error.getLineNumber() or 1, "XML")
+        place = Place(error.getLineNumber() or 1, f"XML{of_file}")
         raise refuse(place, "not-well-formed", error.getMessage()) from None
     except (ValueError, LookupError) as error:  # encodings that are not known, or not of one byte
         raise refuse(Place(1, "<?xml?>"), "encoding", f"{error}: save the file as UTF-8") from None

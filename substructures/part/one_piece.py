@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import Any
 
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.composite_form import composites, joint_momentum
-from substructures.mechanics.kinematics import INTERFACE, base_functions, links
+from substructures.mechanics.composite_form import JointMomentum, composites, joint_momentum
+from substructures.mechanics.kinematics import INTERFACE, Link, base_functions, links
 from substructures.mechanics.linear3 import Vector
-from substructures.mechanics.parallel_axes import absolute
+from substructures.mechanics.parallel_axes import ByAngles, absolute
 from substructures.part.definition import Definition
 from substructures.part.formulas import own_dynamics, parallel_axes
 from substructures.part.mechanism import Mechanism, mechanism
@@ -27,16 +28,28 @@ def derive_in_one_piece(definition: Definition, gravity: tuple[Any, Any, Any] = 
     return program(m.graph, equations(m, acceleration), m.scope.symbols)
 
 
+def metric_in_one_piece(definition: Definition) -> Program:
+    """The output metric alone, of a definition without relations whose base is at rest. Raises InvalidDocument."""
+    m = mechanism(definition)
+    chain = links(m.joints)
+    outputs = own_dynamics(m, chain, base_functions(chain), _momenta(m, chain), ByAngles(), large=True)
+    return program(m.graph, outputs, m.scope.symbols)
+
+
 def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     """The outputs metric, christoffel and gravity; ``gravity``: acceleration in base axes, expressions."""
     chain = links(m.joints)
     before = dict.fromkeys(range(len(chain)), gravity)
     by_angles = parallel_axes(chain, m.own).by_angles(absolute(chain), True, before)
-    carried = composites(m.joints, m.own)
-    momenta = [joint_momentum(link.s, carried[c]) for c, link in enumerate(chain)]
+    momenta = _momenta(m, chain)
     outputs = own_dynamics(m, chain, base_functions(chain), momenta, by_angles)
     gamma = {INTERFACE: gravity}
     for c, link in enumerate(chain):
         gamma[c] = link.rotation.forward(gamma[link.parent])
     Q = by_angles.gravity([gamma[c] for c in range(len(chain))], momenta)
     return of_coordinates(outputs | {"gravity": array((len(chain),), lambda c: Q[c])}, m.ratios)
+
+
+def _momenta(m: Mechanism, chain: Sequence[Link]) -> list[JointMomentum]:
+    carried = composites(m.joints, m.own)
+    return [joint_momentum(link.s, carried[c]) for c, link in enumerate(chain)]

@@ -5,7 +5,8 @@ With the momenta p_a = dL/dq'^a = g_ab q'^b as symbols ``p.<coordinate>`` [kg m^
     H(q, p, t) = 1/2 g^ab p_a p_b + V           q'^a = dH/dp_a = g^ab p_b
     p'_a = -dH/dq^a + F_a = Q_a + Gamma_bac q'^b q'^c       where F_a are the forces without a potential
 
-since d_a g_bc = Gamma_bac + Gamma_cab, and all velocities, those in forces too, are taken at q' = g^-1 p.
+since d_a g_bc = Gamma_bac + Gamma_cab, and all velocities, those in forces too, are taken at q' = g^-1 p. Where motions
+are given, q'^a = g^ab (p_b - g_b0), H = T_2 - T_0 + V, and p'_a has d_a (g_b0 q'^b + 1/2 g_00) besides.
 (W. R. Hamilton, 1835; E. J. Routh, Advanced Rigid Dynamics, 1892; notation.md, section 7.)
 """
 
@@ -14,11 +15,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from substructures.errors import TooLarge
+from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol
 from substructures.quantities.derivatives import factors_of
 from substructures.quantities.numbers.workspace import Workspace, vector
-from substructures.tree.model import Model, require_stored
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import require_stored
 
 MOMENTA = ("hamiltonian", "canonical_equations")
 PIVOTS = "pivots"
@@ -62,10 +65,14 @@ def christoffel_second_kind(model: Model, max_nodes: int) -> Program:
 
 
 def hamiltonian(model: Model, max_nodes: int) -> Program:
-    """``hamiltonian`` (): H = 1/2 g^ab p_a p_b + V [J], and ``pivots``. Raises TooLarge, SingularMetric."""
+    """``hamiltonian`` (): H = 1/2 g^ab (p_a - g_a0) (p_b - g_b0) - 1/2 g_00 + V [J], and ``pivots``.
+
+    Raises TooLarge, SingularMetric.
+    """
     r = Workspace(model)
     p, rates, told = _rates(r, max_nodes)
     energy = r.graph.sum(x * y for x, y in zip(p, rates, strict=True)) / 2 + r.scalar("potential_energy")
+    energy = energy - r.scalar("g_00") / 2 if model.driven else energy
     return r.program({"hamiltonian": Formulas((), {(): energy}), PIVOTS: told})
 
 
@@ -82,14 +89,23 @@ def canonical_equations(model: Model, max_nodes: int) -> Program:
     found = [forces.get((a,), r.graph.zero) for a in range(r.n)]
     for (b, a, c), gamma in r.elements("christoffel").items():
         found[a] = found[a] + gamma * rates[b] * rates[c]
+    if model.driven:
+        # d_a of T_1 + T_0, T_1 at these velocities
+        drives = [*(r.elements("g_a0").get((a,), r.graph.zero) for a in range(r.n)), r.scalar("g_00") / 2]
+        slopes = [
+            r.graph.sum(x * y for x, y in zip(column, [*rates, r.graph.one], strict=True))
+            for column in zip(*gradient(drives, model.coordinates), strict=True)
+        ]
+        found = [x + y for x, y in zip(found, slopes, strict=True)]
     return r.program({"coordinate_rates": vector(rates), "momentum_rates": vector(found), PIVOTS: told})
 
 
 def _rates(r: Workspace, max_nodes: int) -> tuple[Sequence[Expr], Sequence[Expr], Formulas]:
-    """p_a, q'^a = g^ab p_b, and the pivots."""
+    """p_a without g_a0, q'^a = g^ab p_b of it, and the pivots."""
     factors, told = factors_of(r, max_nodes)
     names = [momentum(name) for name in r.model.coordinates]
     for name, joint in zip(names, r.model.joints, strict=True):
         r.symbols[name] = Symbol(name, "parameter", UNITS[joint])
-    p = [r.graph.symbol(name) for name in names]
+    mixed = r.elements("g_a0") if r.model.driven else {}
+    p = [r.graph.symbol(name) - mixed.get((a,), 0) for a, name in enumerate(names)]
     return p, factors.solve(p), told[PIVOTS]

@@ -19,7 +19,7 @@ from substructures.expr.program import Program
 from substructures.tree.model import Model
 
 #: outputs of a model: the equations of motion with their closures
-DYNAMICS = ("metric", "bias", "forces", "potential_energy", "closure.residual", "closure.jacobian")
+DYNAMICS = ("metric", "bias", "forces", "potential_energy", "closure.residual", "closure.jacobian", "g_a0", "g_00")
 
 
 def certified(

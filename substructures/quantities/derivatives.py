@@ -30,7 +30,7 @@ FD = "forward_dynamics"
 #: kinds of symbols that have a direction
 VARIED = frozenset(("coordinate", "velocity", "acceleration", "input"))
 BY_STATE = "evaluate it at states (numbers take closures), or use velocity equations with constraints of type 'closure'"
-SINGULAR = "the metric is singular or not positive definite: check masses, inertias and coordinates"
+SINGULAR = "singular-metric"
 
 
 class SingularMetric(InvalidDocument):
@@ -125,7 +125,8 @@ def factors_of(r: Workspace, max_nodes: int) -> tuple[Factors[Expr], dict[str, F
     try:
         factors = factorised(r.n, metric)
     except ZeroDivisionError:
-        raise SingularMetric.at("", "singular-metric", SINGULAR) from None
+        message = "the metric is singular or not positive definite: check masses, inertias and coordinates"
+        raise SingularMetric.at("", SINGULAR, message) from None
     # D_k / |g_kk|: 1 for a coordinate alone, 0 where others leave it no inertia
     sizes = [r.graph.function("abs", metric[k, k]) for k in range(r.n)]
     pivots = [pivot / size for pivot, size in zip(factors.pivots, sizes, strict=True)]

@@ -13,7 +13,8 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.memo import ProgramCache
 from substructures.quantities.numbers.workspace import ID, Workspace, vector
 from substructures.quantities.quantity import DERIVED, PROGRAMS
-from substructures.tree.model import Model, require_stored
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import require_stored
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
 DYNAMICS = ("metric", "bias", "forces")
@@ -39,26 +40,21 @@ def inverse_dynamics(model: Model, _: int) -> Program:
 
 
 def kinetic_energy(model: Model, _: int) -> Program:
-    """1/2 g_ab q'^a q'^b."""
+    """1/2 g_ab q'^a q'^b, and what given motions add."""
     r = Workspace(model)
-    # p_a = g_ab q'^b, then 2 T = p_a q'^a
-    momentum = r.times_velocity(r.elements("metric"))
-    twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
-    return r.program({"kinetic_energy": Formulas((), {(): twice / 2})})
+    return r.program({"kinetic_energy": Formulas((), {(): r.kinetic_energy})})
 
 
 def generalised_momenta(model: Model, _: int) -> Program:
-    """p_a = g_ab q'^b = dL/dq'^a."""
+    """p_a = dL/dq'^a."""
     r = Workspace(model)
-    return r.program({"generalised_momenta": Formulas((r.n,), r.times_velocity(r.elements("metric")))})
+    return r.program({"generalised_momenta": vector(r.momenta)})
 
 
 def lagrangian(model: Model, _: int) -> Program:
     """L = T - V."""
     r = Workspace(model)
-    momentum = r.times_velocity(r.elements("metric"))
-    twice = r.graph.sum(p * r.velocity_symbol(a) for (a,), p in momentum.items())
-    return r.program({"lagrangian": Formulas((), {(): twice / 2 - r.scalar("potential_energy")})})
+    return r.program({"lagrangian": Formulas((), {(): r.kinetic_energy - r.scalar("potential_energy")})})
 
 
 def power(model: Model, _: int) -> Program:
@@ -68,10 +64,10 @@ def power(model: Model, _: int) -> Program:
 
 
 def total_momentum(model: Model, _: int) -> Program:
-    """p_a q'^a for the momenta p_a of unit velocities."""
+    """p_a q'^a for the momenta p_a of unit velocities, and the momentum of given motions."""
     r, outputs = Workspace(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
-        entries = Entries()
+        entries = Entries(r.elements(f"{kind}_momentum_0") if model.driven else {})
         for (a, i), p in r.elements(f"{kind}_momentum").items():
             # p_i = p_ai q'^a: momenta are linear in the velocities
             entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.velocity_symbol(a)
@@ -86,7 +82,8 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
-    lagrangian (): T - V [J], of the forces that have a potential; generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a;
+    lagrangian (): T - V [J], of the forces that have a potential; generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a,
+    with g_a0 of given motions;
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
     power (n,): Q_a q'^a of every coordinate [W], whose sum is dT/dt;

@@ -9,9 +9,11 @@ from typing import Any, ClassVar
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, program
 from substructures.part.part import Part
+from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
 from substructures.tree.document import TreeSpec
+from substructures.tree.driven import put_in
 
 #: outputs, and the names of their rows
 Rows = tuple[Mapping[str, Formulas], Sequence[str]]
@@ -32,6 +34,11 @@ class OfParts:
         return {self.axis: self.rows} if self.axis else {}
 
 
+def _axes(name: str) -> list[int]:
+    """Those of coordinates."""
+    return [i for i, axis in enumerate(OUTPUTS[name].axes) if axis == COORDINATES]
+
+
 def formed(
     what: str,
     spec: TreeSpec,
@@ -48,6 +55,7 @@ def formed(
     assembly = assemble(spec, parts)
     try:
         outputs, rows = make(assembly)
+        outputs = put_in(assembly, outputs, {name: _axes(name) for name in outputs})
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 from substructures.expr.operations import operands
@@ -14,6 +14,7 @@ from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.assembly import assemble, joint_parents, tree_name
 from substructures.tree.document import TreeSpec
+from substructures.tree.driven import all_coordinates
 
 
 @dataclass(frozen=True)
@@ -51,7 +52,9 @@ def movers_of_tree(spec: TreeSpec, parts: Mapping[str, Part]) -> Movers:
     for m in assembly.mounted:
         of += [first + i for i in m.part.topology.moved_by]
         first += m.part.dof
-    return _movers([parent for parent, _ in parents], carriers, of)
+    found, names = _movers([parent for parent, _ in parents], carriers, of), all_coordinates(assembly)
+    free = [moved for name, moved in zip(names, found.moved, strict=True) if name not in spec.driven]
+    return replace(found, moved=tuple(free))
 
 
 def _movers(parents: Sequence[int], carriers: Mapping[str, int], of: Sequence[int]) -> Movers:

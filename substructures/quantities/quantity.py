@@ -5,8 +5,8 @@ formulas and what it needs. Signatures of exports, units of FMUs, columns of tab
 and lists of names all come from here. Nothing is imported: clients and printers read the same rows.
 
 Axes are named by the member of an answer that lists their places: ``coordinates``, ``frames`` (bodies and ports),
-``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures); those of FIXED have the
-same names everywhere, and digits are a length.
+``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures), ``driven`` (coordinates
+whose motion is given); those of FIXED have the same names everywhere, and digits are a length.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ MODEL, CONDITION, FORWARD = "model", "condition", "forward_dynamics"
 REGRESSOR, REACTIONS, POWERS = "regressor", "reactions", "powers"
 #: formulas that follow from a model by an analysis, and outputs of a part: not numbers of a tree
 ANALYSIS, PART = "analysis", "part"
-COORDINATES, FRAMES = "coordinates", "frames"
+COORDINATES, FRAMES, DRIVEN = "coordinates", "frames", "driven"
 #: axes whose places have the same names in every tree
 FIXED = {"axes": ("x", "y", "z"), "momenta": ("px", "py", "pz", "Lx", "Ly", "Lz")}
 #: of what is not in the table: all but further symbols
@@ -135,15 +135,22 @@ def _row(
 
 _stored = partial(_row, source=MODEL)
 _loops = partial(_row, source=MODEL, only="the tree has no closures")
+_given = partial(_row, source=MODEL, only="no coordinate is driven")
+_moving = partial(_row, source=MODEL, only="no coordinate of a tree with closures is driven")
 _made = partial(_row, source=ANALYSIS, is_number=False)
 _formula = partial(_row, module="formulas")
 _derivative = partial(_row, module="derivatives")
 _canonical = partial(_row, module="canonical", pivots=("pivots",))
+#: what given motions add to the metric
+_DRIVES = "g_a0 g_00"
+_H, _CANONICAL = f"metric potential_energy {_DRIVES}", f"metric bias forces {_DRIVES}"
 _SECOND, _SYMMETRIC = "christoffel_second_kind", "Gamma^a_bc = Gamma^a_cb"
 _RATES = tuple(Array(name, "coordinates", field=name) for name in ("coordinate_rates", "momentum_rates"))
 _OF_UNIT = ("linear_momentum", "angular_momentum")
+_OF_MOTION = " ".join((*_OF_UNIT, *(f"{name}_0" for name in _OF_UNIT)))
 _MOMENTUM = (Array("linear", "axes", "kg m/s", "linear"), Array("angular", "axes", "kg m^2/s", "angular"))
 _BINET = "Jxx is Binet's integral of x^2 dm, not the moment of inertia about the x axis: see moments_of_inertia"
+_FLOATING = "the rates are vx vy vz wx wy wz of the base, in its own axes, then those of the coordinates"
 _PIVOTS = ("pivots", "inertias")
 _ROWS = (
     # outputs of a model (substructures.tree.model_outputs, substructures.tree.closures)
@@ -168,6 +175,22 @@ _ROWS = (
     _loops("closure.acceleration", "q qd p", "rows"),
     _loops("closure.direction", "q p", "rows axes"),
     _loops("closure.alignment", "q p", "rows"),
+    # of given motions (substructures.tree.driven)
+    _given("g_a0", "t q u p", "coordinates"),
+    _given("g_00", "t q u p"),
+    _given("Gamma_ab0", "t q u p", "coordinates coordinates"),
+    _given("Gamma_a00", "t q u p", "coordinates"),
+    _given("T_2", "t q qd u p", unit="J"),
+    _given("T_1", "t q qd u p", unit="J"),
+    _given("T_0", "t q u p", unit="J"),
+    _given("drive_forces", "t q qd qdd u p", DRIVEN, requires=("qdd",)),
+    _given("drive_powers", "t q qd qdd u p", DRIVEN, "W", requires=("qdd",)),
+    _moving("closure.rate", "t q u p", "rows"),
+    _moving("closure.drives", "t q u p", f"rows {DRIVEN}"),
+    _given("linear_momentum_0", "t q u p", "axes", "kg m/s"),
+    _given("angular_momentum_0", "t q u p", "axes", "kg m^2/s"),
+    _given("U_0", "t q u p", "frames axes", "m/s"),
+    _given("Omega_0", "t q u p", "frames axes", "rad/s"),
     _stored(
         "kinematics",
         "q p",
@@ -185,17 +208,17 @@ _ROWS = (
     _derivative("inverse_dynamics_derivative", "t q qd qdd u p", "coordinates", requires=("qdd", "along")),
     _derivative(FORWARD, "t q qd u p", "coordinates", symbol=r"\ddot{q}", pivots=_PIVOTS),
     _derivative("forward_dynamics_derivative", "t q qd u p", "coordinates", requires=("along",), pivots=_PIVOTS),
-    _formula("kinetic_energy", "q qd p", unit="J", symbol="T", needs="metric"),
-    _formula("lagrangian", "t q qd p", unit="J", symbol="L", needs="metric potential_energy"),
-    _formula("generalised_momenta", "q qd p", "coordinates", needs="metric"),
+    _formula("kinetic_energy", "q qd p", unit="J", symbol="T", needs=f"metric {_DRIVES}"),
+    _formula("lagrangian", "t q qd p", unit="J", symbol="L", needs=f"metric potential_energy {_DRIVES}"),
+    _formula("generalised_momenta", "q qd p", "coordinates", needs=f"metric {_DRIVES}"),
     _formula("power", "t q qd u p", "coordinates", "W", "P", needs="forces"),
     # in numbers that of the motion, as formulas those of unit velocities
     _row("momentum", "q p", source="total_momentum", arrays=_MOMENTUM, written=_OF_UNIT),
-    _formula("total_momentum", "q qd p", arrays=_MOMENTUM, is_number=False, needs=" ".join(_OF_UNIT)),
+    _formula("total_momentum", "q qd p", arrays=_MOMENTUM, is_number=False, needs=_OF_MOTION),
     _canonical("inverse_metric", "q p", "coordinates coordinates", symbol="g", raised=2, needs="metric"),
     _canonical(_SECOND, "q p", "coordinates coordinates coordinates", rule=_SYMMETRIC, needs="metric christoffel"),
-    _canonical("hamiltonian", "t q p", unit="J", symbol="H", of_momenta=True, needs="metric potential_energy"),
-    _canonical("canonical_equations", "t q u p", arrays=_RATES, of_momenta=True),
+    _canonical("hamiltonian", "t q p", unit="J", symbol="H", of_momenta=True, needs=_H),
+    _canonical("canonical_equations", "t q u p", arrays=_RATES, of_momenta=True, needs=_CANONICAL),
     # what follows from the parts of a tree
     _row(REGRESSOR, "q qd qdd p", "coordinates columns", requires=("qdd",), by="regressor.regressor", of_parts=True),
     _row("inertial_parameters", "p", "columns", source=REGRESSOR, note=_BINET),
@@ -226,6 +249,24 @@ _ROWS = (
         of_parts=True,
     ),
     _row("centroidal_momentum_matrix", "q p", "momenta coordinates", source="centroidal", symbol="A"),
+    _row(
+        "floating_metric",
+        "q p",
+        "rates rates",
+        symbol="g",
+        by="floating.floating_metric",
+        of_parts=True,
+        note=_FLOATING,
+    ),
+    _row(
+        "floating_christoffel",
+        "q p",
+        "rates rates rates",
+        symbol=r"\Gamma",
+        by="floating.floating_christoffel",
+        of_parts=True,
+        note=_FLOATING,
+    ),
     # groups of formulas, outputs of parts, and what analyses make, or exports in two stages
     _stored("closures", "q qd p", arrays=(), written=_CLOSURES, is_number=False),
     _row("interface", "q p", source=PART, arrays=(), written=_INTERFACE, is_number=False),

@@ -50,7 +50,8 @@ class ReactionModel(OfParts):
     """Reactions of a tree.
 
     ``program``: OUTPUTS, (rows, 3) each, functions of t, q, q', q'', inputs, free parameters, and of the multipliers
-    ``lambda.<closure>.<row>`` [N, N m] of closures. ``rows``: the joints by their coordinates, then the seats of the
+    ``lambda.<closure>.<row>`` [N, N m] of closures, ``lambda.<constraint>`` or ``lambda.<constraint>.<row>`` [N] of
+    rolling contacts and knife edges. ``rows``: the joints by their coordinates, then the seats of the
     instances, ``instance.base``: what carries an instance exerts on it, in its interface frame. In the joint's frame
     the third axis is that of the joint, and the moment is about the origin of the body frame (O_k + tau e3).
     """

@@ -41,6 +41,7 @@ from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.driven import all_coordinates, driven_names
 from substructures.tree.inverse_dynamics import body_motions
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import rate_symbols
@@ -68,7 +69,8 @@ class RegressorModel:
     body frame in its axes. A link is a moving body with all that is fixed to it in the same part; ``instance.base``
     is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
     joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
-    tree; their forces, which Y pi has to balance with the actuators, are not part of it. ``regrouping``: output
+    tree; their forces, which Y pi has to balance with the actuators, are not part of it; ``driven``: coordinates whose
+    motion is given, which have no rows. ``regrouping``: output
     ``relations`` (r, 10 links + k): coefficients, functions of the free parameters, with which columns of Y add up to
     zero, whatever moves; the last k columns are those of massless carriers (:mod:`.regrouping`).
     """
@@ -81,6 +83,7 @@ class RegressorModel:
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
     regrouping: Program
     closures: tuple[ClosureRows, ...] = ()
+    driven: tuple[str, ...] = ()
 
     @property
     def labels(self) -> Mapping[str, Any]:
@@ -139,15 +142,17 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     """
     result, names, parameters = formed("regressor", spec, parts, _outputs, regressor_outputs, max_nodes)
     assembly, used = assemble(spec, parts), {symbol.name for symbol in result.symbols}
+    free = {name: kind for name, kind in all_coordinates(assembly).items() if name not in spec.driven}
     return RegressorModel(
         result,
-        tuple(f"{i.name}.{c}" for i, m in _pairs(assembly) for c in m.part.coordinates),
-        "".join(m.part.joints for m in assembly.mounted),
+        tuple(free),
+        "".join(free.values()),
         names,
         tuple(unit for name in names[::10] for _, unit in inertia_names(name.removesuffix(".m"))),
         {name: value for name, value in parameters.items() if name in used},
         _regrouping(assembly),
         tuple(cut.rows for cut in assembly.cuts),
+        driven_names(assembly),
     )
 
 

@@ -19,6 +19,7 @@ from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.quantity import (
     CONDITION,
+    DRIVEN,
     FORWARD,
     FRAMES,
     MODEL,
@@ -31,8 +32,9 @@ from substructures.quantities.quantity import (
     made_of,
     outputs_of,
 )
-from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, require_stored
+from substructures.tree.document import TreeSpec, require_unconstrained, require_undriven
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import require_stored
 from substructures.tree.plausibility import Plausibility
 
 #: outputs that a large model does not have as formulas, in numbers from the parts of the tree
@@ -48,6 +50,10 @@ def of_parts(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NOD
     Raises InvalidDocument, TooLarge, VerificationFailed.
     """
     return cache(lambda source: PROGRAMS[source].function(spec, parts, max_nodes))
+
+
+#: programs that have the accelerations of the motion in them
+OF_MOTION = (FORWARD, "forward_dynamics_derivative", "canonical_equations", REACTIONS)
 
 
 @dataclass(frozen=True)
@@ -94,10 +100,18 @@ class Sources:
         return found.of(self.joints) if source == REACTIONS else found
 
     def program(self, source: str) -> Program:
-        """The program of this name. Raises TooLarge, and InvalidInput for closures and trees without their parts."""
+        """The program of this name. Raises TooLarge, and InvalidInput for closures, trees without their parts, and
+        velocity constraints that it would ignore.
+        """
+        self.require_known_motion(source)
         if source == MODEL:
             return self.model.program
         return self.of(source).program if source in OF_PARTS else self.derive(self.model, source)
+
+    def require_known_motion(self, source: str) -> None:
+        """Raises InvalidDocument for what depends on the motion by itself, where the tree has velocity constraints."""
+        if source in OF_MOTION:
+            require_unconstrained(self.model.constraint_names, source)
 
     def formulas(self, quantity: str) -> Program:
         """The program of a quantity, with what tells whether it could be computed. Raises TooLarge, InvalidDocument."""
@@ -128,6 +142,8 @@ class Sources:
             return self.of(source).labels[axis]
         if axis == FRAMES:
             return self.model.frames
+        if axis == DRIVEN:
+            return self.model.driven
         return tuple(f"{closure.name}.{row}" for closure in self.model.closures for row in closure.rows)
 
 
@@ -175,7 +191,7 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     # ten parameters a link; rows of joints and seats; powers of gravity, joints, actuators, and of loads, of which a
     # tree may have a thousand beside those of its parts; rows of closures, six at most between two frames
     sizes = {"coordinates": n, "frames": frames, "axes": 3, "links": frames, "columns": 10 * frames}
-    sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames)}
+    sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames), DRIVEN: frames, "rates": 6 + n}
     return sum(TABLE[name].size(sizes) for name in quantities)
 
 
@@ -194,10 +210,12 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
         wanted.setdefault(FORWARD, set()).update(forward.outputs + forward.pivots)
         wanted[REACTIONS] = wanted.pop(REACTIONS)
     for source, names in wanted.items():
+        sources.require_known_motion(source)
         if source == CONDITION:
             yield source, sources.program(MODEL), ["metric"]
             continue
         if source == FORWARD and sources.model.closures:
+            require_undriven(sources.model.driven, "take loop states, which have accelerations and multipliers")
             yield source, sources.program(CLOSED_DYNAMICS), [*DYNAMICS, *CLOSED]
             continue
         if source == FORWARD and "christoffel" not in sources.model.program.outputs:
@@ -215,13 +233,18 @@ def steps(sources: Sources, quantities: Sequence[str]) -> Iterator[tuple[str, Pr
             yield source, sources.model.program, list(DYNAMICS)
 
 
+def require_there(model: Model, quantities: Sequence[str]) -> None:
+    """Raises InvalidArgument (``not-of-tree``) for a quantity that only other trees have."""
+    for i, name in enumerate(quantities):
+        if TABLE[name].only and name not in model.program.outputs:
+            raise InvalidArgument.at(f"/quantities/{i}", "not-of-tree", f"there is no '{name}': {TABLE[name].only}")
+
+
 def _wanted(model: Model, quantities: Sequence[str]) -> dict[str, set[str]]:
     """Outputs by source. Raises InvalidArgument."""
+    require_there(model, quantities)
     wanted: dict[str, set[str]] = {}
-    for i, name in enumerate(quantities):
-        quantity = TABLE[name]
-        if quantity.only and name not in model.program.outputs:
-            raise InvalidArgument.at(f"/quantities/{i}", "not-of-tree", f"there is no '{name}': {quantity.only}")
+    for quantity in (TABLE[name] for name in quantities):
         wanted.setdefault(quantity.source, set()).update(quantity.outputs + quantity.pivots)
     return wanted
 

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Collection, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -17,7 +17,15 @@ from substructures.quantities.sources import Sources, of_parts
 from substructures.sweeps.document import Pareto
 from substructures.sweeps.front import front
 from substructures.sweeps.plan import Plan
-from substructures.sweeps.shapes import Option, Shape, couple_shape, values_of
+from substructures.sweeps.shapes import (
+    INTERPRETER,
+    KERNEL,
+    WORTH_A_KERNEL,
+    Option,
+    Shape,
+    couple_shape,
+    values_of,
+)
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple
 
@@ -30,9 +38,12 @@ AGREE = 1e-12
 
 @dataclass
 class Refusals:
-    """Why rows have no numbers: how many by code, each with the first row and its message."""
+    """Why rows have no numbers: how many by code, each with the first row and its message; ``ways``: how many rows
+    each way of computing gave numbers for.
+    """
 
     by_code: dict[str, dict[str, Any]] = field(default_factory=dict)
+    ways: dict[str, int] = field(default_factory=dict)
 
     def add(self, code: str, count: int, row: int, message: str) -> None:
         """So many rows more."""
@@ -80,7 +91,8 @@ def compute(
     for members in groups.values():
         here = np.flatnonzero(np.isin(combination, members)) if len(groups) > 1 else np.arange(len(numbers))
         try:
-            shape = shape_of(options[members[0]])
+            many = max(plan.rows_of_shape, 2 * len(here)) >= WORTH_A_KERNEL
+            shape = replace(shape_of(options[members[0]]), way=KERNEL if many else INTERPRETER)
             values = _values(plan, shape, [options[each] for each in members])
             place = np.searchsorted(members, combination[here])
             spread = {name: x[place] if np.ndim(x) else x for name, x in values.items()}
@@ -89,6 +101,7 @@ def compute(
         except (InvalidInput, MissingValue, TooLarge, VerificationFailed, ArithmeticError) as error:
             refusals.add(_code(error), len(here), int(numbers[here[0]]), str(error))
             continue
+        refusals.ways[shape.way] = refusals.ways.get(shape.way, 0) + len(here)
         found.append(_fitting(plan, Block(numbers[here], {**own, **columns}), refusals, finite))
     return joined(plan, found)
 
@@ -207,9 +220,16 @@ def slow_columns(
     return {name: float(x[0]) for name, x in found.items()}, plan.columns.condition(shape)
 
 
-def disagreement(fast: Mapping[str, float], slow: Mapping[str, float], condition: float) -> str:
-    """What to say where a row differs from the slow way by more than rounding can; empty where it does not."""
+def disagreement(
+    fast: Mapping[str, float], slow: Mapping[str, float], condition: float, without: Collection[str] = ()
+) -> str:
+    """What to say where a row differs from the slow way by more than rounding can; empty where it does not.
+
+    ``without``: columns of motions, which are judged by their own conditions.
+    """
     for name, x in fast.items():
+        if name in without:
+            continue
         y = slow[name]
         if abs(x - y) > AGREE * max(1.0, condition) * max(abs(x), abs(y)):
             return f"'{name}' is {x!r}, and {y!r} by the tree of this row"
@@ -223,7 +243,8 @@ def shape_maker(plan: Plan, made: dict[tuple[str, ...], Shape], max_nodes: int =
         """The shape. Raises InvalidInput, TooLarge."""
         key = tuple(option.key for option in options)
         if key not in made:
-            made[key] = couple_shape(plan.document.template, options, plan.columns.need_christoffel, max_nodes)
+            document, columns = plan.document.template, plan.columns
+            made[key] = couple_shape(document, options, columns.need_christoffel, max_nodes, columns.outputs)
         return made[key]
 
     return shape_of

@@ -33,9 +33,10 @@ _COMPARED = {
 
 @dataclass(frozen=True)
 class Expression:
-    """An expression in columns."""
+    """An expression in columns; ``text``: as it was written."""
 
     program: Program
+    text: str = ""
 
     @cached_property
     def needs(self) -> tuple[str, ...]:
@@ -67,7 +68,7 @@ def read_expression(text: str, known: Collection[str], pointer: str) -> Expressi
 
     try:
         value = parse(graph, text, lookup)
-        return Expression(program(graph, {"value": array((), lambda: value)}, symbols))
+        return Expression(program(graph, {"value": array((), lambda: value)}, symbols), text.strip())
     except ExpressionError as error:
         raise InvalidDocument.at(pointer, "bad-expression", str(error)) from None
     except ZeroDivisionError:

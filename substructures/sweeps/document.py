@@ -4,115 +4,95 @@ from __future__ import annotations
 
 from typing import Annotated, Any, Literal
 
-from pydantic import Field, field_validator, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
+from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS
 from substructures.documents import DocumentPart
-from substructures.documents.fields import NAME, unit_of
+from substructures.documents.fields import NAME, Real
+from substructures.ensembles.columns import MOST_COLUMNS, MotionColumn
+from substructures.ensembles.quantity_columns import QuantityColumn
+from substructures.ensembles.samples import Samples
 
-#: rows of one sweep
-MOST_ROWS = 10**8
 #: rows that a table may keep where ``keep`` does not say fewer
 MOST_KEPT = 10**7
-MOST_COLUMNS = 100
+#: the origin of the tree
+WORLD = "world"
 
-Values = Annotated[list[float], Field(min_length=1, max_length=1_000_000)]
 ColumnName = Annotated[str, Field(pattern=NAME)]
-Take = Literal["value", "largest", "smallest", "largest_absolute", "mean", "rms"]
 OfModes = Literal["lowest_frequency", "highest_frequency", "least_damping", "largest_real_part", "is_stable"]
-
-
-class Distribution(DocumentPart):
-    """What values a parameter takes: ``values``, or ``uniform`` between two, or ``normal`` (mean, deviation).
-
-    ``count``: of a grid, points from end to end of ``uniform``, or quantiles of ``normal``; ``unit``: of the numbers,
-    SI if left out.
-    """
-
-    values: Values | None = None
-    uniform: tuple[float, float] | None = None
-    normal: tuple[float, Annotated[float, Field(ge=0)]] | None = None
-    count: Annotated[int, Field(ge=1, le=MOST_ROWS)] | None = None
-    unit: Annotated[str, Field(max_length=64)] = ""
-
-    @field_validator("unit")
-    @classmethod
-    def _known(cls, unit: str) -> str:
-        if unit:
-            unit_of(unit)
-        return unit
-
-    @property
-    def factor(self) -> float:
-        """What its numbers are multiplied by in SI."""
-        return unit_of(self.unit).scale if self.unit else 1.0
-
-    @model_validator(mode="after")
-    def _one(self) -> Distribution:
-        if sum(each is not None for each in (self.values, self.uniform, self.normal)) != 1:
-            raise PydanticCustomError("one-distribution", "give one of 'values', 'uniform' and 'normal'")
-        if self.values is not None and self.count is not None:
-            raise PydanticCustomError("counted-twice", "'values' are as many as they are: leave 'count' out")
-        return self
-
-
-class Samples(DocumentPart):
-    """Numbers of parameters for each combination of parts.
-
-    ``grid``: all values of each with all of the others; ``list``: the first of each together, then the second, ...;
-    the others draw ``count`` rows from the distributions, the same ones for the same ``seed``.
-    """
-
-    method: Literal["grid", "list", "random", "sobol", "latin-hypercube"] = "grid"
-    count: Annotated[int, Field(ge=1, le=MOST_ROWS)] | None = None
-    seed: Annotated[int, Field(ge=0, lt=2**53)] = 0
-    of: dict[str, Distribution] = Field(min_length=1, max_length=1000)
-
-    @model_validator(mode="after")
-    def _has_counts(self) -> Samples:
-        drawn = self.method not in ("grid", "list")
-        if drawn and self.count is None:
-            raise PydanticCustomError("missing-count", f"samples by '{self.method}' need a 'count'")
-        if not drawn and self.count is not None:
-            raise PydanticCustomError("counted-twice", f"a {self.method} has the counts of its values: no 'count' here")
-        for name, each in self.of.items():
-            if drawn and each.count is not None:
-                raise PydanticCustomError("counted-twice", f"'{name}': 'count' stands beside 'method'")
-            if self.method == "grid" and each.values is None and each.count is None:
-                raise PydanticCustomError("missing-count", f"'{name}' needs a 'count' in a grid")
-            if self.method == "list" and each.values is None:
-                raise PydanticCustomError("missing-values", f"'{name}' needs 'values' in a list")
-        if self.method == "list" and len({len(each.values or ()) for each in self.of.values()}) > 1:
-            raise PydanticCustomError("lengths", "the lists of values differ in length")
-        return self
-
-
-class QuantityColumn(DocumentPart):
-    """A number of a quantity (``inverse_dynamics``, ``mass_centre.position``) at states ``over``, for each row.
-
-    ``of``: which element, by the names of its axes; left out: all of them. ``over``: arguments of an evaluation (``q``,
-    ``qd``, ``qdd``, ``inputs``, ``t``), for one state or many. ``take``: what becomes of several numbers.
-    """
-
-    quantity: str
-    of: str | list[str] | None = None
-    over: dict[str, Any] = Field(default_factory=dict)
-    take: Take | None = None
 
 
 class LinearColumn(DocumentPart):
     """What the linearisation about an equilibrium tells: frequencies [rad/s], damping ratio, whether it is stable.
 
-    ``held``: constant forces of the joints make the state one; without them rows in which it is none have no number.
+    ``held``: constant forces of the joints make the state ``at`` one; ``settle``: it is the one that Newton's method
+    finds from there. Without them rows in which it is none have no number.
     """
 
     analysis: Literal["linearisation"]
     at: dict[str, Any] = Field(default_factory=dict)
     held: bool = False
+    settle: bool = False
     take: OfModes = "lowest_frequency"
 
+    @model_validator(mode="after")
+    def _one(self) -> LinearColumn:
+        if self.held and self.settle:
+            raise PydanticCustomError("held-and-settled", "what is 'held' need not 'settle': give one of them")
+        return self
 
-Column = str | LinearColumn | QuantityColumn
+
+class EquilibriumColumn(DocumentPart):
+    """A coordinate ``of`` the equilibrium that Newton's method finds from the state ``at`` [rad, m]."""
+
+    analysis: Literal["equilibrium"]
+    at: dict[str, Any] = Field(default_factory=dict)
+    of: str
+
+
+class ReachColumn(DocumentPart):
+    """How far a frame ``of`` the tree gets from another one (the origin), within the limits of joints [m]."""
+
+    analysis: Literal["reach"]
+    of: str
+    about: str = WORLD
+
+
+class SimulationColumn(MotionColumn):
+    """A number of the motion from the state ``at`` (``q``, ``qd``, ``inputs``) over a ``span`` [s], as of an ensemble:
+    of its values at ``count`` times.
+    """
+
+    analysis: Literal["simulation"]
+    at: dict[str, Any] = Field(default_factory=dict)
+    span: tuple[Real, Real]
+    count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] = 101
+    relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8
+
+
+def _kind(given: Any) -> str | None:
+    if isinstance(given, str):
+        return "text"
+    if isinstance(given, dict):
+        return str(given["analysis"])[:80] if "analysis" in given else "quantity"
+    return "quantity" if isinstance(given, QuantityColumn) else getattr(given, "analysis", None)
+
+
+KINDS = (
+    "a column is 'mass', 'dof', 'operations', an expression, an object with a 'quantity', or one with the 'analysis' "
+    "linearisation, equilibrium, reach or simulation"
+)
+AnalysisColumn = LinearColumn | EquilibriumColumn | ReachColumn | SimulationColumn
+Column = Annotated[
+    Annotated[str, Tag("text")]
+    | Annotated[LinearColumn, Tag("linearisation")]
+    | Annotated[EquilibriumColumn, Tag("equilibrium")]
+    | Annotated[ReachColumn, Tag("reach")]
+    | Annotated[SimulationColumn, Tag("simulation")]
+    | Annotated[QuantityColumn, Tag("quantity")],
+    Discriminator(_kind, custom_error_type="unknown-column", custom_error_message=KINDS),
+]
 
 
 class Pareto(DocumentPart):

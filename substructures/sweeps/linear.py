@@ -8,53 +8,38 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.equations.perturbation import perturbation, require_smooth
-from substructures.analysis.stability.operating_point import AT_REST
 from substructures.analysis.stability.vibrations import NEUTRAL, SYMMETRIC
 from substructures.array import Array, ComplexArray
-from substructures.errors import InvalidArgument
-from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
-from substructures.quantities.numbers.states import known_values, read_states
+from substructures.sweeps.document import LinearColumn
+from substructures.sweeps.grouped import alike, inside
+from substructures.sweeps.rest import AtRest
 from substructures.sweeps.shapes import Shape
-from substructures.tree.model import require_open
-
-MATRICES = ["metric", "damping", "stiffness"]
 
 
 def linear_columns(
-    shape: Shape, at: Mapping[str, Any], held: bool, parameters: Mapping[str, Any], rows: int, takes: Collection[str]
+    shape: Shape, columns: Mapping[str, LinearColumn], parameters: Mapping[str, Any], rows: int
 ) -> dict[str, Array]:
-    """By what is taken, (rows,): of the linearisation about one state ``at`` with one set of parameters a row; NaN
-    where that is no equilibrium, unless it is ``held`` there.
+    """What columns take, (rows,), of the linearisation about a state with one set of parameters a row; NaN where that
+    is no equilibrium, unless it is ``held`` there or has ``settled``.
 
     Raises InvalidInput, MissingValue.
     """
-    model = shape.model
-    require_open(model.closures, "sweep other columns")
-    require_smooth(model)
-    given = {**at, "parameters": parameters}
-    states = read_states(model, at, 1)
-    if states.qd.any():
-        raise InvalidArgument.at("/qd", "not-at-rest", "an equilibrium is at rest: leave 'qd' out")
-    q, zero = np.broadcast_to(states.q, (rows, model.dof)), np.zeros((rows, model.dof))
-    options = EvaluationOptions(evaluator=shape.evaluate)
-    more = {name: at[name] for name in ("inputs", "t") if name in at}
-    qdd = zero
-    if not held:
-        found = evaluate(shape.sources, "forward_dynamics", q, zero, parameters=parameters, options=options, **more)
-        qdd = found["forward_dynamics"].reshape(rows, -1)
-    states = read_states(model, {"q": q, "qd": zero, "qdd": np.nan_to_num(qdd)}, None)
-    values = known_values(model, given, states, model.parameters)
-    matrices = shape.evaluate(perturbation(model), values, MATRICES, rows)
-    M, D, K = (np.asarray(matrices[name]) for name in MATRICES)
-    good: NDArray[np.bool_] = np.asarray(np.isfinite(qdd).all(axis=1))
-    for matrix in (M, D, K):
-        good = good & np.isfinite(matrix).all(axis=(1, 2))
-    good = good & (np.abs(np.linalg.det(np.where(good[:, None, None], M, 1.0))) > 0)
-    if good.any():  # as for one state: accelerations that are rounding beside what a unit displacement causes
-        unit = np.abs(np.linalg.solve(M[good], K[good])).max(axis=2, initial=0)
-        good[good] = (np.abs(qdd[good]) <= AT_REST * np.fmax(1.0, unit)).all(axis=1)
-    eigenvalues = np.full((rows, 2 * model.dof), np.nan, dtype=np.complex128)
+    found = dict[str, Array]()
+    about = {name: {"at": c.at, "held": c.held, "settle": c.settle} for name, c in columns.items()}
+    for same in alike(about):
+        takes = {columns[name].take for name in same}
+        with inside(f"/columns/{same[0]}/at"):
+            taken = _about(AtRest(shape, columns[same[0]].at, parameters, rows), columns[same[0]], takes)
+        found |= {name: taken[columns[name].take] for name in same}
+    return found
+
+
+def _about(rest: AtRest, how: LinearColumn, takes: Collection[str]) -> dict[str, Array]:
+    q = rest.settled() if how.settle else rest.start
+    qdd = np.zeros_like(q) if how.held else rest.accelerations(q)
+    M, D, K = rest.matrices(q, qdd)
+    good = rest.is_rest(q, qdd, M, K) & np.isfinite(D).all(axis=(1, 2))
+    eigenvalues = np.full((rest.rows, 2 * q.shape[1]), np.nan, dtype=np.complex128)
     if good.any():
         eigenvalues[good] = _eigenvalues(M[good], D[good], K[good])
     return {take: np.where(good, _taken(take, eigenvalues), np.nan) for take in takes}

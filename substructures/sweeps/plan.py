@@ -13,11 +13,11 @@ from functools import cached_property
 from math import prod
 from typing import Any
 
+from substructures.ensembles.samples import MOST_ROWS, Sampler
 from substructures.errors import InvalidDocument, InvalidInput, among
 from substructures.sweeps.columns import Columns, read_columns
-from substructures.sweeps.document import MOST_KEPT, MOST_ROWS, Choice, SweepDocument
-from substructures.sweeps.samples import Sampler
-from substructures.tree.document import TreeSpec
+from substructures.sweeps.document import MOST_KEPT, Choice, SweepDocument
+from substructures.tree.document import TreeSpec, require_unconstrained
 
 #: fields of an instance that a choice replaces as they are; parameters are put to those of the template
 _REPLACED = ("substructure", "at", "placement")
@@ -54,6 +54,11 @@ class Plan:
     def rows(self) -> int:
         """How many rows there are."""
         return self.combinations * self.sampler.size
+
+    @property
+    def rows_of_shape(self) -> int:
+        """How many rows a shape has if options of one part are of one shape, and those of others are of others."""
+        return self.rows // prod(len({str(one.get("substructure")) for one in each}) for each in self.options)
 
     def chosen(self, combination: int) -> tuple[int, ...]:
         """The index of the option of each instance."""
@@ -144,6 +149,7 @@ def check_size(document: SweepDocument, sizes: Sequence[int]) -> None:
 def check_template(document: SweepDocument, options: Sequence[Sequence[Mapping[str, Any]]]) -> None:
     """Raise InvalidDocument for a template that is no tree with the first options."""
     try:
-        TreeSpec.read({**document.template, "instances": [dict(each[0]) for each in options]})
+        spec = TreeSpec.read({**document.template, "instances": [dict(each[0]) for each in options]})
+        require_unconstrained((each.name for each in spec.velocity_constraints), "sweep")
     except InvalidInput as error:
         raise error.below("/template") from None

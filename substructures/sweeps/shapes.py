@@ -19,11 +19,12 @@ from substructures.documents import write_json
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.expr.program import Program
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec, read_instance
-from substructures.tree.interfaces import differing_interfaces
 from substructures.tree.model import Model, couple_formulas
+from substructures.tree.units import differing_interfaces
 
 
 @dataclass(frozen=True)
@@ -58,11 +59,19 @@ def option_of(part: Part, instance: Mapping[str, Any]) -> Option:
     return Option(part, fields, values, hashlib.sha256(text).hexdigest())
 
 
+#: what gives numbers; a shape with so many rows is worth its machine code, which takes an arm 50 ms and is 2 to 3 us a
+#: row quicker
+INTERPRETER, KERNEL, WORTH_A_KERNEL = "interpreter", "kernel", 16_384
+
+
 @dataclass(frozen=True)
 class Shape:
-    """A tree of options, coupled once. ``kernels``: compiled, by the outputs that were asked for."""
+    """A tree of options, coupled once. ``kernels``: compiled, by the outputs that were asked for; ``way``: whether
+    machine code or the interpreter gives the numbers.
+    """
 
     sources: Sources
+    way: str = KERNEL
     kernels: dict[tuple[str, tuple[str, ...]], Kernel] = field(default_factory=dict, repr=False)
 
     @property
@@ -71,9 +80,11 @@ class Shape:
         return self.sources.model
 
     def evaluate(
-        self, program: Program, values: Mapping[str, Any], names: list[str], _states: int, places: Places = NO_PLACES, /
+        self, program: Program, values: Mapping[str, Any], names: list[str], states: int, places: Places = NO_PLACES, /
     ) -> dict[str, Array]:
-        """The engine of evaluations: a kernel of its own for every list of outputs."""
+        """The engine of evaluations: the interpreter, or a kernel of its own for every list of outputs."""
+        if self.way == INTERPRETER:
+            return interpreted(program, values, names, states, places)
         key = program.digest, tuple(names)
         if key not in self.kernels:
             self.kernels[key] = compile_program(program, names)
@@ -81,18 +92,22 @@ class Shape:
 
 
 def couple_shape(
-    template: Mapping[str, Any], options: Sequence[Option], christoffel: bool, max_nodes: int = MAX_NODES
+    template: Mapping[str, Any],
+    options: Sequence[Option],
+    christoffel: bool,
+    max_nodes: int = MAX_NODES,
+    names: frozenset[str] | None = None,
 ) -> Shape:
     """The shape of a tree document with these options in the places of its instances, in their order.
 
-    ``christoffel``: whether with the Christoffel symbols. Raises InvalidDocument with pointers into the document,
-    TooLarge.
+    ``christoffel``: whether with the Christoffel symbols; ``names``: outputs that are enough. Raises InvalidDocument
+    with pointers into the document, TooLarge.
     """
     spec = TreeSpec.read({**template, "instances": [dict(option.fields) for option in options]})
     parts = {instance.name: option.part for instance, option in zip(spec.instances, options, strict=True)}
     for told in differing_interfaces(spec, {name: part.definition for name, part in parts.items()}):
         raise InvalidDocument.at(told["pointer"], told["code"], told["message"])
-    model = couple_formulas(spec, parts, max_nodes, christoffel)
+    model = couple_formulas(spec, parts, max_nodes, christoffel, names)
     return Shape(Sources(model, of_parts=of_parts(spec, parts, max_nodes)))
 
 

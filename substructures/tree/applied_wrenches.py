@@ -1,6 +1,6 @@
 """What acts on the bodies of a tree, as wrenches: forces and torques of parts, what acts between frames of parts, loads
-of the tree and the forces of closures. What acts on coordinates alone (joint laws, actuators, joint loads, friction,
-potentials in coordinates) is in the joints, and not among them.
+of the tree, and the forces of closures, of rolling contacts and of knife edges. What acts on coordinates alone (joint
+laws, actuators, joint loads, friction, potentials in coordinates) is in the joints, and not among them.
 """
 
 from __future__ import annotations
@@ -11,14 +11,19 @@ from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
 from substructures.loads.pairs import Acting, Pair, Place, axes_in_world
-from substructures.mechanics.linear3 import ZERO, Vector, scale
+from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, scale, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
+from substructures.part.frames import axis_rotation
 from substructures.tree.assembly import Assembly, tree_name
-from substructures.tree.closures import PLACE, ClosureEnd, Cut, closure_formulas
+from substructures.tree.closures import PLACE, ClosureEnd, closure_formulas
+from substructures.tree.document import KnifeEdgeConstraint, RollingConstraint
 from substructures.tree.frame_points import place
 from substructures.tree.loads import load_formulas
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import WORLD, PlacedPart
 from substructures.tree.part_loads import loads_of_parts
+
+#: rows of a rolling contact: along both directions of the plane, and along its normal
+ROLLING = ("slip_1", "slip_2", "contact")
 
 
 def applied_wrenches(
@@ -26,7 +31,10 @@ def applied_wrenches(
 ) -> Iterator[tuple[int, int, Wrench]]:
     """(part, carrier, wrench about its body frame origin in its axes), over formulas; ``rates``: q'^a.
 
-    Closures act by the symbols ``lambda.<closure>.<row>`` [N, N m] of their multipliers.
+    Closures act by the symbols ``lambda.<closure>.<row>`` [N, N m] of their multipliers, velocity constraints by
+    ``lambda.<constraint>`` or ``lambda.<constraint>.<row>`` [N] of B^T lambda in
+    substructures.analysis.equations.nonholonomic: rolling contacts and knife edges. A linear one says nothing of
+    bodies: B_a lambda acts in the joints of its coordinates.
     """
     for i, here in enumerate(placed):
         yield from ((i, carrier, wrench) for carrier, wrench in here.applied_wrenches())
@@ -35,6 +43,7 @@ def applied_wrenches(
         *loads_of_parts(assembly, placed, rates),
         *_loads(assembly, placed, rates),
         *_closures(assembly, placed, rates),
+        *_contacts(assembly, placed),
     ):
         yield from ((index[id(part)], carrier, wrench) for part, carrier, wrench in each.wrenches())
 
@@ -68,7 +77,8 @@ def _closures(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[
         pair = Pair(assembly.scope.graph, _end(placed, cut.start), _end(placed, cut.end))
         for row in cut.rows.rows:
             unit: Vector = (direction.get((k, 0), 0), direction.get((k, 1), 0), direction.get((k, 2), 0))
-            load = scale(_multiplier(assembly, cut, row), axes_in_world(pair.A, unit))
+            name, kind = f"{cut.rows.name}.{row}", "N" if row in (*PLACE, "length") else "N m"
+            load = scale(_multiplier(assembly, name, kind), axes_in_world(pair.A, unit))
             yield Acting(pair, load, ZERO) if row in (*PLACE, "length") else Acting(pair, ZERO, load)
             k += 1
 
@@ -78,8 +88,44 @@ def _end(placed: Sequence[PlacedPart], end: ClosureEnd) -> Place:
     return place(placed, end.part, end.frame, end.position)
 
 
-def _multiplier(assembly: Assembly, cut: Cut, row: str) -> Expr:
-    name, unit = f"lambda.{cut.rows.name}.{row}", "N" if row in (*PLACE, "length") else "N m"
+def _multiplier(assembly: Assembly, label: str, unit: str) -> Expr:
+    name = f"lambda.{label}"
     assembly.scope.symbols.setdefault(name, Symbol(name, "input", unit))
     found: Expr = assembly.scope.graph.symbol(name)
     return found
+
+
+def _contacts(assembly: Assembly, placed: Sequence[PlacedPart]) -> Iterator[Acting]:
+    """Forces from the world on bodies that roll, P^T lambda at the point of contact, P to the axes of the plane, and
+    on knife edges, lambda along the second axis of the frame at its origin. Raises InvalidDocument for their faults.
+    """
+    for i, each in enumerate(assembly.reading.spec.velocity_constraints):
+        if not isinstance(each, KnifeEdgeConstraint | RollingConstraint):
+            continue
+        pointer = f"/velocity_constraints/{i}"
+        at = place(placed, *assembly.reading.frame(each.frame, f"{pointer}/frame"))
+        pair = Pair(assembly.scope.graph, place(placed, WORLD, 0), at)
+        if isinstance(each, KnifeEdgeConstraint):
+            across = axes_in_world(at, (0, 1, 0))
+            yield Acting(pair, scale(_multiplier(assembly, each.name, "N"), across), ZERO)
+        else:
+            force, arm = _rolling(assembly, each, at, pointer)
+            yield Acting(pair, force, cross(arm, force))
+    assembly.scope.finish()
+
+
+def _rolling(assembly: Assembly, given: RollingConstraint, at: Place, pointer: str) -> tuple[Vector, Vector]:
+    """The force, and rho from the origin of the frame to the point of contact; in the axes of the world."""
+    scope, reading = assembly.scope, assembly.reading
+    radius = scope.read(given.radius, f"{pointer}/radius", reading.bound.lookup)
+    x, y, z = given.normal
+    plane = axis_rotation(scope, (x, y, z), f"{pointer}/normal")
+    a, b, c = (_multiplier(assembly, f"{given.name}.{row}", "N") for row in ROLLING)
+    force, normal = apply(transpose(plane), (a, b, c)), plane[2]
+    if given.shape == "sphere":
+        return force, scale(-radius, normal)
+    # rho = -r (N - (N.e) e) / |N - (N.e) e|, e the axis of the disc
+    axis = axes_in_world(at, (0, 0, 1))
+    down = sub(normal, scale(dot(normal, axis), axis))
+    width = scope.graph.sqrt(scope.graph.lift(dot(down, down)))
+    return force, scale(scope.graph.lift(-radius) / width, down)

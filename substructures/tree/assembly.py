@@ -148,7 +148,8 @@ def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict
     for name, each in sorted(described(spec.parameters).items()):
         scope.declare(name, "parameter", str(each["unit"]))
         if each["value"] is not None:
-            scope.read(each["value"], f"/parameters/{name}/value", no_names)
+            # in a graph of its own: no formula, nor the order of operations, depends on the value
+            Scope(Graph(), faults=scope.faults).read(each["value"], f"/parameters/{name}/value", no_names)
         result[name] = each
     for instance in spec.instances:
         for name, some in sorted(parts[instance.name].parameters.items()):

@@ -7,14 +7,17 @@ from time import perf_counter
 from typing import Any
 
 from substructures.certificate.compare import Compared, Expected, compare
+from substructures.certificate.described import coordinates_in, described
+from substructures.certificate.driven import of_free, with_driven
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.states import states_needed
-from substructures.certificate.tree_outputs import described, tree_outputs, tree_symbols
+from substructures.certificate.tree_outputs import tree_outputs, tree_symbols
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.certificate import HOW, defaults_of, plain, told
 from substructures.part.definition import Definition
+from substructures.part.part import Part, recheck
 from substructures.tree.document import TreeSpec
 
 #: outputs out of the documents of a tree and of its parts, names of rows, and values of symbols
@@ -83,8 +86,14 @@ def certify_rows(
     Raises VerificationFailed, which says ``what`` is wrong.
     """
     tree, parts = plain(spec), {name: plain(definition) for name, definition in definitions.items()}
+    every = list(coordinates_in(tree, parts))
+
+    def expected(values: Mapping[str, Any]) -> Outputs:
+        """Of free coordinates, at motions of the others as they are given."""
+        return of_free(outputs(tree, parts, rows, with_driven(tree, values)), every, tree.get("driven", ()))
+
     try:
-        _, found = _compared(tree, parts, result, lambda values: outputs(tree, parts, rows, values), more)
+        _, found = _compared(tree, parts, result, expected, more)
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
     return result.marked(found.not_judged)
@@ -103,3 +112,14 @@ def _compared(
         defaults |= defaults_of(part, f"{name}.")
     states = states_needed(result.operations, [tree, *parts.values()])
     return states, compare(result, tree_symbols(tree, parts) | dict(more or {}), expected, defaults, states)
+
+
+def blamed(parts: Mapping[str, Part], error: VerificationFailed) -> VerificationFailed:
+    """The failure of a part whose stored formulas are wrong, by name; that of the tree where all parts are right."""
+    for instance, part in parts.items():
+        try:
+            recheck(part)
+        except VerificationFailed as fault:
+            what = f"the stored formulas of '{part.name}' ({part.program.digest}, instance '{instance}') are wrong"
+            return VerificationFailed(f"{what}: {fault}")
+    return error

@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Mapping
-from typing import Annotated, Any
+from collections.abc import Collection, Iterable, Mapping, Sequence
+from decimal import Decimal
+from typing import Annotated, Any, Literal
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
 from substructures.documents.faults import PATTERNS
-from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector
-from substructures.errors import among, listed, meant
+from substructures.documents.fields import BY_TYPE, NAME, LibraryName, Name, Number, NumberVector, PlainNumber, in_si
+from substructures.errors import Fault, InvalidDocument, among, listed, meant
+from substructures.expr.syntax import RESERVED
 from substructures.loads.document import AT
 from substructures.loads.kinds import LoadOfTree
 from substructures.part.definition import Definition, Input, Parameter, PartClosure, Placement, WithTables
@@ -84,9 +86,104 @@ class Closure(PartClosure):
     to: Annotated[str, Field(pattern=AT)] = Field("world", description="instance.port, instance.body or world")
 
 
+class DrivenInput(DocumentPart):
+    """A motion that is given with the numbers: the coordinate and its derivatives by time are three inputs."""
+
+    input: Literal[True]
+
+
+class DrivenTable(DocumentPart):
+    """A motion through points by cubics without kinks, at rest before and after: ``smooth`` ones have one curvature at
+    each point, ``monotone`` ones rise and fall where the values do. Whatever else there is jumps, or is no formula.
+    """
+
+    times: tuple[PlainNumber, ...] = Field(min_length=2, max_length=1000, description="rising, s")
+    values: tuple[PlainNumber, ...] = Field(min_length=2, max_length=1000, description="rad or m")
+    interpolation: Literal["smooth", "monotone"] = "smooth"
+
+    @model_validator(mode="after")
+    def _pairs(self) -> DrivenTable:
+        if len(self.times) != len(self.values):
+            message = f"{len(self.values)} values for {len(self.times)} times"
+            raise PydanticCustomError("wrong-length", "{message}", {"message": message})
+        return self
+
+    def __str__(self) -> str:
+        """As an expression."""
+        knots = ", ".join(f"{_plain(t)}:{_plain(x)}" for t, x in zip(self.times, self.values, strict=True))
+        return f"table(t; {knots}; {self.interpolation})"
+
+
+def _plain(x: Any) -> str:
+    return format(x, "f") if isinstance(x, Decimal) else str(x)
+
+
+def _kind(given: Any) -> str:
+    """Of a motion, by its fields."""
+    if isinstance(given, (DrivenInput, DrivenTable)):
+        return "input" if isinstance(given, DrivenInput) else "table"
+    fields = given if isinstance(given, Mapping) else ()
+    return "table" if {"times", "values"} & {*fields} else "input" if {"input"} & {*fields} else "number"
+
+
+Driven = Annotated[
+    Annotated[Number, Tag("number")] | Annotated[DrivenInput, Tag("input")] | Annotated[DrivenTable, Tag("table")],
+    Discriminator(_kind),
+]
+
+
+FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
+
+
+class VelocityConstraint(DocumentPart):
+    """A constraint on velocities by its name; what it means: substructures.analysis.equations.nonholonomic."""
+
+    name: Name
+
+    def plain(self) -> dict[str, Any]:
+        """What was given but defaults, numbers in SI as texts."""
+        given: dict[str, Any] = {name: getattr(self, name) for name in self.model_dump(exclude_defaults=True)}
+        return {
+            name: [_plain(x) for x in value] if isinstance(value, tuple) else _plain(in_si(value))
+            for name, value in given.items()
+        }
+
+
+class LinearConstraint(VelocityConstraint):
+    """An expression that is zero, affine in the velocities: B(q) q' + b(q, t), b what a table or a belt gives."""
+
+    type: Literal["linear"]
+    expression: str
+
+
+class KnifeEdgeConstraint(VelocityConstraint):
+    """A skate: no velocity across the edge, which lies along the first axis of the frame."""
+
+    type: Literal["knife_edge"]
+    frame: FrameName
+
+
+class RollingConstraint(VelocityConstraint):
+    """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
+
+    type: Literal["rolling"]
+    frame: FrameName
+    radius: Number = Field(description="m")
+    shape: Literal["disc", "sphere"] = "disc"
+    normal: tuple[PlainNumber, PlainNumber, PlainNumber] = Field(
+        (0, 0, 1), description="of the plane in the world (constant)"
+    )
+
+
+ConstraintOfTree = Annotated[
+    LinearConstraint | KnifeEdgeConstraint | RollingConstraint, Field(discriminator="type"), BY_TYPE
+]
+
+
 class TreeSpec(WithTables):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree, and
-    ``loads`` act between its frames, with ``inputs`` of their own.
+    ``loads`` act between its frames, with ``inputs`` of their own. ``driven`` coordinates move as is given;
+    ``velocity_constraints`` hold along motions.
     """
 
     name: LibraryName
@@ -96,20 +193,64 @@ class TreeSpec(WithTables):
     closures: tuple[Closure, ...] = Field((), max_length=MAX_INSTANCES)
     inputs: dict[Name, Input] = Field({}, max_length=500, description="of the loads of the tree")
     loads: tuple[LoadOfTree, ...] = Field((), max_length=1000)
+    driven: dict[Annotated[str, Field(pattern=FRAME)], Driven] = Field(
+        {}, max_length=5000, description="motions of coordinates: expressions in t and parameters (rad or m), or others"
+    )
+    velocity_constraints: tuple[ConstraintOfTree, ...] = Field(
+        (), max_length=100, description="of motions of the tree; formulas are those of the tree without them"
+    )
 
     def _given(self) -> dict[str, Any]:
         """Gravity that was given as zero stays: it was not forgotten."""
         is_given = "gravity" in self.model_fields_set
         return super()._given() | (self.model_dump(include={"gravity"}) if is_given else {})
 
+    def require_free_names(self) -> None:
+        """Raises InvalidDocument for parameters whose name means something else: t is the time, pi a number."""
+        faults = [
+            Fault(f"/parameters/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions")
+            for name in self.parameters
+            if name in RESERVED
+        ]
+        if faults:
+            raise InvalidDocument(faults)
+
     def __repr__(self) -> str:
         """Two lines: its name, and what hangs on what."""
         loops = f"; closures {', '.join(c.name for c in self.closures)}" if self.closures else ""
         loops += f"; loads {', '.join(load.name for load in self.loads)}" if self.loads else ""
+        loops += f"; driven {', '.join(self.driven)}" if self.driven else ""
+        tied = ", ".join(c.name for c in self.velocity_constraints)
+        loops += f"; velocity constraints {tied}" if tied else ""
         hosts = ", ".join(f"{i.name} at {i.at}" for i in self.instances)
         return f"TreeSpec '{self.name}', {len(self.instances)} instances\n{hosts or 'empty'}{loops}"
 
     __str__ = __repr__
+
+
+def require_undriven(driven: Sequence[str], instead: str) -> None:
+    """Raises InvalidDocument (``has-driven``) where given motions would be ignored; ``instead``: what takes them."""
+    if driven:
+        names = ", ".join(f"'{name}'" for name in driven)
+        message = f"the motion of {names} is given ('driven'), which is not taken into account here: {instead}"
+        raise InvalidDocument.at("", "has-driven", message)
+
+
+#: what takes the velocity constraints of a tree
+TAKES_CONSTRAINTS = (
+    *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
+)
+
+
+def require_unconstrained(constraints: Iterable[str], what: str) -> None:
+    """Raises InvalidDocument (``has-velocity-constraints``) where ``what`` would ignore those with these names."""
+    names = ", ".join(f"'{name}'" for name in constraints)
+    if names and what not in TAKES_CONSTRAINTS:
+        message = (
+            f"the tree has the velocity constraints {names}, which '{what}' does not take into account: take "
+            f"{', '.join(TAKES_CONSTRAINTS)}, or the tree without 'velocity_constraints'"
+        )
+        raise InvalidDocument.at("", "has-velocity-constraints", message)
 
 
 def read_instance(data: Any) -> Instance:

@@ -20,7 +20,6 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
 from substructures.expr.trigonometry import cos_sin
@@ -35,6 +34,7 @@ from substructures.part.part import Part
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
+from substructures.tree.driven import all_coordinates, put_in
 from substructures.tree.glossary_motions import Glossary, inverse_terms, matrix, vector, velocity_terms
 from substructures.tree.grouping import Admitted, every, numbers
 from substructures.tree.inertial import planned
@@ -69,9 +69,11 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, mod
     found |= inverse_terms(placed, chain, rates, accelerations)
     if model is not None:
         own = (rates[m.first + c] for m in assembly.mounted for c in m.part.topology.movers)
-        found |= _stored(assembly.scope.graph, model, list(own))
+        free = [x for name, x in zip(all_coordinates(assembly), own, strict=True) if name not in spec.driven]
+        found |= _stored(assembly.scope.graph, model, free)
     of_loads = {} if model is None else {symbol.name: symbol for symbol in model.symbols}
-    return _written(assembly.scope.graph, found, {**of_loads, **assembly.scope.symbols})
+    outputs = put_in(assembly, _written(found))
+    return program(assembly.scope.graph, outputs, {**of_loads, **assembly.scope.symbols})
 
 
 def part_glossary(part: Part) -> Program:
@@ -80,7 +82,7 @@ def part_glossary(part: Part) -> Program:
     known = {symbol.name: symbol for symbol in part.program.symbols}
     graph = Graph()
     found, _, _ = _carried_by_joints(graph, [alone], ZERO, numbers)
-    return _written(graph, found, known)
+    return program(graph, _written(found), known)
 
 
 def _carried_by_joints(
@@ -100,13 +102,12 @@ def _carried_by_joints(
     return found, placed, chain
 
 
-def _written(graph: Graph, found: Glossary, symbols: Mapping[str, Symbol]) -> Program:
-    outputs = {
+def _written(found: Glossary) -> dict[str, Formulas]:
+    return {
         " ".join((letter, ".".join(str(k + 1) for k in joints), component)).rstrip(): Formulas((), {(): x})
         for (letter, joints, component), x in found.items()
         if isinstance(x, Expr) and not x.is_number and x.op != "sym"
     }
-    return program(graph, outputs, dict(symbols))
 
 
 def _momenta(chain: Sequence[Link], c: int, momentum: JointMomentum) -> Glossary:

@@ -8,7 +8,7 @@ bound to the inertia symbols of stored programs changes; the formulas and all th
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Collection, Sequence
 
 from substructures.expr.graph import Expr
 from substructures.mechanics.composite_form import Inertia
@@ -21,6 +21,8 @@ from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart, fram
 Inertias = dict[int, Inertia]
 #: whether an inertia may be moved, and another one be moved onto it
 Admitted = Callable[[Inertia], bool]
+#: operations whose results are numbers where all operands are
+_EXACT = ("add", "sub", "mul", "neg", "powi")
 
 
 def every(_: Inertia) -> bool:
@@ -30,8 +32,22 @@ def every(_: Inertia) -> bool:
 
 def numbers(inertia: Inertia) -> bool:
     """Numbers alone: to move them takes no operations."""
-    ten = (inertia.m, *inertia.s, *inertia.J)
-    return all(not isinstance(x, Expr) or x.is_number for x in ten)
+    return all(not isinstance(x, Expr) or x.is_number for x in (inertia.m, *inertia.s, *inertia.J))
+
+
+def numbers_and(constants: Collection[str]) -> Admitted:
+    """Numbers, and sums and products of them and of symbols that stand for numbers, ``constants``."""
+    known: list[bool] = []
+
+    def is_number(x: Expr) -> bool:
+        """Of a node of the one graph there is."""
+        for node in x.graph.nodes[len(known) :]:
+            is_named = node.op == "sym" and node.value in constants
+            is_made = node.op in _EXACT and all(known[operand.index] for operand in node.args)
+            known.append(node.is_number or is_named or is_made)
+        return known[x.index]
+
+    return lambda inertia: all(not isinstance(x, Expr) or is_number(x) for x in (inertia.m, *inertia.s, *inertia.J))
 
 
 def as_they_are(mounted: Sequence[MountedPart], own: Sequence[PartOutputs]) -> list[Inertias]:

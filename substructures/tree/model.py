@@ -2,32 +2,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
 from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import Fault, InvalidDocument, TooLarge, VerificationFailed, listed
+from substructures.errors import InvalidDocument, VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
-from substructures.expr.syntax import RESERVED
 from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
-from substructures.part.part import MAX_NODES, Part, recheck, told_operations
-from substructures.part.topology import MOST_CHRISTOFFEL, entries_of, expected_operations
+from substructures.part.part import MAX_NODES, Part, told_operations
+from substructures.part.topology import entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, division_by_zero, joint_parents
-from substructures.tree.certificate import certified, seconds_of
+from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.closures import ClosureRows, Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.grouping import every, numbers
+from substructures.tree.driven import all_coordinates, driven_inputs, driven_names, put_in
+from substructures.tree.grouping import Admitted, every, numbers_and
 from substructures.tree.load_potentials import found_potential
 from substructures.tree.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
-from substructures.tree.shape import CertifiedProgram, KnownShapes, shape_digest
+from substructures.tree.shape import CertifiedProgram, KnownShapes, limited, of_shape, with_numbers
 from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
@@ -39,7 +40,9 @@ class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
     the rows of the closure outputs are, ``reduction``: in which coordinates it moves; ``parameters``, ``inputs`` (of
     loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
-    ``plausibility``: of values, unknown of a model out of a store."""
+    ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given;
+    ``velocity_constraints``: of its motions, as plain data; the formulas are those without them; ``numbers``: in SI,
+    still to be put in for symbols of the program (:meth:`with_numbers`)."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -52,6 +55,9 @@ class Model:
     limited: tuple[str, ...] = ()
     plausibility: Plausibility | None = field(default=None, compare=False, repr=False)
     reduction: Reduction = field(default=Reduction(), hash=False)
+    driven: tuple[str, ...] = ()
+    velocity_constraints: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
+    numbers: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -64,6 +70,15 @@ class Model:
         """Arithmetic operations of every output alone; ``total``: of metric, christoffel and forces together."""
         together = [name for name in ("metric", "christoffel", "forces") if name in self.program.outputs]
         return self.program.totals() | {"total": self.program.count(together)["total"]}
+
+    def with_numbers(self) -> Model:
+        """The model with its numbers in the formulas, exactly."""
+        return replace(self, program=with_numbers(self.program, self.numbers), numbers={}) if self.numbers else self
+
+    @property
+    def constraint_names(self) -> tuple[str, ...]:
+        """The names of the velocity constraints."""
+        return tuple(each["name"] for each in self.velocity_constraints)
 
     @property
     def dof(self) -> int:
@@ -99,6 +114,8 @@ class Model:
         """What the axes of the outputs are, as plain data."""
         closures: dict[str, Any] = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
         closures |= {"reduction": self.reduction.plain()} if self.reduction else {}
+        closures |= {"driven": list(self.driven)} if self.driven else {}
+        closures |= {"velocity_constraints": list(self.velocity_constraints)} if self.velocity_constraints else {}
         return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
@@ -108,35 +125,28 @@ class Model:
 
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
-        return self.described() | {
+        found = self.described() | {
             "parameters": {name: dict(p) for name, p in self.parameters.items()},
             "inputs": {name: dict(given) for name, given in self.inputs.items()},
             "certificate": dict(self.certificate),
             "operations": self.operations,
         }
+        return found | ({"numbers": {name: str(x) for name, x in self.numbers.items()}} if self.numbers else {})
 
     @classmethod
     def load(cls, summary: Mapping[str, Any], program_bytes: bytes) -> Model:
-        """A stored model. Raises InvalidProgram when the bytes are damaged."""
-        names = (tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"]))
-        described = (summary["parameters"], summary["certificate"])
+        """A stored model, with its numbers put in. Raises InvalidProgram when the bytes are damaged."""
+        names = tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"])
+        described = summary["parameters"], summary["certificate"]
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
         inputs, limited = summary.get("inputs", {}), tuple(summary.get("limited", ()))
         program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
         reduction = Reduction.read(summary["reduction"]) if summary.get("reduction") else Reduction()
-        return cls(program, *names, *described, closures, inputs, limited, reduction=reduction)
-
-
-def require_stored(program: Program, names: Iterable[str]) -> None:
-    """Raises InvalidDocument (``not-stored``) for outputs that a model of many coordinates does not have."""
-    missing = [name for name in names if name not in program.outputs]
-    if missing:
-        message = (
-            f"of more than {MOST_CHRISTOFFEL:,} Christoffel symbols no formulas are stored, so there is no "
-            f"{listed(missing)}, but in numbers by an evaluation of a stored tree; velocity forces are found without "
-            "them (bias, inverse_dynamics, forward_dynamics)"
-        )
-        raise InvalidDocument.at("", "not-stored", message)
+        driven = tuple(summary.get("driven", ()))
+        found = cls(program, *names, *described, closures, inputs, limited, reduction=reduction, driven=driven)
+        values = {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}
+        found = replace(found, velocity_constraints=tuple(summary.get("velocity_constraints", ())), numbers=values)
+        return found.with_numbers()
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
@@ -150,7 +160,6 @@ def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
         raise InvalidDocument.at("", "has-closures", message)
 
 
-@without_collections
 def couple(
     spec: TreeSpec | Mapping[str, Any],
     parts: Mapping[str, Part],
@@ -174,9 +183,24 @@ def couple(
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
     VerificationFailed, which names the part whose stored formulas are wrong.
     """
-    start = perf_counter()
+    return couple_shape(spec, parts, max_nodes, admit, group, known).with_numbers()
+
+
+@without_collections
+def couple_shape(
+    spec: TreeSpec | Mapping[str, Any],
+    parts: Mapping[str, Part],
+    max_nodes: int = MAX_NODES,
+    admit: Callable[[int], None] | None = None,
+    group: bool = False,
+    known: KnownShapes | None = None,
+) -> Model:
+    """The model of :func:`couple`, ``numbers`` of whose parameters are still to be put in: program and certificate are
+    those of its shape (:mod:`substructures.tree.shape`). Raises as :func:`couple`.
+    """
+    start, verifying = perf_counter(), [0.0]
     spec = spec if isinstance(spec, TreeSpec) else TreeSpec.read(spec)
-    _require_free_names(spec)
+    spec.require_free_names()
     assembly = assemble(spec, parts)
     definitions = {name: part.definition for name, part in parts.items()}
     units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()}, definitions)
@@ -186,75 +210,80 @@ def couple(
     entries.require("the tree")
     if admit is not None:
         admit(expected_operations(joints_of))
-    shape = "" if known is None else shape_digest(spec, parts, group)
-    found = None if known is None else known.get(shape)
-    christoffel = not entries.is_large
-    result = _limited(found.program, max_nodes) if found else _formulas(spec, assembly, christoffel, group, max_nodes)
-    seconds = perf_counter() - start
     plausibility = Plausibility(spec, definitions)
-    model = _model(assembly, result, plausibility)
-    is_shared, start = False, perf_counter()
-    if found is None:
+
+    def made(free: TreeSpec, constants: Collection[str]) -> tuple[CertifiedProgram, bool]:
+        """A tree in which numbers are symbols, and whether its certificate is that of its shape."""
+        mine = assembly if free is spec else assemble(free, parts)
+        admitted = every if group else numbers_and(constants)
+        result = limited(_formulas(mine, not entries.is_large, admitted, None), max_nodes)
+        begun = perf_counter()
         try:
-            certificate, is_shared = certified(spec, definitions, model.described(), result)
+            certificate, is_shared = certified(
+                free, definitions, _model(mine, result, plausibility).described(), result
+            )
         except VerificationFailed as error:
-            raise _blamed(parts, error) from None
-        found = CertifiedProgram(result.marked(not_judged(certificate)), certificate, tuple(assembly.scope.notices))
-    if known is not None and is_shared:
-        known.put(shape, found)
-    told = [*units.warnings, *found.notices, *tree_warnings(spec, parts, result, model.coordinates)]
+            raise blamed(parts, error) from None
+        verifying[0] += perf_counter() - begun
+        judged = result.marked(not_judged(certificate))
+        return CertifiedProgram(judged, certificate, tuple(mine.scope.notices)), is_shared
+
+    found, values = of_shape(spec, parts, group, known, made)
+    model = replace(_model(assembly, limited(found.program, max_nodes), plausibility), numbers=values)
+    told = [*units.warnings, *found.notices, *tree_warnings(spec, parts, found.program, model.coordinates)]
     warnings = {"warnings": [*told, *plausibility.at_defaults], "converted": units.converted}
-    taken = {"seconds": seconds_of(seconds, perf_counter() - start)}
-    return replace(model, program=found.program, certificate={**found.certificate, **taken, **warnings})
+    seconds = seconds_of(perf_counter() - start - verifying[0], verifying[0])
+    return replace(model, certificate={**found.certificate, "seconds": seconds, **warnings})
 
 
 def couple_formulas(
-    spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES, christoffel: bool = True
+    spec: TreeSpec,
+    parts: Mapping[str, Part],
+    max_nodes: int = MAX_NODES,
+    christoffel: bool = True,
+    names: frozenset[str] | None = None,
 ) -> Model:
     """The model of :func:`couple` with the fewest operations for each state, and without a certificate: for numbers of
-    many parameter sets, some of which are compared with those of models that have one. Raises as :func:`couple`.
+    many parameter sets, some of which are compared with those of models that have one. ``names``: outputs that are
+    enough, of a tree without closures and given motions. Raises as :func:`couple`.
     """
     assembly = assemble(spec, parts)
     entries = entries_of(joint_parents(assembly.mounted))
     entries.require("the tree")
-    result = _formulas(spec, assembly, christoffel and not entries.is_large, True, max_nodes)
+    wanted = None if assembly.cuts or spec.driven else names
+    result = limited(_formulas(assembly, christoffel and not entries.is_large, every, wanted), max_nodes)
     return _model(assembly, result, Plausibility(spec, {name: part.definition for name, part in parts.items()}))
 
 
 def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> Model:
     """The model of an assembly, without a certificate."""
-    names, joints = _coordinate_names(assembly), "".join(m.part.joints for m in assembly.mounted)
+    driven = driven_names(assembly)
+    free = {name: kind for name, kind in all_coordinates(assembly).items() if name not in driven}
     rows = tuple(cut.rows for cut in assembly.cuts)
-    moving = [
-        f"{i.name}.{x.coordinate}"
-        for i, m in zip(assembly.instances, assembly.mounted, strict=True)
-        for x in m.part.topology.joints
-    ]
-    limited = tuple(moving[a] for a in sorted(assembly.limits))
-    names_of = (names, joints, _frame_names(assembly))
+    pairs = list(zip(assembly.instances, assembly.mounted, strict=True))
+    moving = [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]
+    frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
+    limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
+    names_of = (tuple(free), "".join(free.values()), frames)
     reduction = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
-    parameters, inputs = assembly.parameters, assembly.inputs
-    return Model(result, *names_of, parameters, {}, rows, inputs, limited, plausibility, reduction)
+    reduction = Reduction() if driven else reduction
+    parameters, inputs = assembly.parameters, assembly.inputs | driven_inputs(assembly)
+    model = Model(result, *names_of, parameters, {}, rows, inputs, limited, plausibility, reduction, driven)
+    tied = assembly.reading.spec.velocity_constraints
+    return replace(model, velocity_constraints=tuple(each.plain() for each in tied)) if tied else model
 
 
-def _formulas(spec: TreeSpec, assembly: Assembly, christoffel: bool, group: bool, max_nodes: int) -> Program:
-    """All outputs of a tree; ``christoffel``: with the Christoffel symbols."""
-    graph, names = assembly.scope.graph, _coordinate_names(assembly)
-    admitted = every if group else numbers
+def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted: frozenset[str] | None) -> Program:
+    """Outputs of a tree, all or those that are ``wanted``; ``admitted``: inertias that are grouped."""
+    graph, names = assembly.scope.graph, tuple(all_coordinates(assembly))
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-        result = hoisted(program(graph, loaded_outputs(assembly, coupled), assembly.scope.symbols))
+        outputs = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
+        outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
+        return hoisted(program(graph, outputs, assembly.scope.symbols))
     except ZeroDivisionError:
-        raise division_by_zero(spec, assembly) from None
-    return _limited(result, max_nodes)
-
-
-def _limited(result: Program, max_nodes: int) -> Program:
-    """The program. Raises TooLarge for more than so many operations."""
-    if len(result) > max_nodes:
-        raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
-    return result
+        raise division_by_zero(assembly.reading.spec, assembly) from None
 
 
 def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] | None = None) -> dict[str, Formulas]:
@@ -265,35 +294,3 @@ def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] |
         coupled = coupled.with_loads(acting.forces, acting.potential)
     least = partial(least_forces, assembly.scope, coupled, rates)
     return model_outputs(assembly, coupled, rates, accelerations, names, least)
-
-
-def _blamed(parts: Mapping[str, Part], error: VerificationFailed) -> VerificationFailed:
-    """The failure of a part whose stored formulas are wrong, by name; that of the tree where all parts are right."""
-    for instance, part in parts.items():
-        try:
-            recheck(part)
-        except VerificationFailed as fault:
-            what = f"the stored formulas of '{part.name}' ({part.program.digest}, instance '{instance}') are wrong"
-            return VerificationFailed(f"{what}: {fault}")
-    return error
-
-
-def _require_free_names(spec: TreeSpec) -> None:
-    """Raises InvalidDocument for parameters whose name means something else: t is the time, pi a number."""
-    faults = [
-        Fault(f"/parameters/{name}", "reserved-name", f"'{name}' has a fixed meaning in expressions")
-        for name in spec.parameters
-        if name in RESERVED
-    ]
-    if faults:
-        raise InvalidDocument(faults)
-
-
-def _coordinate_names(assembly: Assembly) -> tuple[str, ...]:
-    pairs = zip(assembly.instances, assembly.mounted, strict=True)
-    return tuple(f"{instance.name}.{coordinate}" for instance, m in pairs for coordinate in m.part.coordinates)
-
-
-def _frame_names(assembly: Assembly) -> tuple[str, ...]:
-    pairs = zip(assembly.instances, assembly.mounted, strict=True)
-    return tuple(f"{instance.name}.{frame}" for instance, m in pairs for frame in m.part.frames)

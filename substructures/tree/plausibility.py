@@ -28,6 +28,8 @@ ROUNDING = 1e-9
 #: so much, relative to 1 and its size, a coordinate may be beside the value that a relation gives it
 APART = 1e-6
 Indices = NDArray[np.intp]
+#: m, h and Theta of a body for every set of values, (10, N); m = 0 where Theta is about the mass centre
+Tensor = NDArray[Any]
 
 
 class _Values(Mapping[str, Any]):
@@ -40,6 +42,9 @@ class _Values(Mapping[str, Any]):
         if name not in self._found:
             self._found[name] = self._read(self._texts[name], self)
         return self._found[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._found or name in self._texts
 
     def __iter__(self) -> Iterator[str]:
         return iter({**self._texts, **self._found})
@@ -58,6 +63,9 @@ class _OfInstance(Mapping[str, Any]):
         if name not in self._names:
             raise KeyError(name)
         return self._tree[f"{self._instance}.{name}"]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self._names and f"{self._instance}.{name}" in self._tree
 
     def __iter__(self) -> Iterator[str]:
         return iter(self._names)
@@ -119,15 +127,19 @@ class Plausibility:
 
         Pointers lead into the tree document, to the instance. ``first``: what states are counted from.
         """
-        values, notices = _Values(self._texts, given), []
+        values, found = _Values(self._texts, given), list[tuple[str, str, Sequence[tuple[str, str]], Tensor | None]]()
         for i, instance in enumerate(self.spec.instances):
             definition = self.definitions[instance.name]
             names = _OfInstance(values, instance.name, definition.parameters)
             for body in definition.bodies:
-                for code, message in _faults(body, names, first):
-                    told = f"instance '{instance.name}', body '{body.name}': {message}"
-                    notices.append({"pointer": f"/instances/{i}", "code": code, "message": told})
-        return notices
+                told = f"instance '{instance.name}', body '{body.name}'"
+                found.append((f"/instances/{i}", told, *_faults(body, names, first)))
+        tensors = iter(_impossible([tensor for *_, tensor in found if tensor is not None], first))
+        return [
+            {"pointer": pointer, "code": code, "message": f"{told}: {message}"}
+            for pointer, told, faults, tensor in found
+            for code, message in (*faults, *(() if tensor is None else next(tensors)))
+        ]
 
     def limits(self, given: Mapping[str, Any]) -> dict[str, tuple[Any, Any, str]]:
         """Lowest and highest value of every coordinate that has limits, and its unit; (N,) where parameters are."""
@@ -211,22 +223,27 @@ def _more(count: int) -> str:
     return f" (and in {count - 1} more)" if count > 1 else ""
 
 
-def _faults(body: Body, names: Mapping[str, Any], first: int) -> Iterator[tuple[str, str]]:
-    """Code and message of what a body cannot have; numbers alone were looked at when formulas were derived."""
+def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tuple[str, str]], Tensor | None]:
+    """Code and message of what a body cannot have, and its inertia where that is to be looked at, too: numbers alone
+    were, when formulas were derived.
+    """
     tensor = body.inertia
     inertia = [getattr(tensor, e) for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    armature = body.joint.armature
+    armature, found = body.joint.armature, list[tuple[str, str]]()
     for given in armature if isinstance(armature, tuple) else (armature,):
         if isinstance(given, str):
-            yield from _negative("armature", number_of(given, names), "kg m^2", first)
+            found += _negative("armature", number_of(given, names), "kg m^2", first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
-        return
+        return found, None
     numbers = [number_of(x, names) for x in (body.mass, *body.com, *inertia)]
     if isinstance(body.mass, str):
-        yield from _negative("mass", numbers[0], "kg", first)
-    if all(x is not None for x in numbers):
-        m, x, y, z, *moments = np.broadcast_arrays(*numbers)
-        yield from _impossible(moments, (m, (x, y, z)) if tensor.about == "origin" else None, first)
+        found += _negative("mass", numbers[0], "kg", first)
+    if any(x is None for x in numbers):
+        return found, None
+    together = np.stack(np.broadcast_arrays(*numbers)).reshape(10, -1)
+    if tensor.about != "origin":
+        together[0] = 0
+    return found, together
 
 
 def _negative(what: str, given: Any, unit: str, first: int) -> Iterator[tuple[str, str]]:
@@ -243,24 +260,28 @@ def _place(found: Array, bad: Indices, first: int) -> str:
     return f", in state {first + bad[0]}{_more(len(bad))}" if len(found) > 1 else ""
 
 
-def _impossible(
-    moments: list[Array], shift: tuple[Array, tuple[Array, ...]] | None, first: int
-) -> Iterator[tuple[str, str]]:
-    """The tensor about the mass centre must have principal moments that obey the triangle inequality."""
-    xx, yy, zz, xy, xz, yz = moments
+def _impossible(tensors: Sequence[Tensor], first: int) -> Iterator[list[tuple[str, str]]]:
+    """Of every tensor: about the mass centre it must have principal moments that obey the triangle inequality."""
+    if not tensors:
+        return
+    m, x, y, z, xx, yy, zz, xy, xz, yz = np.concatenate(tensors, axis=1)
     # what overflows is told below
     with np.errstate(all="ignore"):
-        Theta = np.stack([np.stack(row, -1) for row in ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))], -2)
         # J = tr(Theta)/2 1 - Theta has no negative eigenvalue;   about another point J_C = J - m h h^T
-        J = np.trace(Theta, axis1=-2, axis2=-1)[..., None, None] / 2 * np.eye(3) - Theta
-        if shift is not None:
-            h = np.stack(shift[1], -1)
-            J = J - shift[0][..., None, None] * h[..., :, None] * h[..., None, :]
-    J = J.reshape(-1, 3, 3)
+        half, h = (xx + yy + zz) / 2, (x, y, z)
+        J = np.array([[half - xx, -xy, -xz], [-xy, half - yy, -yz], [-xz, -yz, half - zz]])
+        J = np.moveaxis(J - m * np.array([[a * b for b in h] for a in h]), -1, 0)
     finite = np.isfinite(J).all(axis=(1, 2))
-    eigenvalues = np.linalg.eigvalsh(np.where(finite[:, None, None], J, 0.0))
-    bad = np.flatnonzero(~finite | (eigenvalues[:, 0] < -ROUNDING * np.abs(eigenvalues).max(axis=1)))
+    values = np.linalg.eigvalsh(np.where(finite[:, None, None], J, 0.0))
+    is_bad = ~finite | (values[:, 0] < -ROUNDING * np.abs(values).max(axis=1))
+    end = 0
+    for tensor in tensors:
+        start, end = end, end + tensor.shape[1]
+        yield list(_told(values[start:end], np.flatnonzero(is_bad[start:end]), first))
+
+
+def _told(eigenvalues: Array, bad: Indices, first: int) -> Iterator[tuple[str, str]]:
     if len(bad):
         shown = ", ".join(f"{x:.6g}" for x in np.sort(eigenvalues[bad[0]].sum() - eigenvalues[bad[0]]))
         message = f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre"
-        yield "impossible-inertia", f"{message} (triangle inequality){_place(J, bad, first)}"
+        yield "impossible-inertia", f"{message} (triangle inequality){_place(eigenvalues, bad, first)}"

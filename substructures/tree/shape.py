@@ -2,22 +2,36 @@
 
 g, Gamma, Q and all other outputs are identities in the symbols and are compared with the documents at random values of
 all symbols, so that neither depends on the values of parameters (notation.md, section 6). What does, plausibility and
-warnings, is found for every tree.
+warnings, is found for every tree. Numbers that parameters of instances are bound to are values, too: symbols of the
+shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they make formulas shorter.
 """
 
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass
+from fractions import Fraction
+from functools import cached_property
 from typing import Any, Protocol
 
 from substructures.documents import read_json, write_json
+from substructures.documents.fields import in_si
+from substructures.errors import InvalidDocument, TooLarge
+from substructures.expr.bind import bind
+from substructures.expr.direct import steps_of
+from substructures.expr.hoist import hoisted
+from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 from substructures.expr.units.unit_check import Notice
 from substructures.part.part import Part
 from substructures.part.shape import without_descriptions
 from substructures.tree.document import TreeSpec
+
+#: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
+MOST_BITS = 128
+#: operations that have a value whatever their operands are
+TOTAL = frozenset(("add", "sub", "mul", "neg", "int", "rat", "sym", "sin", "cos"))
 
 
 @dataclass(frozen=True)
@@ -27,6 +41,107 @@ class CertifiedProgram:
     program: Program
     certificate: Mapping[str, Any]
     notices: Sequence[Notice] = ()
+
+    @cached_property
+    def _is_total(self) -> bool:
+        return all(map(_is_total, self.program.operations))
+
+    def takes(self, values: Mapping[str, Fraction]) -> bool:
+        """Whether these numbers may be put in: no formula divides by zero, or leaves its domain, with them."""
+        if not values or self._is_total:
+            return True
+        try:
+            with_numbers(self.program, values)
+        except (InvalidDocument, TooLarge):
+            return False
+        return True
+
+
+def _is_total(operation: Operation) -> bool:
+    return operation[0] in TOTAL or (operation[0] == "powi" and operation[2] > 0)
+
+
+def of_shape(
+    spec: TreeSpec,
+    parts: Mapping[str, Part],
+    group: bool,
+    known: KnownShapes | None,
+    make: Callable[[TreeSpec, Collection[str]], tuple[CertifiedProgram, bool]],
+) -> tuple[CertifiedProgram, dict[str, Fraction]]:
+    """What is known of the shape of a tree, or made, and the numbers to be put in.
+
+    ``make``: gives it of a tree that is free of the numbers of such parameters, and whether it holds for all values of
+    parameters. Where it does not, and where numbers cannot be put in, the tree with its numbers is a shape of its own.
+    """
+    free, values = without_numbers(spec)
+    if values:
+        try:
+            found, is_shared = _found(free, parts, group, known, make, values)
+        except (InvalidDocument, TooLarge):  # maybe not with numbers
+            is_shared = False
+        if is_shared and found.takes(values):
+            return found, values
+    return _found(spec, parts, group, known, make, {})[0], {}
+
+
+def _found(
+    spec: TreeSpec,
+    parts: Mapping[str, Part],
+    group: bool,
+    known: KnownShapes | None,
+    make: Callable[[TreeSpec, Collection[str]], tuple[CertifiedProgram, bool]],
+    values: Collection[str],
+) -> tuple[CertifiedProgram, bool]:
+    if known is None:
+        return make(spec, values)
+    key = shape_digest(spec, parts, group, values)
+    found = known.get(key)
+    if found is not None:
+        return found, True
+    found, is_shared = make(spec, values)
+    if is_shared:
+        known.put(key, found)
+    return found, is_shared
+
+
+def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
+    """The tree in which parameters that are bound to numbers are free, and these numbers in SI by ``instance.name``.
+
+    >>> p = {"name": "p", "substructure": "x", "parameters": {"l": 2, "m": "m0", "k": 0}}
+    >>> free, numbers = without_numbers(TreeSpec.read({"name": "t", "instances": [p]}))
+    >>> free.instances[0].parameters, numbers
+    ({'m': 'm0', 'k': 0}, {'p.l': Fraction(2, 1)})
+    """
+    instances, numbers = [], dict[str, Fraction]()
+    for each in spec.instances:
+        own = {name: x for name, given in each.parameters.items() if (x := _value(given)) is not None}
+        numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
+        left = {name: given for name, given in each.parameters.items() if name not in own}
+        instances.append(each.model_copy(update={"parameters": left}) if own else each)
+    return (spec.model_copy(update={"instances": tuple(instances)}) if numbers else spec), numbers
+
+
+def _value(given: Any) -> Fraction | None:
+    """A number that is a value, also one in quotes; None of expressions and of what belongs to the shape."""
+    try:
+        number, *rest = steps_of(in_si(given))
+    except ValueError:  # is told where it is read
+        return None
+    if number.op != "number" or any(step.op != "neg" for step in rest):
+        return None
+    found = Fraction(number.value) * (-1) ** len(rest)  # type: ignore[arg-type]  # as its op says
+    if abs(found) in (0, 1):
+        return None
+    return found if max(found.numerator.bit_length(), found.denominator.bit_length()) <= MOST_BITS else None
+
+
+def with_numbers(program: Program, values: Mapping[str, Fraction]) -> Program:
+    """The program of a shape with numbers in the places of symbols, exactly. Raises as
+    :func:`substructures.expr.bind.bind`.
+    """
+    known = {symbol.name for symbol in program.symbols}
+    own = {name: x for name, x in values.items() if name in known}
+    return hoisted(bind(program, own)).marked(program.not_judged) if own else program
 
 
 class KnownShapes(Protocol):
@@ -39,18 +154,31 @@ class KnownShapes(Protocol):
         """Remember a shape."""
 
 
-def shape_digest(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False) -> str:
+def shape_digest(
+    spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, constants: Collection[str] = ()
+) -> str:
     """The digest of the shape of a tree: mounts, placements, bindings, loads and closures, the shapes of its ``parts``
-    (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.model.couple`.
+    (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.model.couple`;
+    ``constants``: the parameters that numbers are put in for.
 
-    Words, and the values of the parts' parameters, are not in it. Numbers that parameters of instances are bound to
-    are: they stand in the formulas. So are the tree's own defaults: the order of operations depends on them.
+    Words and values of parameters are not in it; of the tree's own there is whether they have one.
     """
     plain: dict[str, Any] = read_json(spec.canonical())
+    if "parameters" in plain:
+        plain["parameters"] = {
+            name: {**each, "value": each.get("value") is not None} for name, each in plain["parameters"].items()
+        }
     instances = [
         {name: x for name, x in each.items() if name not in ("substructure", "definition")}
         | {"part": parts[each["name"]].shape}
         for each in plain.get("instances", ())
     ]
     left = {name: x for name, x in plain.items() if name != "name"} | {"instances": instances}
-    return hashlib.sha256(write_json([without_descriptions(left), group])).hexdigest()
+    return hashlib.sha256(write_json([without_descriptions(left), group, sorted(constants)])).hexdigest()
+
+
+def limited(result: Program, max_nodes: int) -> Program:
+    """The program. Raises TooLarge for more than so many operations."""
+    if len(result) > max_nodes:
+        raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
+    return result

@@ -6,11 +6,12 @@ from collections.abc import Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
+from substructures.documents import escape
 from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.program import Program
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimension_of
-from substructures.loads.units import COORDINATE, RATE, vector
+from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
 from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
@@ -25,8 +26,7 @@ from substructures.part.units import (
     parameter_places,
     placement_places,
 )
-from substructures.tree.document import TreeSpec
-from substructures.tree.interfaces import differing_interfaces
+from substructures.tree.document import RollingConstraint, TreeSpec
 
 TIME = read_unit("s").dimension
 #: parameters of a definition by name, with their SI units
@@ -53,11 +53,12 @@ def check_tree_units(
     check.check(_bindings(spec, dimensions), True)
     radians = {name: NUMBER for name, unit in units.items() if unit == RAD}
     check.warnings += angle_warnings([*_places(spec), *_bindings(spec, radians)], spec.parameters)
-    if spec.loads:
+    if spec.loads or spec.driven:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)
         check.names = lambda name: known[name] if name in known else moving.get(name) or dimension_of_measure(name)
         check.check(_loads(spec, kinds), False)
+        check.check(_driven(spec, kinds), False)
     return check
 
 
@@ -88,11 +89,21 @@ def _loads(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
         yield from load.places(f"/loads/{i}", kinds)
 
 
+def _driven(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
+    """Given motions have the dimension of their coordinate."""
+    for name, motion in spec.driven.items():
+        if name in kinds:
+            yield f"/driven/{escape(name)}", motion, COORDINATE[kinds[name]]
+
+
 def _places(spec: TreeSpec) -> Iterator[Place]:
     yield from vector("/gravity", spec.gravity, ACCELERATION)
     for i, instance in enumerate(spec.instances):
         yield from placement_places(f"/instances/{i}/placement", instance.placement)
     yield from closure_places(spec.closures)
+    for i, each in enumerate(spec.velocity_constraints):
+        if isinstance(each, RollingConstraint):
+            yield f"/velocity_constraints/{i}/radius", each.radius, LENGTH
 
 
 def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[Place]:
@@ -141,6 +152,20 @@ def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, n
                 )
                 notices.append(_notice(pointer, "unit-assumed", message))
     return notices
+
+
+def differing_interfaces(spec: TreeSpec, definitions: Mapping[str, Definition]) -> Iterator[Notice]:
+    """A notice for every instance whose mount has another interface than the port of its host; by instance the
+    ``definitions``. Where one of them names none, everything fits.
+    """
+    for i, instance in enumerate(spec.instances):
+        host, _, name = instance.at.partition(".")
+        mount = definitions[instance.name].mount
+        ports = {port.name: port.interface for port in definitions[host].ports} if host in definitions else {}
+        given = ports.get(name, "")
+        if mount is not None and mount.interface and given and mount.interface != given:
+            message = f"'{instance.at}' is a '{given}', and '{instance.name}' is made for a '{mount.interface}'"
+            yield _notice(f"/instances/{i}/at", "interfaces-differ", message)
 
 
 def _notice(pointer: str, code: str, message: str) -> Notice:

@@ -238,7 +238,7 @@ def test_formulas_print_in_every_format_and_cost_little() -> None:
         ({"parameters": {"x.z": 1}}, "/parameters/x.z", "unknown-parameter"),
         ({"q": [[1, 2]]}, "/q", "wrong-length"),
         ({"q": [1, 2]}, "/q", "too-many-states"),
-        ({"controls": []}, "/controls", "too-short"),
+        ({"controls": "tau.x.q1"}, "/controls", "list-expected"),
         ({"hold": "cubic"}, "/hold", "literal-error"),
         ({"steps": 0}, "/steps", "greater-than-equal"),
     ],

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_motions import METHODS, crank_inertia, piston, right, slope
-from closed_trees import at, tree_model
+from closed_trees import at, held_bar, tree_model
 from in_depth import deep
 from random_trees import Plain
 from scipy.integrate import solve_ivp
@@ -239,7 +239,6 @@ def test_a_drive_that_waits() -> None:
     np.testing.assert_allclose(motion.series["friction"][3:], [[-0.02, 0.01, 0.5]] * 2, rtol=1e-9)
 
 
-# takes seconds: the forces of joints that stick are a linear program at every step
 @pytest.mark.deep  # 4 s: several loops at once
 def test_loops_beside_each_other_stick_one_by_one() -> None:
     """Two pairs of blocks, each welded: one holds its load, the other does not; forces are those of least shares."""
@@ -350,35 +349,6 @@ def test_what_closed_motions_refuse() -> None:
     assert [fault.pointer for fault in error.value.faults] == ["/friction"]
 
 
-def held_bar() -> Model:
-    """A four-bar whose crank is held by 5 N m."""
-    joint = {"type": "revolute", "coordinate": "q1", "friction": {"coulomb": 5, "velocity": 0.001}}
-    bodies = [
-        {"name": "crank", "parent": "base", "joint": joint, "mass": 1, "com": [0.1, 0, 0]},
-        {
-            "name": "coupler",
-            "parent": "crank",
-            "joint": {"type": "revolute", "coordinate": "q2", "d": 0.2},
-            "mass": 1,
-            "com": [0.25, 0, 0],
-        },
-        {
-            "name": "rocker",
-            "parent": "base",
-            "joint": {"type": "revolute", "coordinate": "q3", "placement": {"position": [0.45, 0, 0]}},
-            "mass": 1,
-            "com": [0.2, 0, 0],
-        },
-    ]
-    ports = [
-        {"name": "e", "body": "coupler", "position": [0.5, 0, 0]},
-        {"name": "r", "body": "rocker", "position": [0.4, 0, 0]},
-    ]
-    pin = {"name": "pin", "type": "pin", "from": "f.e", "to": "f.r"}
-    document = {"gravity": [0, 0, 0], "instances": [{"name": "f", "substructure": "bar"}], "closures": [pin]}
-    return tree_model(document, {"bar": {"name": "bar", "bodies": bodies, "ports": ports}})
-
-
 @pytest.mark.parametrize("method", METHODS)
 @pytest.mark.parametrize("torque", [1, *deep(0, 4.9, -4.999)])
 def test_a_mechanism_that_is_stuck_stays_where_it_is_and_is_right(torque: float, method: Any) -> None:
@@ -399,7 +369,22 @@ def test_many_steps_near_rest_are_told_to_take_exact_friction() -> None:
     motion = simulated(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), max_steps=1200, **request)
     assert motion.qd[-1, 0] == pytest.approx(0.001 * np.arctanh(0.1), rel=1e-3)
     assert "1,200 steps were taken, most of them while 'f.q1' nearly stood still" in motion.message
-    assert motion.message.endswith("'friction': 'exact' needs no such steps")
+    assert motion.message.endswith("the method 'Radau' and 'friction': 'exact' need no such steps")
     exact = simulated(held_bar(), [0.5, 0.09, 1.2], (0, 0.3), friction="exact", **request)
     assert (exact.message, exact.is_right) == ("", True)
     assert exact.steps < 20
+
+
+@pytest.mark.deep  # 3 s: a fast mechanism, and smooth friction that is steep beside it
+def test_joints_that_turn_while_others_move_fast() -> None:
+    """The rocker turns back within the resolution of times; smooth friction comes to the same as v_0 gets smaller."""
+    joints, request = ("q1", "q2", "q3"), {"count": 2, "inputs": {"tau.f.q1": "30*sin(3*t)"}}
+    exact = simulated(held_bar(joints), [0.5, 0.09, 1.2], (0, 0.45), friction="exact", **request)
+    assert (exact.status, exact.is_right) == ("finished", True)
+    ends = [
+        simulated(held_bar(joints, v), [0.5, 0.09, 1.2], (0, 0.45), method="Radau", relative_tolerance=1e-8, **request)
+        for v in (1e-4, 1e-5)
+    ]
+    far, near = (float(np.abs(smooth.q[-1] - exact.q[-1]).max()) for smooth in ends)
+    assert near < 1e-4
+    assert 6 < far / near < 10

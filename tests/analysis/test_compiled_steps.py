@@ -7,10 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import catalogue_model, shipped
+from closed_trees import at, four_bar
 from in_depth import deep
+from random_trees import Plain
 from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
@@ -76,6 +79,20 @@ def test_shipped_entries(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     assert abs(ours.steps - plain.steps) <= 2
     for one, two in ((ours.q, plain.q), (ours.qd, plain.qd)):
         np.testing.assert_allclose(one, two, rtol=0, atol=1e-8 * (1 + np.abs(two).max()))
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+def test_closed_motions(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Steps that land on the closures, against SciPy's."""
+    model, tolerances = four_bar((0, -9.81, 0)), {"relative_tolerance": 1e-6, "absolute_tolerance": 1e-8}
+    request: Plain = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=9), "span": [0, 0.3]}
+    request |= {"inputs": {"tau.x.crank": "0.1*sin(20*t)"}, "method": method, "fixed": ["x.crank"], "count": 7}
+    ours = simulated(model, **request, **tolerances)
+    monkeypatch.setattr(Projected, "compiled", lambda _: None)
+    plain = simulated(model, **request, **tolerances)
+    assert (ours.status, ours.is_right, ours.steps) == (plain.status, plain.is_right, plain.steps)
+    for one, two in ((ours.q, plain.q), (ours.qd, plain.qd)):
+        np.testing.assert_allclose(one, two, rtol=0, atol=1e-11 * np.abs(two).max())
 
 
 def test_fixed_steps() -> None:

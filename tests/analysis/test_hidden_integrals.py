@@ -13,7 +13,8 @@ import scipy
 from analysis_models import catalogue_model, values_at
 from random_trees import Plain, model_of, random_states
 
-from substructures import InvalidArgument, Model
+from benchmarks.chains import chain, general_rows, row_of
+from substructures import InvalidArgument, Model, couple, derive
 from substructures.analysis.equations import integral_search
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.symmetries import Direction
@@ -264,6 +265,14 @@ def test_the_degree_is_said() -> None:
     with pytest.raises(InvalidArgument, match="give 1 or 2") as error:
         first_integrals(model, degree=3)  # type: ignore[arg-type]
     assert error.value.faults[0].pointer == "/degree"
+
+
+def test_functions_that_depend_on_each_other_are_no_candidates(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Products of harmonics with sums of them: combinations that vanish everywhere are not handed to exact algebra."""
+    monkeypatch.setattr(integral_search, "exact_constants", lambda *_: pytest.fail("a candidate"))
+    part = derive(chain("chain", general_rows(1)))
+    found = first_integrals(couple(row_of([part.definition]), {"p0": part}))
+    assert [each.name for each in found.integrals] == ["energy"]
 
 
 def test_a_wrong_constant_is_found(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -4,16 +4,15 @@
 
 from __future__ import annotations
 
-from functools import cache
 from typing import Any
 
 import numpy as np
 import pytest
-from catalogue_entries import shipped_part
+from identified_motions import IN_PLANE, UP, base_of, motion, tree
 from in_depth import deep, seeds
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
-from substructures import Definition, InvalidInput, Part, TooLarge, TreeSpec, couple, derive
+from substructures import Definition, InvalidInput, TooLarge, TreeSpec, couple, derive
 from substructures.analysis.equations import dependencies
 from substructures.analysis.identification import base_parameters as base_module
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
@@ -23,20 +22,6 @@ from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
-
-UP = (0, 0, "-9.81")
-IN_PLANE = (0, "-9.81", 0)
-
-
-@cache
-def tree(name: str, gravity: tuple[Any, ...] = UP) -> tuple[TreeSpec, dict[str, Part]]:
-    spec = {"name": "t", "gravity": list(gravity), "instances": [{"name": "x", "substructure": name}]}
-    return TreeSpec.read(spec), {"x": shipped_part(name)}
-
-
-@cache
-def base_of(name: str, gravity: tuple[Any, ...] = UP, drives: tuple[str, ...] = ()) -> BaseParameters:
-    return base_parameters(regressor(*tree(name, gravity)), drives)
 
 
 def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int:
@@ -224,20 +209,6 @@ def test_drives() -> None:
     found = base_parameters(Y, drives).program
     for form in FORMATS:
         assert render(found, form, interface=Interface.of_symbols(found.symbols))
-
-
-def motion(n: int, samples: int, seed: int = 0) -> Plain:
-    """Finite Fourier series, as they are used for identification."""
-    rng, t = np.random.default_rng(seed), np.linspace(0, 10, samples)
-    k = np.arange(1, 6)
-    angle = 0.2 * np.pi * k[None] * t[:, None]
-    a, b = rng.uniform(-0.5, 0.5, (2, 5, n))
-    w = 0.2 * np.pi * k[:, None]
-    return {
-        "q": np.sin(angle) @ a + np.cos(angle) @ b,
-        "qd": np.cos(angle) @ (w * a) - np.sin(angle) @ (w * b),
-        "qdd": -np.sin(angle) @ (w**2 * a) - np.cos(angle) @ (w**2 * b),
-    }
 
 
 def own_values(base: BaseParameters) -> Any:

@@ -278,3 +278,16 @@ def test_shown_in_two_lines() -> None:
     assert shown[0] == "Linearisation(n=2, inputs=2, outputs=0, states=1)"
     assert shown[1].startswith("about an equilibrium, stable: ")
     assert repr(linearise(model, [[0, 0], [1, 0]])).endswith("states=2)\nabout states along a motion")
+
+
+@pytest.mark.parametrize("moment", [0.1, 0.3, 0.7, 2])
+def test_a_metric_that_is_singular_but_for_rounding_fails_with_advice(moment: float) -> None:
+    """Two joints on one axis and one body, g = J [1 1; 1 1]: the last pivot is 0, or what rounding leaves of it."""
+    first: Plain = {"name": "a", "parent": "base", "joint": {"type": "revolute", "coordinate": "q1"}}
+    inertia = {"xx": 1, "yy": 1, "zz": moment}
+    second: Plain = {"name": "b", "parent": "a", "mass": 1, "inertia": inertia, "joint": {"type": "revolute"}}
+    model = model_of({"name": "coaxial", "bodies": [first, second]}, (0, 0, -9.81))
+    found = linearise(model, [0, 0])
+    assert found.status == "failed"
+    assert "the metric is singular" in found.message
+    assert [place.verdict for place in equilibria(model, count=1).found] == ["failed"]

@@ -12,8 +12,9 @@ from random_trees import Plain, model_of
 from scipy.integrate import solve_ivp
 
 from substructures import InvalidInput, Model
+from substructures.analysis.control.demands import Demands, End
 from substructures.analysis.control.from_fields import control_arguments
-from substructures.analysis.control.nonlinear_program import Demands, End, ShootingProgram
+from substructures.analysis.control.nonlinear_program import ShootingProgram
 from substructures.analysis.control.optimal_control import Optimum, optimal_control
 from substructures.analysis.control.problem import ControlProblem, Cost
 from substructures.quantities.numbers.evaluation import evaluate

@@ -6,12 +6,15 @@ from typing import Any
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from substructures import couple, derive
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits import flow as flows
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+from substructures.analysis.orbits.sections import poincare_section
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
 
@@ -101,6 +104,82 @@ def test_chaos_and_order_of_henon_and_heiles(henon_heiles: Model) -> None:
         np.testing.assert_allclose(each.exponents + each.exponents[::-1], 0, atol=2 * each.deviations.max() + 1e-3)
 
 
+def section_of(model: Model, energy: float, y: float, count: int) -> Any:
+    """x = 0, x' > 0"""
+    speed = np.sqrt(2 * (energy - y**2 / 2 + y**3 / 3))
+    start: Any = {"qd": [0.9 * speed, np.sqrt(0.19) * speed], "count": count}
+    return poincare_section(model, [0, y], "p.x", 20 * count, **start)
+
+
+def test_a_section_of_henon_and_heiles(henon_heiles: Model) -> None:
+    """Beside an integration by SciPy; all points have the energy."""
+    found = section_of(henon_heiles, 1 / 12, 0.1, 10)
+    assert (found.status, found.is_right, found.message) == ("finished", True, "")
+
+    def rate(_: float, z: Any) -> Any:
+        x, y, u, v = z
+        return [u, v, -x - 2 * x * y, -y - x * x + y * y]
+
+    def crossed(_: float, z: Any) -> float:
+        return float(z[0])
+
+    crossed.direction = 1  # type: ignore[attr-defined]
+    speed = np.sqrt(2 * (1 / 12 - 0.1**2 / 2 + 0.1**3 / 3))
+    start = [0, 0.1, 0.9 * speed, np.sqrt(0.19) * speed]
+    options: Any = {"method": "DOP853", "events": crossed, "rtol": 1e-12, "atol": 1e-14}
+    other = solve_ivp(rate, (0, found.t[-1] + 1e-3), start, **options)
+    np.testing.assert_allclose(found.t, other.t_events[0][-10:], rtol=1e-8)
+    np.testing.assert_allclose(np.hstack([found.q, found.qd]), other.y_events[0][-10:], atol=1e-7)
+
+
+def test_order_and_chaos_are_seen_in_sections(henon_heiles: Model) -> None:
+    """A curve at E = 1/12, an area at E = 1/6 (M. Henon and C. Heiles, 1964, figures 4 and 6)."""
+    boxes = []
+    for energy, y in ((1 / 12, 0.1), (1 / 6, -0.15)):
+        found = section_of(henon_heiles, energy, y, 300)
+        assert found.is_right
+        (x, y_), (u, v) = found.q.T, found.qd.T
+        energies = (u**2 + v**2 + x**2 + y_**2) / 2 + x**2 * y_ - y_**3 / 3
+        np.testing.assert_allclose(energies, energy, atol=1e-8)
+        assert np.abs(x).max() < 1e-10
+        assert u.min() > 0
+        boxes.append(len({tuple(box) for box in np.floor(20 * np.column_stack([y_, v])).astype(int).tolist()}))
+    assert boxes[0] < 60
+    assert boxes[1] > 180
+
+
+def test_once_a_period_of_a_driven_pendulum(pendulum: Model) -> None:
+    """Its section comes to a point, which the linear response is near to."""
+    forced: Any = {"inputs": {"tau.p.q1": "0.5*cos(2*t) - 1.5*p.q1'"}}
+    found = poincare_section(pendulum, [0.4], "sin(2*t)", 100, **forced, count=25)
+    np.testing.assert_allclose(found.t, np.pi * np.arange(1, 26), rtol=1e-10)
+    np.testing.assert_allclose(found.q[-1], found.q[-2], atol=1e-8)
+    # q'' + 1.5 q' + 9.81 q = 0.5 cos 2 t, but for terms of third order
+    phase = 0.5 / (G - 4 + 3j)
+    np.testing.assert_allclose(found.q[-1], phase.real, rtol=1e-2)
+    assert found.is_right
+
+
+def test_a_section_that_is_not_met(pendulum: Model) -> None:
+    found = poincare_section(pendulum, [0.4], "p.q1", 3, level=1.0)
+    assert (len(found.t), found.q.shape, found.status) == (0, (0, 1), "finished")
+    assert found.message == "the section is met 0 times in 3 s"
+    found = poincare_section(pendulum, [0.4], "p.q1", 3, direction="both")
+    assert found.message == "the section is met 3 times in 3 s"
+    for given, pointer in (({"count": 0}, "/count"), ({"direction": "up"}, "/direction"), ({"level": "x"}, "/level")):
+        with pytest.raises(InvalidInput) as caught:
+            poincare_section(pendulum, [0.4], "p.q1", 3, **given)
+        assert caught.value.faults[0].pointer == pointer
+    with pytest.raises(InvalidInput) as caught:
+        poincare_section(pendulum, [0.4], "p.q7", 3)
+    assert caught.value.faults[0].pointer == "/quantity"
+
+
+def test_a_section_of_a_drifting_motion_is_not_right(henon_heiles: Model) -> None:
+    rough = Integrator(relative_tolerance=1e-3, absolute_tolerance=1e-4)
+    assert poincare_section(henon_heiles, [0, 0.1], "p.x", 100, qd=[0.3, 0.1], integrator=rough).is_right is False
+
+
 def test_exponents_add_up_to_the_damping(duffing: Model) -> None:
     found = lyapunov_exponents(duffing, [0.5], 200, inputs={"tau.p.x": "0.4*cos(t)"}, transient=20)
     assert found.exponents.sum() == pytest.approx(-0.25, abs=1e-6)
@@ -145,6 +224,8 @@ def test_rest_is_no_orbit() -> None:
         (Shooting(1, hold=("p.q9",)), {}, "/hold/0"),
         (Shooting(1, turns={"p.x": 1}), {}, "/turns/p.x"),
         (Shooting(1), {"vary": "p.mass"}, "/vary"),
+        (Shooting(1), {"vary": "p.q1"}, "/values"),
+        (Shooting(1), {"values": [1.0]}, "/vary"),
         (Shooting(-1), {}, "/period"),
         (Shooting(1), {"inputs": {"tau.p.q1": "p.q1"}}, "/inputs"),
         (Shooting(1), {"parameters": {"p.mass": 1}}, "/parameters/p.mass"),

@@ -22,7 +22,7 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature_values
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.simulate import Closed, Linear
 from substructures.expr.interpret import interpret

@@ -23,8 +23,8 @@ from simulated import simulated
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.demands import End
 from substructures.analysis.control.from_fields import control_arguments
-from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.simulate import Event

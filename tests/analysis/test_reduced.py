@@ -17,8 +17,8 @@ from made_once import derived_once
 from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reduced import ReducedEquations, reduced_equations
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
-from substructures.analysis.equations.velocity_constraints import Closed
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Closed
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.tree.certificate import certify_tree

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from analysis_models import walker
 
 from substructures import (
     Definition,
@@ -67,6 +68,15 @@ def test_a_ball_bounces_as_it_does(ball: Model) -> None:
         speed = 0.0 if k == 0 else E**k * math.sqrt(2 * G)
         height = (1.0 if k == 0 else 0.0) + speed * t - G * t * t / 2
         assert motion.q[inside, 0] == pytest.approx(height, abs=1e-11)
+
+
+def test_an_event_may_happen_where_a_result_is_wanted(ball: Model) -> None:
+    """Within rounding: between the two is no step that could be done again."""
+    first = math.sqrt(2 / G)
+    for beside in (0, 1, -1, 3):
+        when = first + beside * np.spacing(first)
+        motion = simulate(ball, [1], (0, 1), outputs=Outputs(events=[FLOOR], times=[0, when, 1]))
+        assert (motion.status, motion.is_right) == ("finished", True)
 
 
 def test_what_events_do_to_the_energy_is_told(ball: Model) -> None:
@@ -208,24 +218,10 @@ def test_progress_is_that_of_the_whole(ball: Model) -> None:
 SLOPE, START = 0.009, (0.2003109, -0.1998325)
 
 
-def walker() -> Model:
-    """In the plane x, y, x normal to the slope: stance leg at ``theta`` from x, swing leg at ``phi`` against it."""
-    legs = {
-        "name": "legs",
-        "bodies": [
-            {"name": "stance", "parent": "base", "mass": 1, "com": [1, 0, 0],
-             "joint": {"type": "revolute", "coordinate": "theta"}},
-            {"name": "swing", "parent": "stance", "mass": "1/10^9", "com": [-1, 0, 0],
-             "joint": {"type": "revolute", "coordinate": "psi", "d": 1}},
-        ],
-    }  # fmt: skip
-    return of("w", legs, [-math.cos(SLOPE), -math.sin(SLOPE), 0])
-
-
 def test_the_simplest_walker_walks_as_published() -> None:
     """The gait repeats itself; that the foot scuffs on the way, rising through the ground, is no step."""
     theta, rate = START
-    model = walker()
+    model = walker(SLOPE)
     q = [theta, -2 * theta]  # psi = -phi turns the swing leg against the stance leg
     qd = [rate, -(1 - math.cos(2 * theta)) * rate]
     step = Event(

@@ -13,7 +13,7 @@ from simulated import simulated
 
 from substructures import Model, catalogue
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.simulate import ClosedMotion, simulate
+from substructures.analysis.simulate import ClosedMotion, Integrator, simulate
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers; IFToMM benchmark A03: start, and values at 0.03 s
 START = [-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550]
@@ -87,3 +87,11 @@ def test_both_methods_agree() -> None:
     model, _, start, _ = squeezer_in_one_piece()
     ends = [simulate(model, start, (0, 0.01), kind=ClosedMotion(reduction=method)).q[-1] for method in METHODS]
     np.testing.assert_allclose(*ends, rtol=1e-8, atol=1e-10)
+
+
+@pytest.mark.parametrize("method", ["Radau", "BDF"])
+def test_implicit_methods_agree(method: str) -> None:
+    model, _, start, _ = squeezer_in_one_piece()
+    motions = [simulate(model, start, (0, 0.01), integrator=Integrator(name)) for name in (method, "DOP853")]
+    assert motions[0].is_right, motions[0].checks
+    np.testing.assert_allclose(motions[0].q[-1], motions[1].q[-1], atol=1e-8)

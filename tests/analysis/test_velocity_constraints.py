@@ -14,9 +14,10 @@ from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
-from substructures.analysis.equations.velocity_constraints import Constraint
+from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint
 from substructures.analysis.simulate import Closed, KnifeEdge, Linear, Outputs, Rolling, simulate
+from substructures.errors import InvalidInput
 from substructures.export import Interface, render
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
@@ -110,8 +111,8 @@ def test_cart_on_two_wheels() -> None:
     exact(equations, {"T": along | turning})
 
 
-def random_constraints(rng: np.random.Generator, model: Model, count: int) -> list[Constraint]:
-    """Coefficients are cosines and sines of coordinates, and numbers."""
+def random_constraints(rng: np.random.Generator, model: Model, count: int, is_affine: bool) -> list[Constraint]:
+    """Coefficients are cosines and sines of coordinates, and numbers; what is given depends on coordinates and time."""
     result: list[Constraint] = []
     for k in range(count):
         terms = []
@@ -119,17 +120,20 @@ def random_constraints(rng: np.random.Generator, model: Model, count: int) -> li
             other = model.coordinates[rng.integers(model.dof)]
             shapes = ["1", f"cos({other})", f"(2 + sin({other}))", f"({other}/3 - 1)"]
             terms.append(f"{rng.uniform(0.5, 2):.2f}*{shapes[rng.integers(4)]}*{name}'")
+        if is_affine:
+            terms.append(f"(1 + sin({model.coordinates[0]}))*(2 - cos({3 + k}*t))")
         result.append(Linear(f"c{k}", " + ".join(terms)))
     return result
 
 
+@pytest.mark.parametrize("is_affine", [False, True])
 @pytest.mark.parametrize("seed", range(4))
-def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
-    """On random trees with random constraints: q'' and lambda of [g -B^T; B 0] with B' from differences."""
+def test_both_forms_equal_the_equations_with_multipliers(seed: int, is_affine: bool) -> None:
+    """On random trees with random constraints: q'' and lambda of [g -B^T; B 0] with B', b' from differences."""
     rng = np.random.default_rng(seed)
     kind = Kind(4, joints=("revolute", "prismatic"), massive=True, depth=4, loads=1)
     model = model_of(random_definition(rng, kind))
-    document = {"constraints": random_constraints(rng, model, 1 + seed % 2)}
+    document = {"constraints": random_constraints(rng, model, 1 + seed % 2, is_affine)}
     equations = quasi_velocity_equations(model, **document)
     n, p = model.dof, len(equations.velocities)
     q, v = rng.uniform(-0.8, 0.8, n), rng.uniform(-1, 1, p)
@@ -142,22 +146,27 @@ def test_both_forms_equal_the_equations_with_multipliers(seed: int) -> None:
     qd, h = out["rates"], 1e-4
 
     def at(name: str, shift: float) -> np.ndarray:
-        moved = values | dict(zip(model.coordinates, q + shift * qd, strict=True))
+        moved = values | dict(zip(model.coordinates, q + shift * qd, strict=True)) | {"t": 0.2 + shift}
         return interpret(equations.program, moved, [name])[name]
 
     def slope(name: str) -> np.ndarray:
         return (8 * (at(name, h) - at(name, -h)) - at(name, 2 * h) + at(name, -2 * h)) / (12 * h)
 
-    B = out["constraints"]
+    B, b = out["constraints"], out.get("given", np.zeros(n - p))
+    changed = slope("given") if is_affine else 0
     given = {"q": q, "qd": qd, "inputs": inputs, "t": 0.2}
     x = evaluate(model, ["metric", "bias", "forces"], **given)
     kkt = np.block([[x["metric"], -B.T], [B, np.zeros((n - p, n - p))]])
-    solution = np.linalg.solve(kkt, np.concatenate((x["forces"] - x["bias"], -slope("constraints") @ qd)))
+    solution = np.linalg.solve(kkt, np.concatenate((x["forces"] - x["bias"], -slope("constraints") @ qd - changed)))
     scale = np.abs(solution).max()
-    np.testing.assert_allclose(out["T"] @ dv + slope("T") @ v, solution[:n], rtol=0, atol=1e-9 * scale)
+    np.testing.assert_allclose(out["T"] @ dv + slope("rates"), solution[:n], rtol=0, atol=1e-9 * scale)
     found = interpret(equations.program, values | {f"{a}'": b for a, b in zip(equations.velocities, dv, strict=True)})
     np.testing.assert_allclose(found["multipliers"], solution[n:], rtol=0, atol=1e-9 * scale)
     np.testing.assert_allclose(B @ out["T"], 0, atol=1e-12)
+    np.testing.assert_allclose(B @ qd + b, 0, atol=1e-12)
+    if is_affine:
+        # what the constraints do: T' of all forces at q', B^T lambda among them
+        assert found["constraint_power"] == pytest.approx(solution[n:] @ B @ qd, rel=1e-8)
 
 
 def test_closed_loops_in_independent_velocities() -> None:
@@ -197,3 +206,10 @@ def test_constraints_with_constant_coefficients() -> None:
     assert (equations.constraints, equations.dependent) == (("gear",), ("again",))
     assert equations.velocities == ("x.q2'",)
     exact(equations, {"rates": {(0,): "2*x.q2'", (1,): "x.q2'"}})
+
+
+def test_what_is_given_twice_has_to_agree() -> None:
+    twice = [Linear("one", "s.x' - 1"), Linear("two", "2*s.x' - 2")]
+    assert quasi_velocity_equations(sleigh(), twice).dependent == ("two",)
+    with pytest.raises(InvalidInput, match="'two' contradicts"):
+        quasi_velocity_equations(sleigh(), [twice[0], Linear("two", "2*s.x' - 1")])

@@ -17,8 +17,8 @@ from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed import loops
 from substructures.analysis.closed.loops import least_multipliers, loop_state
 from substructures.analysis.control.cost_gradient import cost_gradient
+from substructures.analysis.control.demands import End
 from substructures.analysis.control.from_fields import control_arguments
-from substructures.analysis.control.nonlinear_program import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.from_fields import sensitivity_arguments

@@ -14,8 +14,8 @@ from substructures.ensembles import lanes, members
 from substructures.ensembles.columns import MotionColumn
 from substructures.ensembles.ensemble import simulate_ensemble
 from substructures.ensembles.sampled import with_samples
+from substructures.ensembles.samples import Samples
 from substructures.errors import InvalidInput
-from substructures.sweeps.document import Samples
 from substructures.tree.model import Model
 
 ACCURATE = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-12)
@@ -97,6 +97,36 @@ def test_columns_of_oscillators(oscillator: Model) -> None:
     assert told["count"] == 3
     assert told["largest"] == found.columns["energy"].max()
     assert told["quantiles"]["0.5"] == pytest.approx(found.columns["energy"][1], rel=1e-12)
+
+
+def test_integrals_are_as_exact_as_the_motion(oscillator: Model) -> None:
+    k, driven = np.array([2.0, 8.0]), {"tau.o.x": "3*sin(t)"}
+    columns = {
+        "square": MotionColumn(expression="o.x'^2", take="integral"),
+        "end": MotionColumn(expression="o.x"),
+        "work": MotionColumn(expression="tau.o.x*o.x'", take="integral"),
+    }
+    given: dict[str, Any] = {"parameters": {"o.k": k}, "columns": columns, "grid": OutputGrid(count=2)}
+    found = simulate_ensemble(oscillator, [[0.3]], (0, 1), **given)
+    w = np.sqrt(k / 2)
+    assert list(found.columns) == ["square", "end", "work"]
+    np.testing.assert_allclose(found.columns["square"], 0.045 * w**2 * (1 - np.sin(2 * w) / (2 * w)), rtol=1e-9)
+    assert not found.columns["work"].any()
+    # what an input does is what the energy grows by
+    moved = simulate_ensemble(oscillator, [[0.3]], (0, 1), inputs=driven, states=True, **given)
+    assert moved.q is not None
+    assert moved.qd is not None
+    energy = moved.qd[..., 0] ** 2 + k[:, None] * moved.q[..., 0] ** 2 / 2
+    np.testing.assert_allclose(moved.columns["work"], energy[:, 1] - energy[:, 0], rtol=1e-9)
+
+
+def test_the_last_part_may_be_small(acrobot: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    given: dict[str, Any] = {"inputs": {"tau.arm.q1": "sin(t)"}, "grid": OutputGrid(count=3)}
+    whole = simulate_ensemble(acrobot, starts(600), (0, 0.2), **given)
+    monkeypatch.setattr("substructures.ensembles.ensemble.STATES", 1)
+    parts = simulate_ensemble(acrobot, starts(600), (0, 0.2), **given)
+    assert whole.q is not None
+    np.testing.assert_array_equal(whole.q, parts.q)
 
 
 def test_nobody_changes_another_one(acrobot: Model) -> None:

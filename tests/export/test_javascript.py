@@ -46,7 +46,7 @@ def run(exported: Exported, calls: Sequence[tuple[str, list[Any]]], folder: Path
     (folder / "calls.json").write_text(json.dumps(calls))
     (folder / "caller.mjs").write_text(CALLER % exported.name)
     command = [tool("node"), "caller.mjs"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, cwd=folder, capture_output=True, text=True, timeout=900, check=False)
     assert done.returncode == 0, done.stderr
     return list(json.loads(done.stdout))
 

@@ -100,7 +100,7 @@ def test_self_tests(exported: Exported, target: str, commands: list[list[str]], 
     write(exported, target, tmp_path)
     for program, *rest in commands:
         command = [program if program[0] in "./" else tool(program), *rest]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120)
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900)
         assert done.returncode == 0, done.stdout + done.stderr
     assert done.stdout.strip() == "ok"
 

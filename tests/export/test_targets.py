@@ -125,6 +125,6 @@ def test_formulas_to_be_read(cases: list[Exported], tmp_path: Path) -> None:
     latex = tool("pdflatex")
     for path in write(exported, "latex", tmp_path)[:3]:
         command = [latex, "-interaction=nonstopmode", "-halt-on-error", path.name]
-        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=120, check=False)
+        done = subprocess.run(command, cwd=tmp_path, capture_output=True, text=True, timeout=900, check=False)
         assert done.returncode == 0, done.stdout[-2000:]
         assert "Overfull" not in done.stdout

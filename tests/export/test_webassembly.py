@@ -65,7 +65,7 @@ def call(
     text = json.dumps({"calls": calls, "heap": made.heap}).replace("inf", "Infinity").replace("nan", "NaN")
     (folder / "calls.json").write_text(text)
     command = [str(NODE), "-e", CALLER, str(folder / "model.wasm"), str(folder / "calls.json")]
-    done = subprocess.run(command, capture_output=True, text=True, timeout=120, check=False)
+    done = subprocess.run(command, capture_output=True, text=True, timeout=900, check=False)
     assert done.returncode == 0, done.stderr
     return [
         {

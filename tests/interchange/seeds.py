@@ -20,13 +20,14 @@ MJCF = """<mujoco model="m"><compiler angle="radian" eulerseq="XYZ" settotalmass
 <default><joint damping="1"/><default class="x"><geom size=".1"/></default></default><worldbody>
 <body name="a" pos="0 0 1" childclass="x"><joint type="free" armature="1"/><geom type="capsule" fromto="0 0 0 1 0 0"/>
 <body name="b" euler="1 2 3"><joint name="p" axis="1 0 0" ref="1" stiffness="2" range="-1 1"/>
-<joint name="p2" type="slide"/>
+<joint name="p2" type="slide" springdamper="1 2"/>
 <inertial pos="0 0 1" mass="2" fullinertia="1 1 1 0 0 0" quat="1 0 0 1"/><site name="s" pos="1 1 1"/>
 <frame pos="1 0 0"><body name="c"><joint type="ball" pos="0 1 0"/><geom type="box" size="1 1 1"/></body></frame></body>
 <replicate count="3" offset="1 0 0" euler="0 1 0"><body name="w"><joint/><geom size="1"/></body></replicate>
-</body></worldbody><equality><connect body1="c" body2="a" anchor="0 0 1"/>
+</body><site name="t"/></worldbody><equality><connect body1="c" body2="a" anchor="0 0 1"/>
 <joint joint1="p" joint2="p2" polycoef="1 2 0 0 0"/></equality>
-<tendon><fixed><joint joint="p" coef="1"/></fixed></tendon></mujoco>"""
+<tendon><fixed stiffness="2" damping="1" springlength="1 2"><joint joint="p" coef="1"/></fixed>
+<spatial stiffness="2"><site site="s"/><site site="t"/></spatial></tendon></mujoco>"""
 _CORPUS = [
     path.read_bytes() for path in [*urdf_files().values(), *mjcf_files().values()] if path.stat().st_size < 12000
 ]
@@ -62,4 +63,17 @@ MX = {0.03,MX2*cos(pi/5)}
 M = {3,M2}
 FV = {0,FV2}
 """
-SEEDS: list[bytes] = [*[URDF.encode(), MJCF.encode(), SDF.encode(), DH, TABLE, PAR] * 8, *_CORPUS]
+LOOP = b"""NL = 3
+NJ = 4
+NF = 5
+Ant = {0,1,0,
+  2,3}
+sigma = {0,0,0,0,2}
+d = {0,l,3,
+  l,sqrt(a**2)}
+gamma = {0,0,0,0,-atan2(b, l)}
+theta = {t1,t2,t3,t4,0}
+M = {1,M2,1}
+G = {0,0,G3}
+"""
+SEEDS: list[bytes] = [*[URDF.encode(), MJCF.encode(), SDF.encode(), DH, TABLE, PAR, LOOP] * 8, *_CORPUS]

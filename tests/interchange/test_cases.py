@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate, simulate
-from substructures.analysis.equations.velocity_constraints import Linear
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Linear
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ConstrainedMotion, Integrator
 from substructures.errors import InvalidDocument

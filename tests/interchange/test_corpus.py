@@ -25,19 +25,16 @@ MESHES = (
     "brax/test_data/convex_convex.xml",
     "assets/bases/omron_mobile_base.xml",
     "build_fruitfly/assets/drosophila_fused.xml",
+    "assets/dog_v2/dog.xml",
+    "dm_control/suite/dog.xml",
     *(f"assets/grippers/{kind}_{side}_hand.xml" for kind in ("fourier", "inspire") for side in ("left", "right")),
 )
-AUTOMATIC = "springdamper is not read: give stiffness and damping"
 #: what is refused, and why
 REFUSED = {
     "ur_description/urdf/ur3.urdf": "the robot has no <link>",
     "mjcf/test_assets/test_model.xml": "'diaginertia' or 'fullinertia' is needed",
     "brax/test_data/world_body_transform.xml": "only a body of the world may have a free joint",
     "assets/build_fruitfly/fruitfly.xml": "the mass of a mesh needs its file: 'thorax_body.msh' is not given",
-    "assets/fruitfly_v2/fruitfly.xml": AUTOMATIC,
-    "assets/dog_v2/dog.xml": AUTOMATIC,
-    "assets/dog_v2/scene.xml": AUTOMATIC,
-    "dm_control/suite/dog.xml": AUTOMATIC,
     # what the engines refuse, too, or would read otherwise than it says
     "pybullet_data/bicycle/bike.urdf": "'xyz' is no finite number: '0.07,'",
     "pybullet_data/biped/biped2d_pybullet.urdf": "'lower' is no finite number: '-1.57.'",
@@ -52,6 +49,7 @@ REFUSED = {
 }
 #: what the other engine does not read
 UNREAD = {
+    "assets/dog_v2/scene.xml": "repeated name 'grid' in texture",
     "build_fruitfly/assets/drosophila.xml": "Error opening file 'assets/head_body.msh'",
     "pybullet_data/spherical_joint_limit.urdf": "does not contain a valid URDF model",
     "pybullet_data/mjcf/half_cheetah.xml": "required attribute missing: 'pos'",

@@ -248,3 +248,19 @@ def test_changes_lead_from_one_document_to_the_other() -> None:
         for change in changes(PUMA, document):
             made = applied(made, change)
         assert changes(made, document) == []
+
+
+def test_given_motions_differ_by_what_they_are_later() -> None:
+    """Twice t^4 is twice as much, though both are 0 at t = 0."""
+    lift = {"name": "lift", "bodies": [
+        {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "z"}},
+        {"name": "r", "parent": "b", "mass": 2, "com": [0, 1, 0], "joint": {"type": "revolute", "coordinate": "q"}},
+    ]}  # fmt: skip
+
+    def driven(motion: str) -> tuple[TreeSpec, Model]:
+        instances = [{"name": "a", "substructure": "lift"}]
+        spec = TreeSpec.read({"name": "t", "instances": instances, "driven": {"a.z": motion}})
+        return spec, couple(spec, {"a": derive(lift)})
+
+    told = quantity(of_trees(driven("t^4"), driven("2*t^4"), []), "g_00")
+    assert told["change"] == pytest.approx(3)

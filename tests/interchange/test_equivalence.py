@@ -195,3 +195,38 @@ def test_last_names_are_taken_only_where_they_are_clear() -> None:
     with pytest.raises(InvalidArgument, match="cannot be matched by name"):
         equivalence(two, other)
     assert equivalence(two, other, {"one.q1": "three.q1", "one.q2": "three.q2"}).equal
+
+
+DECK = {"name": "deck", "bodies": [
+    {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic", "coordinate": "z"}},
+    {"name": "r", "parent": "b", "mass": 2, "com": [0, 1, 0],
+     "joint": {"type": "revolute", "coordinate": "q", "theta": "-pi/2"}},
+]}  # fmt: skip
+
+
+@pytest.mark.parametrize(
+    ("one", "other", "same"),
+    [
+        ("sin(t)", "cos(t - pi/2)", True),
+        ("t^4", "2*t^4", False),  # alike at t = 0
+        ("t^4", {"input": True}, False),
+        ({"input": True}, {"input": True}, True),
+    ],
+)
+def test_given_motions_are_compared_at_other_times(one: Any, other: Any, same: bool) -> None:
+    def driven(motion: Any) -> Side:
+        tree = {"name": "t", "instances": [{"name": "a", "substructure": "deck"}], "driven": {"a.z": motion}}
+        return Side.of_tree(TreeSpec.read(tree), {"a": derive(DECK)})
+
+    found = equivalence(driven(one), driven(other))
+    assert found.equal is same
+    assert same or found.first_difference is not None
+
+
+def test_loads_that_vary_are_compared_at_other_times() -> None:
+    def pushed(force: str) -> Side:
+        load = {"type": "joint", "coordinate": "q", "force": force}
+        return Side.of_part(derive({**DECK, "loads": [load]}))
+
+    assert not equivalence(pushed("t"), pushed("t^2 + t - t^2*3")).equal
+    assert equivalence(pushed("(t + 1)^2"), pushed("t^2 + 2*t + 1")).equal

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from substructures import Definition, TreeSpec, couple, derive
+from substructures import Definition, TreeSpec, couple, derive, evaluate, linearise
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.interchange.as_part import Options
@@ -55,12 +55,18 @@ FEATURES = {
     "slide, then hinge": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="slide" axis="1 0 0"/>'
                           '<joint name="b" pos="0 1 0"/>'),
     "ball": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="ball" pos="0 0 .3" damping="2"/>'),
+    "sprung ball": ("", '<geom size=".1" pos="1 0 0"/><joint name="a" type="ball" pos="0 0 .3" stiffness="3"/>'),
     "default classes": ('<default><joint damping="1"/><default class="x"><joint armature="2" axis="0 1 0"/>'
                         '<default class="y"><joint damping="4"/></default></default></default>',
                         '<geom size=".1" pos="1 0 0"/><joint name="a" class="y"/>'),
     "child classes": ('<default><default class="x"><geom size=".3"/></default></default>',
                       '<geom class="x"/><body childclass="x"><joint name="c"/><geom pos="0 1 0"/><body pos="1 0 0">'
                       '<joint name="d"/><geom/></body></body>'),
+    "springdamper": ('<compiler settotalmass="7"/><default><joint springdamper=".1 .5" damping="9"/></default>'
+                     '<actuator><general joint="a" armature=".2" damping=".4" gear="3"/></actuator>',
+                     '<geom size=".1" pos="1 0 0"/><joint name="a" axis="0 1 0" ref="30" springref="50"/><body name="c"'
+                     ' pos="1 0 .5"><joint name="b" type="slide" axis="1 1 0" ref=".4" springdamper=".2 3"/><joint '
+                     'name="d" axis="1 0 1" springdamper="0 0" damping="2"/><geom size=".2" pos="0 1 0"/></body>'),
     "frames": ("", '<frame pos="1 2 3" euler="20 30 40"><geom type="box" size=".1 .2 .3"/><joint name="a" '
                'axis="1 0 0" pos=".1 .2 .3"/><body pos="1 0 0"><joint name="b"/><geom size=".1"/></body></frame>'),
     "copies": ("", '<replicate count="3" offset=".1 .2 .3" euler="20 30 40" sep="-"><geom type="box" size=".1 .2 .3"/>'
@@ -89,9 +95,43 @@ def test_features_are_what_mujoco_makes_of_them(name: str, base: str, tmp_path: 
 @pytest.mark.filterwarnings("ignore")
 def test_free_joints_have_armature_and_damping(tmp_path: Path) -> None:
     path = tmp_path / "model.xml"
-    body = '<body euler="10 20 30" pos="1 2 3"><joint type="free" armature="2" damping="3"/>'
+    body = '<body euler="10 20 30" pos="1 2 3"><joint type="free" armature="2" damping="3" stiffness="4"/>'
     path.write_text(f'<mujoco><worldbody>{body}<geom size=".3" pos="1 0 0"/></body></worldbody></mujoco>')
     assert compared("free", path, MujocoTwin).error < 1e-10
+
+
+@pytest.mark.parametrize("given", [".1 2", "1e-9 .5"])
+def test_springdamper_gives_what_mujoco_makes_of_it_with_joints_that_others_move(given: str, tmp_path: Path) -> None:
+    """The inertia is that of free joints, whatever equations bind them; numbers are told."""
+    path = tmp_path / "model.xml"
+    arm = f'<joint name="a" axis="0 1 0" springdamper="{given}"/><geom size=".1" pos="1 0 0"/><body pos="1 0 0">'
+    path.write_text(
+        f'<mujoco><worldbody><body name="x">{arm}<joint name="b" axis="0 1 1" springdamper=".3 .5" armature=".01"/>'
+        '<geom size=".2" pos="1 0 1"/></body></body></worldbody>'
+        '<equality><joint joint1="b" joint2="a" polycoef="0 2 0 0 0"/></equality></mujoco>'
+    )
+    found, engine = import_file(path.read_bytes()), mujoco.MjModel.from_xml_path(str(path))
+    joints = [body["joint"] for body in found.definition["bodies"]]
+    stiffness = [float(joint["stiffness"]) for joint in joints]
+    assert stiffness == pytest.approx(np.ravel(engine.jnt_stiffness)[:2], rel=1e-12)
+    assert [float(joint["damping"]) for joint in joints] == pytest.approx(np.ravel(engine.dof_damping)[:2], rel=1e-12)
+    told = [remark["message"] for remark in found.report if "springdamper" in remark["message"]]
+    assert [f"stiffness {k:.6g} and damping" in said for k, said in zip(stiffness, told, strict=True)] == [True, True]
+
+
+@pytest.mark.parametrize("kind", ["ball", "free"])
+def test_the_spring_of_a_ball_is_a_spring_at_rest_and_changes_its_sign_at_half_a_turn(kind: str) -> None:
+    """Where its law is 0/0: M = 1, K = 3 about all axes; and -k theta about one axis, |theta| <= pi."""
+    joint, inertia = f'<joint name="a" type="{kind}" stiffness="3"/>', 'pos="0 0 0" mass="1" diaginertia="1 1 1"'
+    definition = import_file(one(f"{joint}<inertial {inertia}/>")).definition
+    tree = {"name": "t", "gravity": [0, 0, 0], "instances": [{"name": "x", "definition": definition}]}
+    model = couple(TreeSpec.read(tree), {"x": derive(Definition.read(definition))})
+    n = len(model.coordinates)
+    np.testing.assert_array_equal(linearise(model, np.zeros(n)).K, 3 * np.eye(n))
+    turned = np.zeros((4, n))
+    turned[:, -3] = [0, 1e-12, 3.1, 3.2]
+    forces = evaluate(model, ["forces"], q=turned, qd=np.zeros((4, n)))["forces"][:, -3]
+    np.testing.assert_allclose(forces, [0, -3e-12, -9.3, -3 * (3.2 - 2 * np.pi)], rtol=1e-14)
 
 
 MESH = '<asset><mesh name="m" file="m.stl"/></asset>'
@@ -118,8 +158,10 @@ BAD = {
     "zero quaternion": (one('<geom size="1" quat="0 0 0 0"/>'), "quat has no direction"),
     "two orientations": (one('<geom size="1" quat="1 0 0 0" euler="1 2 3"/>'), "give one of quat and euler"),
     "type": (one('<joint type="screw"/>'), "type='screw' is none of hinge"),
-    "spring": (one('<joint type="ball" stiffness="1"/>'), "the spring of a ball or free joint"),
-    "springdamper": (one('<joint springdamper="1 1"/>'), "give stiffness and damping"),
+    "springdamper": (one('<joint springdamper="1 0"/>'), "line 4: <joint>: springdamper needs two positive numbers"),
+    "springdamper of a ball": (one('<joint type="ball" springdamper="1 1"/>'), "springdamper of a ball or free joint"),
+    "springdamper of nothing": (one('<joint springdamper="1 1"/>'), "line 4: <joint>: springdamper needs an inertia"),
+    "springdamper of joints too many": (one('<joint springdamper="1 1"/><joint/><geom size="1"/>'), "is singular"),
     "polynomial": (one('<joint stiffness="1 2"/>'), "stiffness has to be one number"),
     "free below": (one('<body><freejoint/></body>'), "only a body of the world"),
     "free and hinge": (one('<freejoint/><joint/>'), "the only one of its body"),
@@ -160,7 +202,7 @@ def test_what_has_no_name_gets_one_that_nothing_has() -> None:
 
 
 def test_what_is_left_out_is_told() -> None:
-    tail = '<tendon><fixed name="t" stiffness="2"><joint joint="j" coef="1"/></fixed></tendon>'
+    tail = '<tendon><fixed name="t" armature="2"><joint joint="j" coef="1"/></fixed></tendon>'
     data = one('<joint name="j" frictionloss="1"/><geom size="1"/>').replace(b"</mujoco>", f"{tail}</mujoco>".encode())
     report = import_file(data.replace(b"<worldbody>", b'<option density="1.2"/><worldbody>')).report
     said = [r["message"] for r in report if r["level"] == "warning"]

@@ -87,7 +87,7 @@ def test_universal_and_ball_joints() -> None:
 
 BAD = {
     "version": (SDF.replace("1.9", "1.2"), "line 1: <sdf>: version '1.2' is none of"),
-    "include": (SDF.replace("<frame", "<include><uri>m</uri></include><frame", 1), "line 4: <include>: <include>"),
+    "include": (SDF.replace("<frame", "<include><uri>m</uri></include><frame", 1), "line 4: <include>: 'm' is not"),
     "frame": (SDF.replace('relative_to="pivot"', 'relative_to="nowhere"', 1), "there is no frame 'nowhere'"),
     "circle": (SDF.replace('attached_to="upper"><pose', 'attached_to="upper"><pose relative_to="lower"'), "to itself"),
     "link": (SDF.replace("<parent>upper", "<parent>arm"), 'line 13: <joint name="elbow">: there is no link .arm'),

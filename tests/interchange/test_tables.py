@@ -133,7 +133,7 @@ BAD = {
     "number": (MODIFIED.replace("300,0,3", "3OO,0,3", 1), "line 5: row, d: 'd' is no finite number: '3OO'"),
     "cells": (MODIFIED.replace("q2,R,", "q2,", 1), "line 6: row: 17 cells, the head has 18"),
     "type": (MODIFIED.replace("q2,R", "q2,X", 1), "line 6: row: type 'x' is none of"),
-    "loops": (SYMORO.replace("NF = 3", "NF = 4"), "line 4: NF: 4 frames of 3 links: loops are not read"),
+    "loops": (SYMORO.replace("NF = 3", "NF = 4"), "line 4: NF: 4 frames, 3 joints, 3 links: NF = 2 NJ - NL"),
     "ant": (SYMORO.replace("{0,1,2}", "{0,1,7}"), r"line 5: ant\[3\]: '7' is no number of a link before link 3"),
     "digits": (SYMORO.replace("{0,1,2}", "{0,1,\u00b92}"), r"line 5: ant\[3\]: '.*2' is no number of a link"),
     "sigma": (SYMORO.replace("{0,0,1}", "{0,0,5}"), r"line 6: sigma\[3\]: sigma is 0"),

@@ -13,6 +13,7 @@ from engines import Numbers, Place, euler_matrix, in_our_coordinates, quaternion
 
 Array = Any
 mujoco.set_mju_user_warning(lambda _message: None)  # else they are written to a file here
+WRAPPING = {int(getattr(mujoco.mjtWrap, f"mjWRAP_{kind}")) for kind in ("PULLEY", "SPHERE", "CYLINDER")}
 KIND = {int(mujoco.mjtJoint.mjJNT_FREE): "free", int(mujoco.mjtJoint.mjJNT_BALL): "ball"}
 
 
@@ -23,7 +24,11 @@ class MujocoTwin:
         self.model = m = mujoco.MjModel.from_xml_path(str(path))
         m.opt.gravity[:] = gravity
         m.opt.disableflags &= ~int(mujoco.mjtDisableBit.mjDSBL_GRAVITY)
-        m.tendon_stiffness[:] = m.tendon_damping[:] = m.tendon_armature[:] = 0
+        m.tendon_armature[:] = 0
+        for t in range(m.ntendon):
+            path = m.wrap_type[m.tendon_adr[t] : m.tendon_adr[t] + m.tendon_num[t]]
+            if set(map(int, path)) & WRAPPING:
+                m.tendon_stiffness[t] = m.tendon_damping[t] = 0
         m.body_gravcomp[:] = 0
         m.opt.density = m.opt.viscosity = 0
         self.places = [self._place(j, names, coordinates) for j in range(m.njnt)]

@@ -16,8 +16,8 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.perturbation import state_space
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification.base_parameters import base_parameters

@@ -18,8 +18,10 @@ from substructures import Definition, Model, Part, Program, TreeSpec, couple, de
 from substructures.analysis.closed import work
 from substructures.analysis.control import adjoint
 from substructures.analysis.control.problem import Cost
-from substructures.analysis.equations import curvature, first_integrals, perturbation, quasi_velocities, routh, steady
-from substructures.analysis.equations.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
+from substructures.analysis.equations import curvature, first_integrals, perturbation, routh, steady
+from substructures.analysis.equations.nonholonomic import linearised, quasi_velocities
+from substructures.analysis.equations.nonholonomic.quasi_equations import QuasiEquations
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
 from substructures.analysis.identification import base_parameters as base
 from substructures.analysis.motion import parameter_sensitivity, right_hand_side
 from substructures.documents import read_json
@@ -119,6 +121,16 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
         ),
         "hamel_bias",
     ),
+    "velocity equations with given velocities": (
+        lambda: quasi_velocities.quasi_velocity_equations(
+            model(), [Linear("turned", "sin(x.y)*x.x' - 0.3*y.x' - x.k*y.y' + x.l*cos(t*x.x)")]
+        ),
+        "constraint_power",
+    ),
+    "linearised velocity equations": (
+        lambda: linearised.linearised(model(), CONSTRAINTS, (None, ("x.x", "y.y"), None)),
+        "rates_by_position",
+    ),
     "velocity equations of closed loops": (
         lambda: quasi_velocities.quasi_velocity_equations(model(closed=True), [Closed("r")]),
         "gaps",
@@ -133,7 +145,7 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
 }  # fmt: skip
 MODULES = (
     *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, of_parts),
-    *(right_hand_side, routh, steady, work),
+    *(right_hand_side, routh, steady, work, linearised),
 )
 
 
@@ -187,7 +199,8 @@ def test_no_wrong_program_is_served(name: str, kinds: int, monkeypatch: pytest.M
 def clear() -> None:
     """What was made before is made anew."""
     perturbation._perturbation.cache_clear()
-    first_integrals._first_integrals.cache_clear()
+    linearised._linearised.cache_clear()
+    first_integrals._found.cache_clear()
     parameter_sensitivity._variational.cache_clear()
     steady._steady_formulas.cache_clear()
 
@@ -217,7 +230,7 @@ FAULTS: dict[str, tuple[Any, str, Callable[..., Any]]] = {
     "curvature": (curvature._Space, "_dot", lambda s, x, _: s.graph.sum(p * p for p in x)),
     "adjoint": (adjoint, "pullback", halved(adjoint.pullback)),
     "routhian": (routh._Reduction, "_metric", lambda r, a, b: r.g.get((r.rest[a], r.rest[b]), r.zero)),
-    "velocity equations": (quasi_velocities._Equations, "_structure", turned(quasi_velocities._Equations._structure)),
+    "velocity equations": (QuasiEquations, "_structure", turned(QuasiEquations._structure)),
     "regressor": (regressor, "pairing", lambda *_: 0),
 }  # fmt: skip
 

@@ -94,6 +94,19 @@ def test_a_sled_that_spins_is_steady(client: TestClient) -> None:
     assert answer.json()["errors"][0]["pointer"] == "/rates/p.q1"
 
 
+def test_families_of_steady_motions(client: TestClient) -> None:
+    """A pendulum on a cart at a constant rate hangs or stands, whatever the rate: nothing bifurcates."""
+    asked = {"rates": {}, "vary": "x.q0", "between": [0.5, 1.0], "steps": 4}
+    found = ask(client, "cart/steady-motions", **asked)
+    assert (found["vary"], found["is_right"], found["bifurcations"]) == ("x.q0", True, [])
+    for branch in (0, 1):
+        values = [each["value"] for each in found["found"] if each["branch"] == branch]
+        assert (values[0], values[-1]) == (0.5, 1.0)
+    drawn = client.post("/v1/trees/cart/steady-motions", json=asked, headers={"Accept": "image/svg+xml"})
+    assert (drawn.status_code, drawn.text.count("<circle")) == (200, len(found["found"])), drawn.text
+    assert all(word in drawn.text for word in ("x.q1", "stable", "unstable", "0 bifurcations"))
+
+
 def test_root_locus_of_a_longer_pendulum(client: TestClient) -> None:
     values = [9.81, 4.0, 1.0]
     tree = {**TREES[0], "name": "planets", "gravity": [0, 0, "-g"], "parameters": {"g": {"value": G}}}
@@ -203,3 +216,11 @@ def test_identification_finds_what_was_put_in(client: TestClient) -> None:
     found = ask(client, "clock/identifications", **motion, tau=forces)
     assert found["status"] == "identified"
     assert max(found["residual"]) < 1e-12
+    told = ask(client, "clock/identifications", **motion, tau=forces, held_out=0.2, consistent=True)
+    assert told["is_right"]
+    assert told["inertia"]["is_right"]
+    assert max(told["held_out"]) < 1e-12
+    (part,) = told["parts"].values()
+    stored = client.post("/v1/substructures", json=part)
+    assert stored.status_code == 201, stored.json()
+    assert stored.json()["derived_from"] == f"{part['name']}@1"

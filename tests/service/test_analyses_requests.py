@@ -51,6 +51,27 @@ def test_motions_as_files(client: TestClient, media: str) -> None:
         assert np.array_equal(part["q"], expected)
 
 
+@pytest.mark.parametrize("level", [3.0, 9.0])
+def test_sections_as_files(client: TestClient, level: float) -> None:
+    """Also those that are not met."""
+    body = {"q": [0.3, 0.2], "quantity": "x.q1", "level": level, "direction": "both", "count": 4, "duration": 9}
+    expected = np.array(ask(client, "cart/poincare-sections", **body)["q"])
+    assert expected.size == (8 if level == 3 else 0)
+    for media in ("application/x-npz", "text/csv", arrow.MEDIA_TYPE):
+        asked = client.post("/v1/trees/cart/poincare-sections", json=body, headers={"Accept": media})
+        assert (asked.status_code, asked.headers["trajectory-right"]) == (200, "true"), asked.text
+        if media == "text/csv":
+            assert len(asked.text.splitlines()) == 1 + len(expected)
+        elif media == arrow.MEDIA_TYPE:
+            (part,) = arrow.read_tables(io.BytesIO(asked.content))
+            assert np.array_equal(part["q"], expected.reshape(-1, 2))
+        else:
+            with np.load(io.BytesIO(asked.content), allow_pickle=False) as arrays:
+                assert np.array_equal(arrays["q"], expected.reshape(-1, 2))
+    refused = client.post("/v1/trees/cart/poincare-sections", json=body, headers={"Accept": "image/svg+xml"})
+    assert refused.status_code == 406
+
+
 def test_equations_of_a_skate_in_every_format(client: TestClient) -> None:
     edge = {"type": "knife_edge", "name": "edge", "frame": "s.sled"}
     speeds = {"speed": "s.x'*cos(s.phi) + s.y'*sin(s.phi)", "turn": "s.phi'"}
@@ -77,6 +98,19 @@ def test_equations_of_a_skate_in_every_format(client: TestClient) -> None:
     assert wrong.json()["errors"][0]["pointer"] == "/constraints/0/frame"
 
 
+def test_orbits_through_events(client: TestClient) -> None:
+    """A ball of 2 kg that bounces for ever from 1 m."""
+    slide = {"type": "prismatic", "coordinate": "z"}
+    ball = {"name": "ball", "bodies": [{"name": "b", "parent": "base", "joint": slide, "mass": 2}]}
+    tree = {"name": "court", "gravity": [0, 0, "-9.81"], "instances": [{"name": "b", "definition": ball}]}
+    assert client.post("/v1/trees", json=tree).status_code == 201
+    floor = {"name": "floor", "quantity": "b.z", "direction": "falling", "reset": {"b.z'": "-b.z'"}}
+    wanted = {"q": [1], "period": 0.9, "hold": ["b.z", "b.z'"], "events": [floor]}
+    (orbit,) = client.post("/v1/trees/court/periodic-orbits", json=wanted).json()["found"]
+    assert (orbit["is_right"], orbit["stability"]) == (True, "neutral")
+    assert orbit["period"] == pytest.approx(2 * (2 / 9.81) ** 0.5)
+
+
 WRONG = [
     ("simulations", {"q": [0]}, "/span", "missing"),
     ("simulations", {"q": [0, 0, 0], "span": [0, 1]}, "/q", "wrong-length"),
@@ -101,6 +135,14 @@ WRONG = [
         "greater-than",
     ),
     ("loop-states", {"q": [0, 0], "fixed": ["nobody"]}, "/fixed/0", "unknown-coordinate"),
+    (
+        "periodic-orbits",
+        {"q": [0, 1], "period": 1, "events": [{"name": "still", "quantity": "x.q0"}]},
+        "/events/0/reset",
+        "missing",
+    ),
+    ("poincare-sections", {"q": [0, 1], "quantity": "x.q9", "duration": 1}, "/quantity", "unknown-name"),
+    ("poincare-sections", {"q": [0, 1], "quantity": "x.q1", "duration": 1, "count": 0}, "/count", "greater-than-equal"),
     ("excitations", {"q": [[0, 0]]}, "/qdd", "missing"),
     ("identifications", {"q": [[0, 0]], "qdd": [[0, 0]], "tau": [[1]]}, "/tau", "wrong-length"),
 ]
@@ -175,12 +217,14 @@ def test_an_idempotency_key_is_accepted(client: TestClient) -> None:
 def test_a_field_of_other_simulations_is_named_with_them(client: TestClient) -> None:
     """Not as unknown with a field that there is not, either."""
     body = {"q": [0, 0, 0], "span": [0, 1], "constraints": [{"type": "knife_edge", "name": "e", "frame": "s.sled"}]}
-    answer = client.post("/v1/trees/skate/simulations", json=body | {"reactions": True})
+    answer = client.post("/v1/trees/skate/simulations", json=body | {"powers": True})
     assert answer.status_code == 422
     (error,) = answer.json()["errors"]
-    assert (error["pointer"], error["code"]) == ("/reactions", "extra-forbidden")
+    assert (error["pointer"], error["code"]) == ("/powers", "extra-forbidden")
     assert "not of those with velocity constraints" in error["message"]
-    assert "'multipliers'" in error["message"]
+    (error,) = client.post("/v1/trees/skate/simulations", json=body | {"reactions": True}).json()["errors"]
+    assert (error["pointer"], error["code"]) == ("/reactions", "not-supported")
+    assert "make the constraints part of the tree" in error["message"]
     plain = {"q": [0, 0, 0], "span": [0, 1], "v": [1]}
     (error,) = client.post("/v1/trees/skate/simulations", json=plain).json()["errors"]
     assert error["message"].startswith("'v' is a field of simulations with velocity constraints")

@@ -13,7 +13,7 @@ from service.models.numbers import ANALYSES
 from service.models.requests import arguments, read_request
 from substructures import InvalidDocument
 from substructures.analysis.control.cost_gradient import cost_gradient
-from substructures.analysis.control.nonlinear_program import End
+from substructures.analysis.control.demands import End
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature_values
@@ -26,7 +26,7 @@ from substructures.documents import DocumentPart
 
 #: functions, and what of their arguments no body has
 FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {
-    "linearisations": (linearise, {"model"}),
+    "linearisations": (linearise, {"model", "form"}),
     "equilibria": (equilibria, {"model"}),
     "steady-motions": (steady_motions, {"model"}),
     "root-loci": (root_locus, {"model"}),
@@ -37,7 +37,7 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {
     "identifications": (identify, {"base", "model"}),
 }
 #: fields that say what base parameters are found from, and what is known of the model
-OF_BASE = {"drives", "known"}
+OF_BASE = {"drives", "known", "consistent", "prior_deviation"}
 CONTROL = {"controls": ["u"], "horizon": 1, "intervals": 2, "q": [0]}
 
 

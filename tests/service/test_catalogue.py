@@ -1,4 +1,4 @@
-"""``/v1/substructures``: submit, refer, search, alias, yank (HTTP contract, section 2)."""
+"""``/v1/substructures``: submit, refer, search, alias, withdraw (HTTP contract, section 2)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ from .conftest import PENDULUM, SLIDER, at_once
 
 VERSION_FIELDS = {
     "name", "version", "digest", "dof", "coordinates", "bodies", "joints", "ports", "parameters", "operations",
-    "certificate", "created", "aliases", "yanked", "links",
+    "certificate", "created", "aliases", "is_withdrawn", "links",
 }  # fmt: skip
 
 
@@ -34,7 +34,7 @@ def test_submit_creates_a_version(client: TestClient) -> None:
     assert (version["coordinates"], version["bodies"], version["ports"]) == (["q"], ["rod"], ["tip"])
     assert version["parameters"]["l"]["value"] == 1
     assert version["operations"]["total"] > 0
-    assert version["yanked"] is False
+    assert version["is_withdrawn"] is False
 
 
 def test_submit_again_changes_nothing(client: TestClient, rows: Any) -> None:
@@ -288,14 +288,14 @@ def test_wrong_aliases(filled: TestClient, rows: Any, alias: str, body: Any) -> 
     assert rows() == before
 
 
-def test_yanked_versions_stay_where_they_are_used(filled: TestClient) -> None:
+def test_withdrawn_versions_stay_where_they_are_used(filled: TestClient) -> None:
     filled.post("/v1/substructures", json=changed(title="Newer"))
-    yanked = filled.post("/v1/substructures/pendulum@2/yank", json={"reason": "wrong mass"}).json()
-    assert (yanked["yanked"], yanked["yank_reason"]) == (True, "wrong mass")
+    withdrawn = filled.post("/v1/substructures/pendulum@2/withdraw", json={"reason": "wrong mass"}).json()
+    assert (withdrawn["is_withdrawn"], withdrawn["withdrawal_reason"]) == (True, "wrong mass")
     assert filled.get("/v1/substructures/pendulum").json()["version"] == 1
-    assert filled.get("/v1/substructures/pendulum@2").json() == yanked
-    assert filled.post("/v1/substructures/pendulum@2/yank").json()["yanked_at"] == yanked["yanked_at"]
-    assert filled.post("/v1/substructures/pendulum@1/yank").status_code == 200
+    assert filled.get("/v1/substructures/pendulum@2").json() == withdrawn
+    assert filled.post("/v1/substructures/pendulum@2/withdraw").json()["withdrawn_at"] == withdrawn["withdrawn_at"]
+    assert filled.post("/v1/substructures/pendulum@1/withdraw").status_code == 200
     assert filled.get("/v1/substructures/pendulum").status_code == 404
     assert filled.post("/v1/substructures", json=changed(title="Third")).json()["version"] == 3
     assert filled.get("/v1/substructures/pendulum").json()["version"] == 3
@@ -323,5 +323,5 @@ def test_facets_are_counted_again_after_every_change(filled: TestClient) -> None
     assert tags() == before
     assert filled.post("/v1/substructures", json={**PENDULUM, "name": "counted", "tags": ["new"]}).status_code == 201
     assert tags() == {**before, "new": 1}
-    assert filled.post("/v1/substructures/counted@1/yank", json={"reason": "wrong"}).status_code == 200
+    assert filled.post("/v1/substructures/counted@1/withdraw", json={"reason": "wrong"}).status_code == 200
     assert tags() == before

@@ -69,6 +69,16 @@ def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) ->
     assert {e["at"]["stability"]["verdict"] for e in found} == {"stable", "unstable"}
 
 
+@pytest.mark.parametrize("level", [0, 9])
+def test_a_section(folder: Path, capsys: pytest.CaptureFixture[str], level: int) -> None:
+    """Met or not."""
+    request = folder / "section.yaml"
+    request.write_text(f"q: [0.5]\nquantity: arm.q\nlevel: {level}\nduration: 9\ncount: 2\n")
+    assert main(["analyse", str(folder / "cell.yaml"), "poincare-sections", str(request)]) == 0
+    shown = capsys.readouterr().out
+    assert ("the section is met 0 times in 9 s" in shown, "arm.q = " in shown) == (level == 9, level == 0)
+
+
 def test_errors_name_the_place(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tree, swing = str(folder / "cell.yaml"), str(folder / "swing.yaml")
     for arguments, expected in (

@@ -108,6 +108,8 @@ def test_folders_and_files_are_told_apart(run: Run, folder: Path) -> None:
     (folder / "out").mkdir()
     export = ["export", "cell.json", "--target", "c", "--out"]
     assert run(*export, "out", code=1) == "substructures: out is a folder; the name of a file is needed "
+    one = ["export", "cell.json", "--target", "modelica", "--out", "cell.zip"]
+    assert run(*one, code=1) == "substructures: modelica is one file and no archive: --out cell.mo "
     assert "there is no folder nowhere" in run(*export, "nowhere/cell.zip", code=1)
     store = ["--database", f"sqlite:///{folder / 'x.db'}"]
     Database(store[1]).close()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from ssl import CERT_REQUIRED, SSLContext
 from threading import Thread
 from typing import ClassVar
 
@@ -12,6 +13,7 @@ import pytest
 
 from substructures.client import bulk
 from substructures.client.bulk import Bulk, read_all
+from substructures.client.connection import _trust
 
 
 class _Echo(BaseHTTPRequestHandler):
@@ -100,3 +102,10 @@ def test_an_answer_that_never_comes(connections: Bulk) -> None:
     with pytest.raises(httpx2.HTTPError):
         ask(connections, b"lost")
     assert ask(connections, b"two") == b"two"
+
+
+def test_who_is_believed_is_read_for_https_alone() -> None:
+    trusted = _trust("http://localhost:8000")
+    assert isinstance(trusted, SSLContext)
+    assert (trusted.get_ca_certs(), trusted.verify_mode, trusted.check_hostname) == ([], CERT_REQUIRED, True)
+    assert _trust("https://localhost") is True

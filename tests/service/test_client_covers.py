@@ -30,8 +30,17 @@ ANALYSES = (
         "frequency-responses",
         "regulators",
         "periodic-orbits",
+        "poincare-sections",
     ),
-    *("optimal-controls", "reduced-equations", "root-loci", "sensitivities", "simulations", "steady-motions"),
+    *(
+        "optimal-controls",
+        "optimal-parameters",
+        "reduced-equations",
+        "root-loci",
+        "sensitivities",
+        "simulations",
+        "steady-motions",
+    ),
 )
 
 
@@ -79,6 +88,7 @@ METHODS: dict[str, Callable[[Client], Any]] = {
     f"GET {PART}/export": lambda c: c.export_files("substructures", "a", "c"),
     f"GET {PART}/formulas": lambda c: c.part_formulas("a"),
     f"GET {PART}/formulas/{{quantity}}": lambda c: c.part_formula("a", "U", body="rod"),
+    f"GET {PART}/levels": lambda c: c.levels("a"),
     f"GET {PART}/picture": lambda c: c.part_picture("a", [0.1]),
     f"GET {PART}/scene": lambda c: c.scene("substructures", "a"),
     f"GET {TREE}/scene": lambda c: c.scene("trees", "cell"),
@@ -89,7 +99,7 @@ METHODS: dict[str, Callable[[Client], Any]] = {
     f"GET {TREE}/program.wasm": lambda c: c.module("trees", "cell"),
     f"GET {TREE}/origins": lambda c: c.origins("trees", "cell"),
     f"GET {PART}/uses": lambda c: list(c.uses("a")),
-    f"POST {PART}/yank": lambda c: c.yank("a@1", "wrong", successor="a@2"),
+    f"POST {PART}/withdraw": lambda c: c.withdraw("a@1", "wrong", successor="a@2"),
     "GET /v1/trees": lambda c: list(c.trees(uses="a")),
     "POST /v1/trees": lambda c: c.create_tree({}),
     "GET /v1/trees/{name}/revisions": lambda c: list(c.revisions("cell")),

@@ -178,6 +178,27 @@ def test_numbers_that_closures_would_falsify(swing: TestClient, what: str, reque
     assert [error["code"] for error in answer.json()["errors"]] == [code]
 
 
+#: swinging down through oil: c a' = -4 g sin a after some milliseconds
+STIFF: dict[str, Any] = {"q": [-DOWN + 0.1, -DOWN + 0.1, DOWN - 0.1], "span": [0, 100], "count": 2}
+STIFF |= {"parameters": {"s.c": 1e4}, "method": "BDF", "relative_tolerance": 1e-8}
+
+
+@pytest.mark.parametrize("method", ["Radau", "BDF"])
+@pytest.mark.parametrize("reduction", ["projection", "partitioning"])
+def test_stiff_motions(swing: TestClient, method: str, reduction: str) -> None:
+    found = ask(swing, "simulations", **STIFF | {"method": method, "reduction": reduction})
+    assert (found["is_right"], found["figures"]["evaluations"] < 2000) == (True, True), found["checks"]
+    angle = 2 * np.arctan(np.tan(0.05) * np.exp(-4 * G * 100 / 1e4))
+    assert found["q"][-1][0] == pytest.approx(angle - DOWN, abs=1e-6)
+
+
+def test_a_method_that_cannot_go_on_from_closures(swing: TestClient) -> None:
+    answer = swing.post("/v1/trees/swing/simulations", json=STIFF | {"method": "LSODA"})
+    (error,) = answer.json()["errors"]
+    assert (answer.status_code, error["pointer"], error["code"]) == (422, "/method", "literal-error")
+    assert "'Radau' or 'BDF'" in error["message"]
+
+
 def test_the_same_as_a_job() -> None:
     library = MemoryLibrary([PART], [TREE | {"instances": [{"name": "s", "substructure": "swing"}]}])
     items = [
@@ -198,5 +219,8 @@ def test_the_same_by_the_command_line(tmp_path: Path, capsys: pytest.CaptureFixt
     assert main(["analyse", str(tmp_path / "swing.json"), "linearisations", str(tmp_path / "q.json")]) == 0
     found = json.loads(capsys.readouterr().out)
     assert found["modes"][0]["frequency"] == pytest.approx(np.sqrt(G), rel=1e-12)
+    (tmp_path / "stiff.json").write_text(json.dumps(STIFF))
+    assert main(["simulate", str(tmp_path / "swing.json"), str(tmp_path / "stiff.json")]) == 0
+    assert "s.right = -1.50322" in capsys.readouterr().out
     assert main(["analyse", str(tmp_path / "swing.json"), "curvature"]) == 1
     assert "'pin'" in capsys.readouterr().err

@@ -134,6 +134,14 @@ def test_a_tree_and_a_part_as_urdf(made: TestClient) -> None:
     assert b'mass value="7"' in exported(made, target="urdf", bind="arm.m:7").content
 
 
+@pytest.mark.parametrize("name", ["a\x03b", "a\x00", " ", "a/b", 'a"b', "../up", "\u65e5\u672c", "\u200b"])
+@pytest.mark.parametrize("target", ["urdf", "c", "fmu", "text"])
+def test_names_that_no_file_can_have(made: TestClient, target: str, name: str) -> None:
+    """Nor a header, nor XML."""
+    problem = exported(made, target=target, name=name, status=422).json()
+    assert [(each["pointer"], each["code"]) for each in problem["errors"]] == [("/query/name", "bad-name")]
+
+
 def test_urdf_is_no_set_of_functions(made: TestClient) -> None:
     for query in ({"quantities": "metric"}, {"together": True}, {"packed": True}):
         problem = exported(made, target="urdf", status=422, **query).json()

@@ -66,7 +66,7 @@ class Followed:
     def versions(self, name: str) -> dict[int, str | None]:
         """Of all versions why they are withdrawn, None of those that are not."""
         items = self.client.get(f"/v1/substructures/{name}/versions").json()["items"]
-        return {each["version"]: each["yank_reason"] for each in reversed(items)}
+        return {each["version"]: each["withdrawal_reason"] for each in reversed(items)}
 
     def latest(self, name: str) -> Any:
         return self.client.get(f"/v1/substructures/{name}").json().get("version")
@@ -220,7 +220,7 @@ def test_what_is_gone_is_withdrawn_until_it_is_back(one: Followed, is_restarted:
     assert one.versions("pendulum") == {1: None, 2: None}
     assert one.latest("pendulum") == 2
     acts = [each["action"] for each in one.client.get("/v1/audit?key=folder").json()["items"]]
-    assert acts.count("substructure.offer") == acts.count("substructure.yank") == 2
+    assert acts.count("substructure.offer") == acts.count("substructure.withdraw") == 2
 
 
 def test_a_file_may_be_renamed_and_a_part_too(one: Followed) -> None:
@@ -237,7 +237,7 @@ def test_a_file_may_be_renamed_and_a_part_too(one: Followed) -> None:
     one.folder.look()
     assert one.versions("pendulum") == {1: None}
     assert files(one.look()) == {"c.yaml": "pendulum@1", "slider.yaml": "slider@1"}
-    assert "substructure.yank" not in one.client.get("/v1/audit?key=folder").text
+    assert "substructure.withdraw" not in one.client.get("/v1/audit?key=folder").text
     one.write("c.yaml", {**PENDULUM, "name": "rod"})
     told = one.look()
     assert (files(told), told["gone"]) == ({"c.yaml": "rod@1", "slider.yaml": "slider@1"}, ["pendulum"])
@@ -340,6 +340,15 @@ def test_files_may_refer_to_each_other_in_any_order(one: Followed) -> None:
     assert one.client.get("/v1/substructures/slider").json()["derived_from"] == "pendulum@1"
 
 
+def test_what_is_refused_names_nothing_private(one: Followed) -> None:
+    one.client.post("/v1/substructures", json={**PENDULUM, "visibility": "private"})
+    for reference in ("pendulm", "pendulum", "pendulum@1"):
+        one.write("a.yaml", {**SLIDER, "derived_from": reference})
+        told = refused(one.look())["a.yaml"]
+        assert "there is no substructure" in told
+        assert "pendulum" not in told.replace(reference, "")
+
+
 def test_names_of_others_and_what_is_private_are_refused(one: Followed) -> None:
     one.write("a.yaml", {**SLIDER, "visibility": "private"})
     one.client.post("/v1/substructures", json={**PENDULUM, "visibility": "private"})
@@ -358,7 +367,7 @@ def test_what_others_store_and_withdraw_stays(one: Followed) -> None:
     assert one.latest("pendulum") == 2
     one.write("pendulum.yaml", heavier(3))
     assert one.look()["files"][0]["remark"] == ""
-    assert one.client.post("/v1/substructures/pendulum@3/yank", json={"reason": "wrong"}).status_code == 200
+    assert one.client.post("/v1/substructures/pendulum@3/withdraw", json={"reason": "wrong"}).status_code == 200
     assert "others have withdrawn it" in one.restart()["files"][0]["remark"]
     (one.parts / "pendulum.yaml").unlink()
     one.look()

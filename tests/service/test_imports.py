@@ -341,3 +341,36 @@ def test_bad_zips_are_refused(client: TestClient, content: bytes, message: str) 
     answer = client.post("/v1/imports", content=content, headers=ZIP)
     assert answer.status_code == 422
     assert message in answer.text
+
+
+USD = b"""#usda 1.0
+(
+    metersPerUnit = 1
+    upAxis = "Z"
+)
+def Xform "rod" (prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"])
+{
+    float physics:mass = 2
+    point3f physics:centerOfMass = (0, 0, -0.5)
+    float3 physics:diagonalInertia = (0.2, 0.2, 0.01)
+}
+def PhysicsRevoluteJoint "hinge"
+{
+    uniform token physics:axis = "Y"
+    rel physics:body1 = </rod>
+}
+"""
+
+
+def test_usd_files_and_packages_are_read_where_requests_are_computed(client: TestClient) -> None:
+    pytest.importorskip("pxr", reason="the wheel usd-core is not installed (extra 'usd')")
+    package = zipped({"rod.usda": USD, "other.usda": b"#usda 1.0\n"})
+    binary = {"Content-Type": "application/octet-stream"}
+    for content, file in ((USD, "rod.usda"), (package, "rod.usdz")):
+        answer = client.post(f"/v1/imports?preview=true&file={file}", content=content, headers=binary)
+        assert answer.status_code == 200, answer.text
+        assert answer.json()["kind"] == "usd"
+        assert answer.json()["preview"]["mass"] == 2
+    refused = client.post("/v1/imports", content=USD.replace(b"</rod>", b"</rot>"), headers=binary)
+    assert refused.status_code == 422
+    assert "</hinge>: there is no prim </rot>; did you mean '/rod'?" in refused.text

@@ -29,7 +29,7 @@ from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.settings import Limits
 from substructures import InvalidInput, Model
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import Event, FixedStep, KnifeEdge, Table, simulate
 from substructures.quantities.sources import Sources
@@ -101,12 +101,23 @@ def test_loops(change: Plain, pointer: str, code: str) -> None:
         ({"constraints": [BLADE, {"name": "c", "type": "linear"}]}, "/constraints/1/expression", "missing"),
         ({"form": "lagrange"}, "/form", "literal-error"),
         ({"fixed": ["s.x"]}, "/fixed", "extra-forbidden"),
-        ({"reactions": True}, "/reactions", "extra-forbidden"),
+        ({"powers": True}, "/powers", "extra-forbidden"),
         ({"friction": "loaded"}, "/friction", "extra-forbidden"),
     ],
 )
 def test_constraints(change: Plain, pointer: str, code: str) -> None:
     assert faults(SLEIGH, "simulations", ROLLING | change) == [(pointer, code)]
+
+
+def test_linearisations_about_motions() -> None:
+    """With constraints in quasi-velocities, which mean nothing without."""
+    velocities = {"u": "cos(s.f)*s.x' + sin(s.f)*s.y'", "w": "s.f'"}
+    asked: Plain = {"q": [0, 0, 0], "constraints": [BLADE], "velocities": velocities, "v": {"u": 2}}
+    found = ANALYSES["linearisations"].compute(Source(Sources(SLEIGH), "", Limits()), asked, lambda _: None)
+    told = plain(getattr(found, "result", found))
+    assert (told["is_steady"], told["is_equilibrium"], told["ignorable"]) == (True, False, ["s.x", "s.y", "s.f"])
+    assert faults(SLEIGH, "linearisations", {"q": [0, 0, 0], "v": [1]}) == [("/v", "not-supported")]
+    assert faults(SLEIGH, "linearisations", asked | {"qdd": [0, 0, 0]}) == [("/qdd", "not-supported")]
 
 
 def test_friction_that_loops_do_not_have() -> None:
@@ -166,7 +177,7 @@ def test_bodies_and_functions_have_the_same_fields_and_defaults(
         known |= {"fixed_step": None, "geodesic": False}
     fields = {name: field for schema in schemas for name, field in schema.model_fields.items()}
     refused = (
-        {"events", "series", "fixed_step", "reactions", "powers", "friction", "geodesic"}
+        {"events", "series", "fixed_step", "reactions", "powers", "friction", "geodesic", "contacts"}
         if function is sensitivities
         else set()
     )

@@ -148,7 +148,7 @@ def test_in_jobs(filled: TestClient, kind: str, item: dict[str, Any], words: str
 
 def test_a_part_whose_versions_are_all_withdrawn_is_told_as_such_in_jobs_too(filled: TestClient) -> None:
     withdrawn = {"reason": "wrong mass", "successor": "pendulum@1"}
-    assert filled.post("/v1/substructures/slider@1/yank", json=withdrawn).status_code == 200
+    assert filled.post("/v1/substructures/slider@1/withdraw", json=withdrawn).status_code == 200
     tree = {"name": "sled", "instances": [{"name": "a", "substructure": "slider"}]}
     why = "all versions of 'slider' are withdrawn, the last one as slider@1: wrong mass; take pendulum@1"
     assert f"instance 'a': {why}" in said(filled.post("/v1/trees", json=tree))

@@ -17,6 +17,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.database.schema import NEWEST
+from service.jobs.engines.engine import AttemptReport, Work
 from service.operations.verification import verify_all
 from service.queries import renewals
 from service.renewing import Renewal
@@ -111,6 +112,18 @@ def test_all_is_derived_anew(path: Path, store: Store, caplog: pytest.LogCapture
     assert caplog.text == ""
 
 
+@pytest.mark.parametrize("path", [OLD[-1]], indirect=True)
+def test_what_was_withdrawn_stays_so(path: Path) -> None:
+    """Up to schema 0016 the columns had other names."""
+    with closing(sqlite3.connect(path)) as connection, connection:
+        connection.execute("UPDATE versions SET yanked = '2026-11-27T00:00:00Z', yank_reason = 'light'")
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False, key_seconds=0)) as opened:
+        told = make_client(opened).get("/v1/substructures/pendulum@1").json()
+    assert [told[name] for name in ("is_withdrawn", "withdrawn_at", "withdrawal_reason")] == [
+        True, "2026-11-27T00:00:00Z", "light",
+    ]  # fmt: skip
+
+
 def _items(client: TestClient, kind: str) -> list[dict[str, Any]]:
     found: list[dict[str, Any]] = client.get(f"/v1/{kind}").json()["items"]
     return found
@@ -127,6 +140,40 @@ def test_what_is_stopped_goes_on(tmp_path: Path) -> None:
         assert Renewal(store).all() == 0
         with store.database.read() as connection:
             assert renewals.progress(connection) is None
+
+
+def test_it_is_work_of_processes_that_can_be_killed(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    works, compute = list[Work](), store.workers.compute
+
+    def noted(share: str, work: Work, seconds: float) -> AttemptReport:
+        works.append(work)
+        return compute(share, work, seconds)
+
+    monkeypatch.setattr(store.workers, "compute", noted)
+    assert Renewal(store).all() == 0
+    assert {work.kind for work in works} == {"renew-part", "renew-tree"}
+    limits = store.settings.limits
+    assert {work.budget.memory_bytes for work in works} == {limits.job_memory_bytes}
+    assert all(0 < work.budget.cpu_seconds <= limits.job_cpu_seconds for work in works)
+
+
+def test_what_takes_too_long_is_left(
+    store: Store, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+) -> None:
+    """Its process was killed; the others have their turn."""
+    compute = store.workers.compute
+
+    def killed(share: str, work: Work, seconds: float) -> AttemptReport:
+        if work.kind == "renew-part" and b"andrews" in b"".join(work.blobs.values()):
+            raise TimeoutError("took more than 0.1 s")
+        return compute(share, work, seconds)
+
+    monkeypatch.setattr(store.workers, "compute", killed)
+    assert Renewal(store).all() == 2, "the part, and the tree that has it"
+    assert "cannot be derived anew: TimeoutError: took more than 0.1 s" in caplog.text
+    _is_right(make_client(store))
+    monkeypatch.undo()
+    assert make_client(store).get("/v1/trees/machines").status_code == 200, "tried again when it is asked for"
 
 
 def test_a_server_does_it_by_itself(tmp_path: Path) -> None:

@@ -44,9 +44,11 @@ ANALYSES = (
         "frequency-responses",
         "regulators",
         "periodic-orbits",
+        "poincare-sections",
     ),
     *(
         "optimal-controls",
+        "optimal-parameters",
         "reduced-equations",
         "root-loci",
         "sensitivities",
@@ -104,7 +106,7 @@ TABLE: dict[str, Row] = {
     "put /v1/substructures/{name}/aliases/{alias}": Row(
         PART + "/{part}/aliases/new", (201, 403, 404), (201, 403, 403), {"version": 1}
     ),
-    "post /v1/substructures/{ref}/yank": Row(PART + "/{part}@1/yank", (200, 403, 404), (200, 403, 403), {}),
+    "post /v1/substructures/{ref}/withdraw": Row(PART + "/{part}@1/withdraw", (200, 403, 404), (200, 403, 403), {}),
     "get /v1/substructures/{name}/visibility": Row(PART + "/{part}/visibility", *READ),
     "put /v1/substructures/{name}/visibility": Row(
         PART + "/{part}/visibility", (200, 403, 404), (200, 403, 403), {"visibility": "public"}
@@ -112,6 +114,7 @@ TABLE: dict[str, Row] = {
     "get /v1/substructures/{name}/versions": Row(PART + "/{part}/versions", *READ),
     "get /v1/substructures/{ref}/uses": Row(PART + "/{part}/uses", *READ),
     "get /v1/substructures/{ref}/difference": Row(PART + "/{part}/difference?to={part}@1", *READ),
+    "get /v1/substructures/{ref}/levels": Row(PART + "/{part}/levels", *READ),
     "delete /v1/trees/{ref}": Row(TREE + "/{tree}", (204, 403, 404), (204, 403, 403)),
     "get /v1/bundles": Row("/v1/bundles?refs={part}@1", *READ),
     # that it has to be a zip; whose names may be added to: test_bundles.py
@@ -379,7 +382,7 @@ def test_what_is_public_does_not_name_what_is_private(served: TestClient, world:
     acme, reads, bolt = world.keys
     put(served, acme, PART, {**PENDULUM, "name": "open", "title": "made", "derived_from": "hush@1"})
     put(served, acme, PART, {**PENDULUM, "name": "old", "title": "old"})
-    put(served, acme, f"{PART}/old@1/yank", {"reason": "", "successor": "hush@1"}, 200)
+    put(served, acme, f"{PART}/old@1/withdraw", {"reason": "", "successor": "hush@1"}, 200)
     names = {"open@1": "derived_from", "old@1": "successor"}
     for ref, member in names.items():
         for headers, is_seen in ((acme, True), (reads, True), (world.admin, True), (bolt, False)):
@@ -542,15 +545,15 @@ def test_names_are_taken_by_who_comes_first(served: TestClient, world: World) ->
 
 def test_the_audit(served: TestClient, world: World) -> None:
     acme, _, bolt = world.keys
-    served.post(f"{PART}/known@1/yank", json={"reason": "old"}, headers=acme)
+    served.post(f"{PART}/known@1/withdraw", json={"reason": "old"}, headers=acme)
     entries = served.get("/v1/audit?owner=acme&page_size=1000", headers=world.admin).json()["items"]
     actions = [entry["action"] for entry in entries]
-    assert actions[0] == "substructure.yank"
+    assert actions[0] == "substructure.withdraw"
     assert entries[0]["detail"] == {"reason": "old"}
     assert {"key.create", "substructure.submit", "tree.store", "alias.set", "job.submit"} <= set(actions)
     assert [entry["seq"] for entry in entries] == sorted((entry["seq"] for entry in entries), reverse=True)
-    served.post(f"{PART}/known@1/yank", json={"reason": "not mine"}, headers=bolt)
-    again = served.get("/v1/audit?subject=known@1&action=substructure.yank", headers=world.admin).json()["items"]
+    served.post(f"{PART}/known@1/withdraw", json={"reason": "not mine"}, headers=bolt)
+    again = served.get("/v1/audit?subject=known@1&action=substructure.withdraw", headers=world.admin).json()["items"]
     assert len(again) == 1
     first = served.get("/v1/audit?page_size=1", headers=world.admin).json()
     following = served.get(first["links"]["next"], headers=world.admin).json()

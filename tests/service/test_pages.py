@@ -90,7 +90,7 @@ def test_an_empty_store(client: TestClient) -> None:
 
 def test_the_page_of_a_part(filled: TestClient) -> None:
     filled.put("/v1/substructures/pendulum/aliases/best", json={"version": 1})
-    filled.post("/v1/substructures/pendulum@1/yank", json={"reason": "wrong mass"})
+    filled.post("/v1/substructures/pendulum@1/withdraw", json={"reason": "wrong mass"})
     page = read(filled, "/substructures/pendulum@1")
     for words in (
         *(
@@ -187,7 +187,7 @@ def test_texts_are_escaped(filled: TestClient, text: str) -> None:
         answer = filled.post("/v1/substructures", json=definition)
     assert answer.status_code == 201, answer.text
     assert filled.post("/v1/trees", json={**TREE, "name": "hostile"}).status_code == 201
-    filled.post("/v1/substructures/pendulum@2/yank", json={"reason": text})
+    filled.post("/v1/substructures/pendulum@2/withdraw", json={"reason": text})
     filled.post("/v1/substructures", json={**definition, "description": text + text})
     seen = text.replace("\u200f", "\ufffd")
     for path in ("/", "/substructures/pendulum", "/substructures/pendulum@2", "/trees/hostile"):

@@ -48,7 +48,7 @@ def test_main_flow(client: TestClient) -> None:
     assert client.get("/v1/substructures/pendulum/formulas/metric?format=latex").status_code == 200
     assert client.put("/v1/substructures/pendulum/aliases/a", json={"version": 1}).status_code == 201
     assert client.get("/v1/substructures/pendulum@a").json()["aliases"] == ["a"]
-    assert client.post("/v1/substructures/pendulum@a/yank").json()["yanked"] is True
+    assert client.post("/v1/substructures/pendulum@a/withdraw").json()["is_withdrawn"] is True
     assert client.post("/v1/trees", json={"name": "x", "instances": [{"name": "1"}]}).status_code == 422
 
 

@@ -39,6 +39,11 @@ def test_what_a_tree_says(filled: TestClient) -> None:
     values = {each["name"]: each["value"] for each in found["symbols"]}
     assert values["arm.m"] == 2
     assert found["sources"][0]["title"] == "Pendulum"
+    requests = {each["request"] for each in found["statements"] if each["about"] == "rest"}
+    assert requests == {"POST /v1/trees/cell@1/equilibria"}
+    (told,) = [each["figures"][1] for each in found["statements"] if each["code"] == "searched"]
+    shown = filled.post("/v1/trees/cell@1/equilibria", json={}).json()
+    assert told == {"name": "found", "value": len(shown["found"]), "unit": "1"}
 
 
 def test_a_part_says_what_was_assumed(filled: TestClient) -> None:

@@ -22,6 +22,8 @@ ROBOT = (
 XML = {"content": ROBOT, "headers": {"Content-Type": "application/xml"}}
 CONSTRAINED = {"constraints": [{"type": "linear", "name": "still", "expression": "arm.q'"}]}
 COMPARED = {"a": "pendulum", "b": {"file": ROBOT}, "coordinates": {"q": "hinge"}}
+DERIVED = ["regressor", "inertial_parameters", "reactions", "mass_centre", "kinetic_energy"]
+MADE = ["derived"] * 5  # one of these and of the motion that reactions are of, each program once
 #: method, path, what is sent with it, kinds of its works
 ASKED: list[tuple[str, str, dict[str, Any], list[str]]] = [
     ("POST", "/v1/substructures", {"json": {**SLIDER, "name": "other"}}, ["derive"]),
@@ -48,8 +50,15 @@ ASKED: list[tuple[str, str, dict[str, Any], list[str]]] = [
     ("GET", "/v1/substructures/pendulum@1/report", {}, ["report"]),
     ("GET", "/v1/trees/cell@1/report?format=text", {}, ["report"]),
     ("GET", "/v1/substructures/pendulum/difference?to=slider", {}, ["difference"]),
+    ("GET", "/v1/substructures/pendulum/levels", {}, []),
     ("GET", "/trees/cell/difference?to=cell", {}, ["difference"]),
+    ("GET", "/v1/substructures/pendulum@1/picture", {}, ["picture"]),
+    ("GET", "/v1/trees/cell@1/picture?q=0.1", {}, ["picture"]),
+    ("GET", "/v1/substructures/pendulum@1/scene", {}, ["scene"]),
+    ("GET", "/v1/trees/cell/scene", {}, ["scene"]),
     ("POST", "/v1/trees/cell@1/evaluations", {"json": {"quantities": ["metric"], "q": [0]}}, []),
+    ("POST", "/v1/trees/cell@1/evaluations", {"json": {"quantities": DERIVED, "q": [0], "qdd": [0]}}, MADE),
+    ("POST", "/v1/trees/cell@1/kernels", {"json": {"quantities": ["powers"]}}, ["derived"]),
     ("GET", "/v1/trees/cell@1", {}, []),
 ]
 

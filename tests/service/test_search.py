@@ -142,8 +142,8 @@ def test_search_follows_the_latest_version(store: Store, client: TestClient) -> 
     assert client.post("/v1/substructures", json=newer, headers=headers).status_code == 201
     assert (ask("hinge"), ask("Drehgelenk")) == (["r2"], [])
     assert (ask("do"), ask("dr")) == (["r2"], [])
-    assert client.post("/v1/substructures/r2@2/yank", headers=headers).status_code == 200
+    assert client.post("/v1/substructures/r2@2/withdraw", headers=headers).status_code == 200
     assert (ask("hinge"), ask("Drehgelenk")) == ([], ["r2"])
     assert (ask("do"), ask("dr")) == ([], ["r2"])
-    assert client.post("/v1/substructures/r2@1/yank", headers=headers).status_code == 200
+    assert client.post("/v1/substructures/r2@1/withdraw", headers=headers).status_code == 200
     assert (ask("hinge"), ask("Drehgelenk"), ask("dr")) == ([], [], [])

@@ -49,7 +49,7 @@ def test_submitting_and_withdrawing_side_by_side(kind: str, tmp_path: Path) -> N
                 made = client.post("/v1/substructures", json=part(f"p-{j % 3}", f"k{k}", f"x{k}{j}"))
                 assert made.status_code == 201, made.text
                 for number in {made.json()["version"], max(1, made.json()["version"] - 1)} if j % 2 else ():
-                    path = f"/v1/substructures/{made.json()['name']}@{number}/yank"
+                    path = f"/v1/substructures/{made.json()['name']}@{number}/withdraw"
                     assert client.post(path, json={"reason": "old"}).status_code == 200
 
         with ThreadPoolExecutor(6) as pool:
@@ -60,7 +60,7 @@ def test_submitting_and_withdrawing_side_by_side(kind: str, tmp_path: Path) -> N
             rows = connection.execute(
                 sa.text(
                     """SELECT s.latest, max(v.version) FROM substructures s
-                       LEFT JOIN versions v ON v.name = s.name AND v.yanked IS NULL GROUP BY s.name, s.latest"""
+                       LEFT JOIN versions v ON v.name = s.name AND v.withdrawn_at IS NULL GROUP BY s.name, s.latest"""
                 )
             ).all()
             assert len(rows) == 3

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from service.content.cache import Cache
 from service.jobs.kinds import sweep as kind
 from service.store.store import Store
 from substructures.formats.arrays import read_npz
@@ -99,6 +100,42 @@ def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
     assert filled.get("/v1/jobs?label=study").json()["items"] == []
 
 
+def test_what_rows_do_is_columns_too(filled: TestClient, store: Store) -> None:
+    """Equilibria, reach and motions, with what is not finite told."""
+    hanging = {"q": [-1.5, 0]}
+    motion = {"analysis": "simulation", "at": {"q": [0, 0]}, "span": [0, 0.5]}
+    columns = {
+        "hangs": {"analysis": "equilibrium", "at": hanging, "of": "arm.q"},
+        "slow": {"analysis": "linearisation", "at": hanging, "settle": True},
+        "reach": {"analysis": "reach", "of": "hand.tip"},
+        "falls": {**motion, "expression": "arm.q"},
+        "effort": {**motion, "expression": "arm.q'^2", "take": "integral"},
+        "ratio": "effort/reach",
+    }
+    more = {"choices": {}, "where": "", "pareto": None, "columns": columns, "proof": 10}
+    whole = table(filled, done(filled, store, {**SWEEP, **more}), "?page_size=100")
+    assert (whole["count"], whole["proven"], whole["refused"]) == (10, 10, {})
+    for row in whole["items"]:
+        assert row["hangs"] == pytest.approx(-np.pi / 2)
+        assert row["reach"] == pytest.approx(row["arm.l"] + 1)
+        assert row["falls"] < 0 < row["effort"]
+        assert row["ratio"] == row["effort"] / row["reach"]
+
+
+def test_columns_keep_their_order(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where they are computed, too: a column names those before it."""
+    of = {"arm.m": {"values": [1, 2]}, "arm.l": {"values": [3, 4]}}
+    columns = {"weight": "mass", "heavy": "2*weight", "a": "heavy + 1"}
+    more = {"choices": {}, "where": "", "pareto": None, "columns": columns, "samples": {"of": of}}
+    job = submitted(filled, {**SWEEP, **more})
+    monkeypatch.setattr(kind, "_plans", Cache[Any](4, lambda _: 1))  # as of a process that computes
+    with running(store, FakeEngine()):
+        assert finished(filled, job)["state"] == "succeeded"
+    whole = table(filled, job)
+    assert whole["columns"] == ["row", "arm.m", "arm.l", "weight", "heavy", "a"]
+    assert [(row["arm.m"], row["arm.l"]) for row in whole["items"]] == [(1, 3), (1, 4), (2, 3), (2, 4)]
+
+
 def test_tables_are_files_and_rows_become_trees(filled: TestClient, store: Store) -> None:
     job = done(filled, store, SWEEP)
     whole = table(filled, job, "?page_size=100")["items"]
@@ -138,6 +175,7 @@ def test_queries_choose_parts(filled: TestClient, store: Store) -> None:
     assert len(whole["items"]) == whole["kept"] == 3
 
 
+ALONE: dict[str, Any] = {"where": "", "pareto": None}
 CHANGES: tuple[tuple[dict[str, Any], str, str], ...] = (
     ({"choices": {"leg": ["pendulum"]}}, "/choices/leg", "unknown-choice"),
     ({"choices": {"hand": ["pendulum", "pendolum"]}}, "/choices/hand/1", "unknown-substructure"),
@@ -150,6 +188,10 @@ CHANGES: tuple[tuple[dict[str, Any], str, str], ...] = (
         "unknown-coordinate",
     ),
     ({"columns": {"x": "mass/weight"}}, "/columns/x", "unknown-column"),
+    ({"columns": {"x": {"analysis": "orbit"}}}, "/columns/x", "unknown-column"),
+    ({"columns": {"x": {"analysis": "reach", "of": "hand.tap"}}, **ALONE}, "/columns/x/of", "unknown-name"),
+    ({"columns": {"x": {"analysis": "equilibrium", "of": "hand.y"}}, **ALONE}, "/columns/x/of", "unknown-coordinate"),
+    ({"columns": {"x": {"analysis": "simulation", "span": [0, 1]}}}, "/columns/x", "one-source"),
     ({"columns": {"mass": "mass"}, "where": "mass", "pareto": None}, "/where", "comparison-expected"),
     ({"where": "weight < 3"}, "/where", "unknown-column"),
     ({"pareto": {"minimise": ["weight"]}}, "/pareto/minimise/0", "unknown-column"),
@@ -224,6 +266,14 @@ def test_a_planted_fault_in_one_range_fails_it(monkeypatch: pytest.MonkeyPatch) 
     outcome = kind.SWEEP.run(item, library.blobs, lambda _: None)
     assert outcome.problem is not None
     assert outcome.problem["code"] == "proof-failed"
+
+
+def test_plots_show_what_varies(filled: TestClient, store: Store) -> None:
+    more = {"choices": {}, "where": "", "pareto": None, "columns": {"a": "mass", "b": "2*a", "same": "dof"}}
+    job = done(filled, store, {**SWEEP, **more})
+    text = filled.get(f"/jobs/{job}").text
+    assert 'placeholder="b"' in text
+    assert 'placeholder="a"' in text
 
 
 def test_the_page_of_a_sweep_is_its_table(filled: TestClient, store: Store) -> None:

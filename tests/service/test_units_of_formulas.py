@@ -13,8 +13,8 @@ from service.cli.tree_files import coupled_source
 from service.models.formulas import made
 from service.models.printing import Style, made_text
 from substructures import Definition, TreeSpec, catalogue, derive
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
-from substructures.analysis.equations.velocity_constraints import Linear
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Linear
 from substructures.export import interface_of_model
 
 REFERENCE = Path(__file__).parents[1] / "reference"

@@ -68,6 +68,8 @@ MOTION: list[Row] = [
      {"slide.x": MM, "slide.x'": measured(2, "km/s")}, {"slide.x": 0.25, "slide.x'": 2000.0}, "rad"),
     ("simulations", SPAN | {"events": [{"name": "a", "quantity": "arm.q'"}]}, "/events/0/level",
      measured(60, "rpm"), 2 * pi, "m"),
+    ("simulations", SPAN | {"contacts": [{"name": "a", "point": "arm.body"}]}, "/contacts/0/rest_velocity",
+     measured(1, "mm/s"), 0.001, "m"),
     ("loop-states", {"q": [0, 0]}, "/t", measured(1, "min"), 60.0, "m"),
     ("loop-states", {"q": [0, 0]}, "/prescribed/slide.x", MM, 0.25, "rad"),
     ("loop-states", {"prescribed": {"arm.q": {"values": [0, 1]}}}, "/prescribed/arm.q/times",
@@ -115,6 +117,9 @@ QUESTIONS: list[Row] = [
     ("steady-motions", {"rates": {}}, "/reach", MM, 0.25, "rad"),
     ("steady-motions", {"rates": {}}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
     ("steady-motions", {"rates": {}}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
+    ("steady-motions", {"vary": "arm.l"}, "/between", [MM, 1], [0.25, 1], "rad"),
+    ("steady-motions", {"vary": "arm.q", "rates": {}}, "/between", [0, measured(60, "rpm")], [0, 2 * pi], "m"),
+    ("steady-motions", {"vary": "slide.x", "momenta": {}}, "/between", [0, measured(2, "kN s")], [0, 2000.0], "m"),
     ("root-loci", {"parameter": "arm.l", "q": [0, 0]}, "/values", measured([250, 500], "mm"), [0.25, 0.5], "kg"),
     ("root-loci", {"parameter": "arm.l", "q": [0, 0]}, "/values", [MM, 1], [0.25, 1], "kg"),
     ("root-loci", {"parameter": "arm.l", "values": [1]}, "/q", *HANDS, "s"),
@@ -123,6 +128,8 @@ QUESTIONS: list[Row] = [
     ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/values", measured([250], "mm"), [0.25], "kg"),
     ("periodic-orbits", {"vary": "arm.q'", "period": 1, "q": [0, 0]}, "/values", measured([60], "rpm"), [2 * pi], "m"),
     ("periodic-orbits", {"q": [0, 0]}, "/period", measured(1, "min"), 60.0, "m"),
+    ("poincare-sections", {"q": [0, 0], "quantity": "arm.q"}, "/duration", measured(1, "min"), 60.0, "m"),
+    ("poincare-sections", {"q": [0, 0], "quantity": "2*arm.l", "duration": 1}, "/level", MM, 0.25, "rad"),
     ("lyapunov-exponents", {"q": [0, 0]}, "/duration", measured(1, "min"), 60.0, "m"),
     ("lyapunov-exponents", {"q": [0, 0], "duration": 1}, "/transient", measured(1, "min"), 60.0, "m"),
     ("curvatures", {}, "/q", *HANDS, "s"),
@@ -135,6 +142,15 @@ QUESTIONS: list[Row] = [
      [[0.25, 2000.0]], "m"),
 ]  # fmt: skip
 CONTROLS: list[Row] = [
+    ("optimal-parameters", {"minimise": "m"}, "/vary/arm.m", measured([250, 500], "g"), [0.25, 0.5], "m"),
+    (
+        "optimal-parameters",
+        {"minimise": "m", "vary": {"arm.l": [1, 2]}},
+        "/parameters/arm.m",
+        measured(1, "g"),
+        0.001,
+        "m",
+    ),
     ("optimal-controls", CONTROL, "/horizon", measured(1, "min"), 60.0, "m"),
     ("optimal-controls", CONTROL, "/q", *HANDS, "s"),
     ("optimal-controls", CONTROL, "/qd", [measured(60, "rpm"), 0], [2 * pi, 0], "m"),
@@ -146,6 +162,8 @@ CONTROLS: list[Row] = [
     ("optimal-controls", CONTROL, "/bounds/tau.arm.q", [None, measured(25, "N cm")], [None, 0.25], "N"),
     ("optimal-controls", CONTROL, "/bounds/tau.arm.q", measured([-25, 25], "N cm"), [-0.25, 0.25], "N"),
     ("optimal-controls", CONTROL, "/guess/tau.arm.q", measured([25, 50], "N cm"), [0.25, 0.5], "N"),
+    ("optimal-controls", CONTROL, "/free_horizon", [0, measured(1, "min")], [0, 60.0], "m"),
+    ("optimal-controls", CONTROL, "/free_parameters/arm.m", [measured(250, "g"), 1], [0.25, 1], "m"),
     ("cost-gradients", CONTROL, "/values/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
 ]
 ABOUT: Plain = {"quantity": "metric", "simplify": 0.01}
@@ -162,11 +180,18 @@ TABLE = [*MOTION, *QUESTIONS, *CONTROLS, *RANGES]
 #: numbers without a dimension, or with one that changes from coordinate to coordinate
 PURE = {
     "simplify",
+    # a share, a factor, an answer as it was given
+    *("held_out", "prior_deviation", "warm_start"),
+    # limits of any expression
+    "path",
     # of squares of anything
     *("weights", "efforts"),
     *("absolute_tolerance", "relative_tolerance", "drift_limit", "error_limit", "tolerance", "constraints.normal"),
+    *("contacts.friction", "contacts.restitution"),
     # samples have a unit beside the numbers, columns may be of anything
     *("samples.of.values", "samples.of.uniform", "samples.of.normal", "columns.expression"),
+    # states of columns are converted where they are used
+    *("columns.at", "columns.over", "columns.span", "columns.relative_tolerance"),
 }
 
 
@@ -267,7 +292,7 @@ def test_the_table_has_all_numbers_of_all_requests() -> None:
     steps = [[step for step in row[2].split("/")[1:] if not step.isdigit()] for row in TABLE]
     listed = {".".join(path) for path in steps} | {f"{path[0]}.{path[-1]}" for path in steps}
     # what stands below of values by name belongs to the field
-    texts = {"series", "outputs", "events.quantity"}
+    texts = {"series", "outputs", "events.quantity", "quantity"}
     missing = [p for p in has_units - texts if not any(f"{x}.".startswith(f"{p}.") for x in listed)]
     assert not missing
 

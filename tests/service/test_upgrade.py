@@ -15,9 +15,9 @@ from service.app import open_store
 from service.content.improvement import AS_IT_WAS, MORE, SHORTER
 from service.content.integrity import digest_of
 from service.database.packed import pack, unpack
+from service.jobs.kinds.requested import renewed
 from service.messages.viewer import Viewer
 from service.models.grouping import QUANTITIES as GROUPED
-from service.operations import renewal
 from service.operations.upgrade import Upgraded, upgrade
 from service.operations.verification import verify_all
 from service.settings import Settings
@@ -132,7 +132,7 @@ def test_each_is_a_transaction_of_its_own(old: Store) -> None:
 
 
 def test_what_fails_is_told_and_left(old: Store, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = renewal.derived_part
+    right = renewed.derived_part
 
     def derived(definition: bytes, *given: Any) -> Any:
         """Fails for one of them."""
@@ -140,7 +140,7 @@ def test_what_fails_is_told_and_left(old: Store, monkeypatch: pytest.MonkeyPatch
             raise ValueError("no")
         return right(definition, *given)
 
-    monkeypatch.setattr(renewal, "derived_part", derived)
+    monkeypatch.setattr(renewed, "derived_part", derived)
     found = by_name(upgrade(old.database))
     assert (found["substructure pendulum@1"].fault, found["substructure pendulum@1"].outcome) == ("no", AS_IT_WAS)
     assert found["substructure slider@1"].outcome == SHORTER

@@ -48,7 +48,7 @@ def test_versions_tell_where_they_come_from(filled: TestClient) -> None:
     again = stored(filled, PART, {**second, "note": "another note"}, 200)
     assert again["note"] == "for the new drive"
     listed = items(filled, f"{PART}/pendulum/versions")
-    assert [(each["version"], each["note"], each["yanked"]) for each in listed] == [
+    assert [(each["version"], each["note"], each["is_withdrawn"]) for each in listed] == [
         (2, "for the new drive", False),
         (1, "", False),
     ]
@@ -65,12 +65,14 @@ def test_a_withdrawn_version_is_told_wherever_it_is_used(filled: TestClient) -> 
     stored(filled, PART, {**PENDULUM, "title": "better"})
     before = filled.get(f"{TREE}/pair@1")
     assert before.json()["withdrawn"] == []
-    bad = filled.post(f"{PART}/pendulum@1/yank", json={"successor": "pendulum@9"})
+    bad = filled.post(f"{PART}/pendulum@1/withdraw", json={"successor": "pendulum@9"})
     assert (bad.status_code, bad.json()["errors"][0]["pointer"]) == (422, "/successor")
-    assert filled.post(f"{PART}/pendulum@1/yank", json={"successor": "pendulum@1"}).json()["code"] == "own-successor"
-    assert not filled.get(f"{PART}/pendulum@1").json()["yanked"]
-    told = stored(filled, f"{PART}/pendulum@1/yank", {"reason": "too light", "successor": "pendulum"}, 200)
-    assert (told["yanked"], told["yank_reason"], told["successor"]) == (True, "too light", "pendulum@2")
+    assert (
+        filled.post(f"{PART}/pendulum@1/withdraw", json={"successor": "pendulum@1"}).json()["code"] == "own-successor"
+    )
+    assert not filled.get(f"{PART}/pendulum@1").json()["is_withdrawn"]
+    told = stored(filled, f"{PART}/pendulum@1/withdraw", {"reason": "too light", "successor": "pendulum"}, 200)
+    assert (told["is_withdrawn"], told["withdrawal_reason"], told["successor"]) == (True, "too light", "pendulum@2")
     after = filled.get(f"{TREE}/pair@1", headers={"If-None-Match": before.headers["etag"]})
     gone = {"substructure": "pendulum@1", "reason": "too light", "successor": "pendulum@2"}
     assert after.json()["withdrawn"] == [{"instance": name, **gone} for name in "ab"]
@@ -193,7 +195,7 @@ def test_ten_thousand_versions(filled: TestClient, store: Store) -> None:
     following = filled.get(first["links"]["next"]).json()
     assert following["items"][0]["version"] == 9_001
     for number in (10_001, 10_000):
-        stored(filled, f"{PART}/pendulum@{number}/yank", {}, 200)
+        stored(filled, f"{PART}/pendulum@{number}/withdraw", {}, 200)
     assert filled.get(f"{PART}/pendulum").json()["version"] == 9_999
 
 
@@ -222,13 +224,62 @@ def test_differences(filled: TestClient) -> None:
     assert not any("sha256" in words for words in nested["words"])
 
 
+def test_levels_and_their_errors(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
+    """M = m l^2 + m l^2/10; without the second term it is wrong by 1/11 of itself. Links lead there and back."""
+    rod = {name: x for name, x in PENDULUM["bodies"][0].items() if name != "inertia"}
+    point = {**PENDULUM, "name": "point", "bodies": [rod], "derived_from": "pendulum@1"}
+    stored(filled, PART, point)
+    heavier = {**PENDULUM, "parameters": {**PENDULUM["parameters"], "m": {"value": 3, "unit": "kg"}}}
+    stored(filled, PART, {**heavier, "name": "heavier", "derived_from": "pendulum@1"})  # a correction is no level
+    answer = filled.get(f"{PART}/pendulum/levels").json()
+    (short,) = answer["items"]
+    assert (answer["states"], answer["range"]) == (16, [-1.5, 1.5])
+    assert [short[name] for name in ("name", "version", "level", "dof")] == ["point", 1, "abbreviated", 1]
+    assert short["error"]["metric"] == pytest.approx(1 / 11, rel=1e-12)
+    assert short["rms"]["metric"] == pytest.approx(1 / 11, rel=1e-12)  # at all states
+    assert "composite.m" not in short["error"]  # both have the same mass
+    assert filled.get(short["links"]["difference"]).json()["quantities"]["metric"]["change"] == short["error"]["metric"]
+    (full,) = filled.get(short["links"]["levels"]).json()["items"]
+    assert [full[name] for name in ("name", "version", "level", "error")] == ["pendulum", 1, "full", short["error"]]
+    assert full["links"]["difference"] == short["links"]["difference"]
+    assert filled.get(full["links"]["self"]).json()["links"]["levels"] == full["links"]["levels"]
+    for name, other in (("pendulum", "point"), ("point", "pendulum")):
+        shown = filled.get(f"/substructures/{name}").text.partition('id="levels"')[2].partition("</table>")[0]
+        assert f'href="/substructures/{other}@1"' in shown
+        assert "M 9.1 % (9.1 %)" in shown
+        assert "at 16 states, q and q&#x27; from -1.5 to 1.5" in shown.replace("&#39;", "&#x27;")
+    with monkeypatch.context() as large:
+        large.setattr("service.pages.model.routes.MOST_COMPARED", 0)  # then the page does not wait for the numbers
+        shown = filled.get("/substructures/point").text.partition('id="levels"')[2].partition("</table>")[0]
+    assert 'href="/substructures/pendulum@1/difference?to=point@1">what changed</a>' in shown
+    stored(filled, f"{PART}/point@1/withdraw", {}, 200)
+    assert filled.get(f"{PART}/pendulum/levels").json()["items"] == []
+    assert filled.get(f"{PART}/nothing/levels").status_code == 404
+
+
+def test_a_level_of_fewer_coordinates(filled: TestClient) -> None:
+    """Held at q2 = 0, M_11 = 6.4 + 4 cos q2 is 10.4 for ever; entries of q2 are no part of the error."""
+    outer = {**PENDULUM["bodies"][0], "name": "outer", "parent": "rod"}
+    place = {"d": "l", "type": "revolute", "coordinate": "q2"}
+    double = {**PENDULUM, "name": "double", "bodies": [PENDULUM["bodies"][0], {**outer, "joint": place}], "ports": []}
+    stored(filled, PART, double)
+    held = {**double, "bodies": [double["bodies"][0], {**outer, "joint": {**place, "type": "fixed"}}]}
+    del held["bodies"][1]["joint"]["coordinate"]
+    stored(filled, PART, {**held, "name": "held", "derived_from": "double"})
+    (short,) = filled.get(f"{PART}/double/levels").json()["items"]
+    assert [short[name] for name in ("level", "dof")] == ["reduced", 1]
+    assert 0.1 < short["error"]["metric"] <= 8 / 10.4
+    assert short["error"]["metric"] / 4 < short["rms"]["metric"] < short["error"]["metric"]
+    assert "M " in filled.get("/substructures/double").text.partition('id="levels"')[2].partition("</table>")[0]
+
+
 def test_a_withdrawn_part_is_told_two_levels_up(filled: TestClient) -> None:
     stored(filled, TREE, PAIR)
     stored(filled, f"{TREE}/pair/publish", {"name": "module"})
     stored(filled, TREE, {"name": "cell2", "instances": [{"name": "m", "substructure": "module"}]})
     stored(filled, f"{TREE}/cell2/publish", {"name": "cell2-part"})
     known = filled.get(f"{TREE}/cell2").headers["etag"]
-    stored(filled, f"{PART}/pendulum@1/yank", {"reason": "too light"}, 200)
+    stored(filled, f"{PART}/pendulum@1/withdraw", {"reason": "too light"}, 200)
     for address in (f"{TREE}/cell2", f"{TREE}/cell2@1", f"{PART}/cell2-part"):
         gone = filled.get(address, headers={"If-None-Match": known}).json()["withdrawn"]
         assert [(each["instance"], each["substructure"]) for each in gone] == [
@@ -250,7 +301,7 @@ def test_pages(filled: TestClient) -> None:
     stored(filled, TREE, PAIR)
     stored(filled, PART, {**PENDULUM, "title": "better", "note": "for <b>you</b>"})
     stored(filled, f"{TREE}/pair/publish", {"name": "module"})
-    stored(filled, f"{PART}/pendulum@1/yank", {"reason": "too light", "successor": "pendulum@2"}, 200)
+    stored(filled, f"{PART}/pendulum@1/withdraw", {"reason": "too light", "successor": "pendulum@2"}, 200)
     part = filled.get("/substructures/pendulum@1").text
     assert "for &lt;b&gt;you&lt;/b&gt;" in part
     assert 'href="/substructures/pendulum@1/difference?to=pendulum@2"' in part

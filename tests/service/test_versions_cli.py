@@ -26,7 +26,9 @@ def address(tmp_path_factory: pytest.TempPathFactory) -> Iterator[str]:
             client.create_tree(TREE)
             heavy = {**PENDULUM["parameters"], "m": {"value": 2.1, "unit": "kg"}}
             client.submit({**PENDULUM, "parameters": heavy, "note": "heavier", "derived_from": "pendulum@1"})
-            client.request("POST", "/v1/substructures/pendulum@1/yank", {"reason": "light", "successor": "pendulum@2"})
+            client.request(
+                "POST", "/v1/substructures/pendulum@1/withdraw", {"reason": "light", "successor": "pendulum@2"}
+            )
         yield found
 
 
@@ -80,7 +82,7 @@ def test_a_version_is_withdrawn(address: str, capsys: pytest.CaptureFixture[str]
     assert "WITHDRAWN (too light, take new@1)" in run(address, capsys, "versions", "old")
     assert main(["show", "with-old", "--server", address]) == 0
     assert "old@1 is withdrawn: too light; take new@1" in capsys.readouterr().err
-    assert json.loads(run(address, capsys, "withdraw", "new@1", "--json"))["yanked"] is True
+    assert json.loads(run(address, capsys, "withdraw", "new@1", "--json"))["is_withdrawn"] is True
 
 
 def test_a_part_of_which_all_is_withdrawn(address: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -70,7 +70,14 @@ def test_what_is_private_stays_so_through_versions(client: TestClient, two: tupl
     assert done(client.put(f"{PART}/module/visibility", json=wanted, headers=acme), 409)["code"] == "private-part"
     # references to what is private are there for its owner alone
     done(client.post(PART, json=heavy(name="open", derived_from="hush"), headers=acme))
-    done(client.post(f"{PART}/open@1/yank", json={"successor": "hush@1"}, headers=acme), 200)
+    point = {name: x for name, x in PENDULUM["bodies"][0].items() if name != "inertia"}
+    done(client.post(PART, json=heavy(name="short", derived_from="hush", bodies=[point]), headers=acme))
+    secret = heavy(name="secret", derived_from="short", bodies=[{**point, "com": [0, 0, 0]}], visibility="private")
+    done(client.post(PART, json=secret, headers=acme))
+    for headers, levels in ((acme, ["hush", "secret"]), (bolt, [])):
+        items = done(client.get(f"{PART}/short/levels", headers=headers), 200)["items"]
+        assert [each["name"] for each in items] == levels
+    done(client.post(f"{PART}/open@1/withdraw", json={"successor": "hush@1"}, headers=acme), 200)
     for headers, seen in ((acme, "hush@1"), (bolt, None)):
         told = done(client.get(f"{PART}/open@1", headers=headers), 200)
         assert (told["derived_from"], told["successor"]) == (seen, seen)
@@ -84,7 +91,7 @@ def test_what_is_private_stays_so_through_versions(client: TestClient, two: tupl
     done(client.put(f"{PART}/module/visibility", json=wanted, headers=acme), 200)
     assert done(client.get(f"{PART}/module", headers=bolt), 200)["tree"] is None
     kinds = [(use["kind"], use["name"]) for use in done(client.get(f"{PART}/hush/uses", headers=bolt), 200)["items"]]
-    assert kinds == [("derived", "open"), ("part", "module")]
+    assert kinds == [("derived", "open"), ("derived", "short"), ("part", "module")]
 
 
 def test_others_publish_under_names_of_their_own(client: TestClient, two: tuple[Headers, Headers]) -> None:

@@ -9,13 +9,10 @@ import numpy as np
 import pytest
 
 from substructures import couple, linearise
-from substructures.documents import read_model
 from substructures.sweeps import block as blocks
-from substructures.sweeps.block import Block, Refusals, compute, disagreement, joined, shape_maker, slow_columns
-from substructures.sweeps.document import SweepDocument
-from substructures.sweeps.plan import Plan, given_options
-from substructures.sweeps.shapes import Option, Shape, option_of
+from substructures.sweeps.block import disagreement, joined
 from tests.catalogue_entries import shipped_part
+from tests.sweeps.in_process import Sweep
 
 STATE = {"q": [0.2, 0.4, -0.3], "qd": [0.1, 0.2, 0.3], "qdd": [1, 0, 2]}
 REST = {"q": [0, 0, 0]}
@@ -54,31 +51,8 @@ CRANE: dict[str, Any] = {
 }
 
 
-class Sweep:
-    """A sweep of parts of the catalogue, in process."""
-
-    def __init__(self, **changes: Any) -> None:
-        document = read_model(SweepDocument, {**CRANE, **changes})
-        given = [[fields for _, fields in each] for each in given_options(document)]
-        self.plan = Plan(document, tuple(tuple(each) for each in given))
-        self.made: dict[tuple[str, ...], Shape] = {}
-        self.refusals = Refusals()
-
-    def option(self, i: int, k: int) -> Option:
-        fields = self.plan.options[i][k]
-        return option_of(shipped_part(fields["substructure"]), fields)
-
-    def rows(self, start: int = 0, stop: int | None = None) -> Block:
-        shape_of = shape_maker(self.plan, self.made)
-        return compute(self.plan, start, stop or self.plan.rows, self.option, shape_of, self.refusals, [])
-
-    def slow(self, row: int) -> tuple[dict[str, float], float]:
-        chosen = self.plan.chosen(row // self.plan.sampler.size)
-        return slow_columns(self.plan, row, [self.option(i, k).part for i, k in enumerate(chosen)])
-
-
 def test_rows_are_what_their_trees_are() -> None:
-    sweep = Sweep()
+    sweep = Sweep(CRANE)
     found = sweep.rows()
     # two options of one part have one shape, the pendulum has other coordinates than the columns are given for
     assert len(sweep.made) == 2
@@ -94,7 +68,7 @@ def test_rows_are_what_their_trees_are() -> None:
 
 
 def test_ranges_do_not_matter() -> None:
-    sweep = Sweep()
+    sweep = Sweep(CRANE)
     whole = sweep.rows()
     parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))])
     assert parts.rows.tolist() == whole.rows.tolist()
@@ -107,7 +81,7 @@ def test_frequencies_are_those_of_the_linearisation() -> None:
     columns: dict[str, Any] = {take: {"analysis": "linearisation", "at": hanging, "take": take} for take in takes}
     columns["free"] = {"analysis": "linearisation", "at": REST}
     held = {"held": {"analysis": "linearisation", "at": REST, "held": True, "take": "highest_frequency"}}
-    sweep = Sweep(columns={name: x for name, x in columns.items() if name != "free"}, where="", choices={})
+    sweep = Sweep(CRANE, columns={name: x for name, x in columns.items() if name != "free"}, where="", choices={})
     found = sweep.rows()
     for row in (0, 5):
         parts = {"rail": shipped_part("linear-rail"), "load": shipped_part("acrobot")}
@@ -121,33 +95,33 @@ def test_frequencies_are_those_of_the_linearisation() -> None:
         )
         assert found.columns["is_stable"][row] == ("unstable" not in linear.stability.verdict)
     # what falls has no modes, unless it is held
-    falling = Sweep(columns=columns, where="", choices={})
+    falling = Sweep(CRANE, columns=columns, where="", choices={})
     assert not len(falling.rows().rows)
     assert "'free'" in falling.refusals.by_code["not-finite"]["example"]["message"]
-    assert len(Sweep(columns=held, where="", choices={}).rows().rows) == 40
+    assert len(Sweep(CRANE, columns=held, where="", choices={}).rows().rows) == 40
 
 
 def test_a_planted_fault_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    sweep = Sweep()
+    sweep = Sweep(CRANE)
     slow, condition = sweep.slow(3)
     right = {name: float(x[3]) for name, x in sweep.rows().columns.items() if name in slow}
     assert not disagreement(right, slow, condition)
     real = blocks.values_of
     monkeypatch.setattr(blocks, "values_of", lambda some: {n: x * (1 + 1e-9) for n, x in real(some).items()})
-    wrong = {name: float(x[3]) for name, x in Sweep().rows().columns.items() if name in slow}
+    wrong = {name: float(x[3]) for name, x in Sweep(CRANE).rows().columns.items() if name in slow}
     assert "by the tree of this row" in disagreement(wrong, slow, condition)
 
 
 def test_the_front_is_kept_first() -> None:
-    sweep = Sweep(pareto={"minimise": ["mass"], "maximise": ["x"]}, keep=9, choices={})
-    kept, every = sweep.rows(), Sweep(choices={}).rows()
+    sweep = Sweep(CRANE, pareto={"minimise": ["mass"], "maximise": ["x"]}, keep=9, choices={})
+    kept, every = sweep.rows(), Sweep(CRANE, choices={}).rows()
     assert len(kept.rows) == 9
     assert every.columns["mass"].argmin() in kept.rows
     assert every.columns["x"].argmax() in kept.rows
 
 
 def test_rows_without_finite_numbers_are_told() -> None:
-    sweep = Sweep(columns={"mass": "mass", "bad": "sqrt(mass - 4.5)"}, where="", choices={})
+    sweep = Sweep(CRANE, columns={"mass": "mass", "bad": "sqrt(mass - 4.5)"}, where="", choices={})
     found = sweep.rows()
     bad = sweep.refusals.by_code["not-finite"]
     assert 0 < bad["rows"] == 40 - len(found.rows)
@@ -155,7 +129,7 @@ def test_rows_without_finite_numbers_are_told() -> None:
 
 
 def test_trees_of_rows_have_their_numbers_bound() -> None:
-    plan = Sweep().plan
+    plan = Sweep(CRANE).plan
     tree = plan.tree(41)
     sample = {name: float(x[0]) for name, x in plan.sampler.rows(1, 2).items()}
     assert tree["instances"][0]["parameters"] == {"m": sample["rail.m"]}

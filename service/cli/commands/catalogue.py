@@ -113,7 +113,7 @@ def _stored(client: Client, path: Path, document: dict[str, Any], digest: str, l
     except ProblemError as error:
         return "refused", f"refused: {path}: {error}"
     if not is_new:
-        why = "which is withdrawn" if version["yanked"] else "and the latest version stays another"
+        why = "which is withdrawn" if version["is_withdrawn"] else "and the latest version stays another"
         return "same", f"same: {path} is {version['name']}@{version['version']} already, {why}"
     told = "new" if latest is None else "changed"
     return told, f"{told}: {path} is {version['name']}@{version['version']}"

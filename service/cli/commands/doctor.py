@@ -29,6 +29,7 @@ OPTIONAL = {
     "distributed": "Dask clusters",
     "pyarrow": "Arrow streams",
     "heyoka": "Taylor series",
+    "usd-core": "USD files",
     "ziglang": "FMUs for other systems",
 }
 COMPILERS = ("cc", "gcc", "clang", "cl")

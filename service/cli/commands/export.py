@@ -74,7 +74,9 @@ def export(
     request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages, standard)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
-    path = out or Path(package.name)
+    path, ending = out or Path(package.name), Path(package.name).suffix
+    if path.suffix == ".zip" != ending:
+        raise ValueError(f"{target} is one file and no archive: --out {path.with_suffix(ending)}")
     if not force and path.exists() and (not path.is_file() or path.read_bytes() != package.data):
         raise ValueError(f"{path} is another file already: name one with --out, or write over it with {FORCE}")
     path.write_bytes(package.data)

@@ -20,7 +20,7 @@ from substructures.documents import write_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence
-from substructures.interchange.files.archive import Beside, main_of
+from substructures.interchange.files.archive import PACKAGE, Beside, main_of
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS
 from substructures.interchange.sides import sides
@@ -42,7 +42,7 @@ def read_robot_file(
         if files is None:
             return import_file(path.read_bytes(), options, file=path.name, included=_Beside(path.parent), **more)
         names, read = files
-        main = main_of(names, read)
+        main = main_of(names, read, path.name if path.suffix.lower() == PACKAGE else "")
         return import_file(read(main), options, file=main, included=Beside(main, names, read), **more)
 
 
@@ -51,7 +51,7 @@ def _files_of(path: Path) -> tuple[list[str], Callable[[str], bytes]] | None:
     if path.is_dir():
         found = list(islice((file for file in path.rglob("*") if file.is_file()), _MOST_FILES))
         return [file.relative_to(path).as_posix() for file in found], lambda name: (path / name).read_bytes()
-    if path.suffix.lower() != ".zip":
+    if path.suffix.lower() not in (".zip", PACKAGE):
         return None
     try:
         with zipfile.ZipFile(path) as archive:

@@ -19,6 +19,8 @@ from substructures.client.steps import step
 
 #: formulas of trees whose first index is that of a frame
 OF_FRAMES = ("position", "rotation", "U", "Omega")
+#: what trees have lists of, told by name
+LISTED = ("closures", "loads", "velocity_constraints")
 
 
 @with_server
@@ -88,11 +90,16 @@ def _tell(found: Mapping[str, Any]) -> None:
     print(f"{found['name']}@{found['revision' if is_tree else 'version']}", found.get("title") or "", sep="  ")
     facts = {"owner": f"{found['owner']} ({found['visibility']})", "created": found["created"][:16]}
     facts |= {"note": found["note"]} if found["note"] else {}
-    facts |= {"WITHDRAWN": _instead(found["yank_reason"], found["successor"])} if found.get("yanked") else {}
+    facts |= (
+        {"WITHDRAWN": _instead(found["withdrawal_reason"], found["successor"])} if found.get("is_withdrawn") else {}
+    )
     facts["coordinates"] = f"{found['dof']} ({found['joints'] or 'none'}): {', '.join(found['coordinates'])}"
     if is_tree:
         facts["instances"] = ", ".join(f"{i['name']} at {i.get('at', 'world')}" for i in found["instances"])
-        facts |= {kind: ", ".join(x["name"] for x in found[kind]) for kind in ("closures", "loads") if found.get(kind)}
+        facts |= {
+            kind.replace("_", " "): ", ".join(x["name"] for x in found[kind]) for kind in LISTED if found.get(kind)
+        }
+        facts |= {"driven": ", ".join(found["driven"])} if found.get("driven") else {}
     else:
         facts |= {"bodies": ", ".join(found["bodies"]), "ports": ", ".join(found["ports"]) or "none"}
     counts = (

@@ -64,9 +64,9 @@ def _of_parts() -> Iterator[None]:
 def _whence(each: dict[str, Any]) -> list[str]:
     found = [f"of {each[name]}" for name in ("derived_from", "tree") if each.get(name)]
     found += [f"changes @{each['based_on']}"] if each.get("based_on") else []
-    if each.get("yanked"):
+    if each.get("is_withdrawn"):
         instead = f", take {each['successor']}" if each["successor"] else ""
-        found.append(f"WITHDRAWN ({each['yank_reason'] or 'no reason given'}{instead})")
+        found.append(f"WITHDRAWN ({each['withdrawal_reason'] or 'no reason given'}{instead})")
     return found
 
 
@@ -134,12 +134,12 @@ def withdraw(
     """Withdraw a version of a part: what uses it goes on and is told, and it is the latest no more."""
     body = {"reason": reason} | ({"successor": instead} if instead else {})
     with server.client() as client:
-        found = client.request("POST", f"/v1/substructures/{step(ref)}/yank", body).json()
+        found = client.request("POST", f"/v1/substructures/{step(ref)}/withdraw", body).json()
     if json:
         print_json(found)
         return 0
     told = f"; take {found['successor']}" if found["successor"] else ""
-    print(f"{found['name']}@{found['version']} is withdrawn: {found['yank_reason'] or 'no reason given'}{told}")
+    print(f"{found['name']}@{found['version']} is withdrawn: {found['withdrawal_reason'] or 'no reason given'}{told}")
     return 0
 
 

@@ -22,7 +22,7 @@ from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
 from service.messages.refusals import Refused, problem
-from service.models.numbers import ANALYSES
+from service.models.numbers import ANALYSES, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -32,11 +32,11 @@ from substructures.errors import InvalidDocument, meant
 #: analyses that begin at one state, those whose coordinates are only where something is looked for, and those of many
 MOTIONS = (
     *("simulations", "sensitivities", "cost-gradients", "optimal-controls", "loop-states"),
-    *("periodic-orbits", "lyapunov-exponents"),
+    *("periodic-orbits", "poincare-sections", "lyapunov-exponents"),
 )
 NEAR = ("equilibria", "root-loci", "steady-motions", "reduced-equations")
-MANY = ("ensembles",)
-TOLD = ("status", "message", "is_right", "cost", "warnings")
+MANY = ("ensembles", "optimal-parameters")
+TOLD = ("status", "message", "is_right", "cost", "value", "parameters", "warnings")
 
 
 def analysis_kind(name: str | None = None) -> Kind:
@@ -45,10 +45,10 @@ def analysis_kind(name: str | None = None) -> Kind:
     def spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
         """One item for each request."""
         read = read_model(Requested if name else Analysed, item)
-        analysis = read.analysis if isinstance(read, Analysed) else str(name)
-        _check_format(analysis, read.format)
-        requests = _requests(analysis, read, summary_of(known_tree(item, library).summary))
-        common = {"tree": read.tree, "analysis": analysis, "format": read.format, **_limits(limits)}
+        called = read.analysis if isinstance(read, Analysed) else str(name)
+        _check_format(called, read.format)
+        requests = _requests(called, read, summary_of(known_tree(item, library).summary))
+        common = {"tree": read.tree, "analysis": called, "format": read.format, **_limits(limits)}
         return [{**common, "request": each} for each in requests]
 
     return Kind(spread, _resolve, _run)
@@ -71,7 +71,8 @@ def _requests(name: str, item: Requested, summary: Mapping[str, Any]) -> list[It
     given |= {f"/requests/{k}": each for k, each in enumerate(item.requests or [])}
     for place, request in given.items():
         with inside(place):
-            read = ANALYSES[name].read(request, without_formulas(summary))
+            model = without_formulas(summary)
+            read = analysis_of(name, model).read(request, model)
             if name not in (*NEAR, *MANY):
                 check_analysis(summary, read, name in MOTIONS, not ANALYSES[name].needs_parts)
     return list(given.values())
@@ -93,7 +94,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     if item.get("kernels"):
         source = replace(source, folder=Path(item["kernels"]))
     model = source.model
-    result = ANALYSES[name].compute(source, item["request"], lambda share: progress(float(share)))
+    result = analysis_of(name, model).compute(source, item["request"], lambda share: progress(float(share)))
     media = MEDIA_TYPES[item["format"]]
     data = written(result, media, model)
     told = orjson.loads(data if media == JSON else written(_brief(result), JSON, model))

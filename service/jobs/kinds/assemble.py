@@ -16,6 +16,7 @@ from service.jobs.kinds.shapes import shapes_of
 from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
+from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints
 from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
@@ -23,13 +24,14 @@ from substructures.part.parameters import described
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.document import Instance, TreeSpec, misplaced
-from substructures.tree.model import couple
-from substructures.tree.plausibility import Plausibility
+from substructures.tree.model import couple_shape
 from substructures.tree.units import check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name
 DEFINITIONS = 1000  # kept decoded
+PACKED = 10_000_000  # bytes
 _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
+_packed: Cache[bytes] = Cache(PACKED, len)  # programs of shapes
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:
@@ -132,9 +134,11 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     given, parts = tree_parts(item, blobs)
     spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
-    model = couple(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    model = couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    check_constraints(model)
     progress(0.9)
-    files = {"program": pack(model.program), "spec": spec.canonical(), "summary": tree_summary(spec, model)}
+    program = _packed.once(model.program.digest, lambda: pack(model.program))
+    files = {"program": program, "spec": spec.canonical(), "summary": tree_summary(spec, model)}
     for instance in given.instances:
         if instance.definition is not None:
             content = part_content(parts[instance.name]).files()
@@ -143,11 +147,12 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "name": spec.name,
         "digest": spec.digest,
         "program": model.program.digest,
+        **({"numbers": {name: str(x) for name, x in model.numbers.items()}} if model.numbers else {}),
         "software": software(),
         "nodes": len(model.program),
         "dof": model.dof,
         "joints": model.joints,
-        "mass": Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass,
+        "mass": None if model.plausibility is None else model.plausibility.mass,
         "operations": model.operations["total"],
         "parts": {name: part.definition.digest for name, part in parts.items()},
         "warnings": [*model.certificate["warnings"], *no_coordinates(model.dof)],

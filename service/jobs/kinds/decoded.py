@@ -10,6 +10,7 @@ from service.content.cache import Cache
 from service.content.integrity import reading
 from service.jobs.kinds.library import StoredTree
 from substructures.documents import read_json
+from substructures.documents.to_json import Written
 from substructures.expr.program import Program
 from substructures.part.certificate import not_judged
 from substructures.part.definition import Definition
@@ -50,17 +51,26 @@ def summary_of(text: str) -> dict[str, Any]:
     return found
 
 
-def pinned_model(tree: StoredTree) -> dict[str, Any]:
+def pinned_model(tree: StoredTree) -> Written:
     """What a model is beside its program, as plain data for an item."""
-    summary = summary_of(tree.summary)
+    return _pinned_model(tree.summary)
+
+
+@lru_cache(maxsize=64)
+def _pinned_model(text: str) -> Written:
+    summary = summary_of(text)
     parameters = {
         name: {"value": given["value"], "unit": given["unit"]} for name, given in summary["parameters"].items()
     }
-    kept = ("coordinates", "joints", "frames", "closures", "reduction", "inputs", "limited")
+    kept = (
+        *("coordinates", "joints", "frames", "closures", "reduction"),
+        *("inputs", "limited", "driven", "velocity_constraints", "numbers"),
+    )
     told: dict[str, Any] = {"warnings": summary["certificate"].get("warnings", [])}
     if lost := not_judged(summary["certificate"]):
         told["direct_form"] = {"max_relative_error": dict.fromkeys(lost)}
-    return {name: summary[name] for name in kept if name in summary} | {"parameters": parameters, "certificate": told}
+    found = {name: summary[name] for name in kept if name in summary}
+    return Written(found | {"parameters": parameters, "certificate": told})
 
 
 def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:

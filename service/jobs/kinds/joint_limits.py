@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import pi
 
+from service.content.cache import Cache
 from service.jobs.kinds.kind import stored_definition
 from service.jobs.kinds.library import Library, StoredTree
 from substructures.documents import read_json
@@ -14,13 +15,22 @@ from substructures.quantities.numbers.states import default_number
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.plausibility import Plausibility
 
+JointLimits = dict[str, tuple[float, float] | None]
 
-def joint_limits(tree: StoredTree, library: Library) -> dict[str, tuple[float, float] | None]:
+TREES = 1000  # a job may have thousands of items of one tree
+_known: Cache[JointLimits] = Cache(TREES, lambda _: 1)
+
+
+def joint_limits(tree: StoredTree, library: Library) -> JointLimits:
     """By coordinate of the tree; -pi to pi for a revolute joint without limits, None where a range has to be given."""
+    return _known.once(tree.digest, lambda: _joint_limits(tree, library))
+
+
+def _joint_limits(tree: StoredTree, library: Library) -> JointLimits:
     spec = TreeSpec.stored(read_json(tree.spec.encode()))
     definitions = {instance.name: _definition(instance, library) for instance in spec.instances}
     ranges = Plausibility(spec, definitions)
-    result: dict[str, tuple[float, float] | None] = {}
+    result: JointLimits = {}
     for instance in spec.instances:
         definition = definitions[instance.name]
         layout = topology(definition)

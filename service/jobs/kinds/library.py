@@ -48,7 +48,7 @@ class Library(Protocol):
         """Why a reference to a ``substructure``, ``tree`` or ``substructure or tree`` means nothing, and the remedy."""
 
     def catalogue(self) -> Sequence[str]:
-        """References ``name@3`` to all versions that are not yanked."""
+        """References ``name@3`` to all versions that are not withdrawn."""
 
     def search(self, query: Mapping[str, Any]) -> Sequence[str]:
         """References ``name@3`` to the latest versions that a search finds: ``q``, ``tag``, ``dof``, ``joints``."""

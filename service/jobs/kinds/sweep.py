@@ -7,7 +7,7 @@ and its outcome has the rows that fit as columns of an npz file, ``rows``.
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Collection, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from io import BytesIO
 from math import prod
@@ -25,13 +25,10 @@ from service.jobs.kinds.library import Library, StoredVersion
 from service.messages.refusals import NotDerived, Refused, problem
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import pointer_step, read_model, write_json
-from substructures.documents.units import read_unit
-from substructures.errors import Fault, InvalidDocument, InvalidInput, among
+from substructures.documents import read_model, write_json
+from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.formats.arrays import read_npz, write_npz
 from substructures.part.definition import Definition
-from substructures.part.topology import topology
-from substructures.quantities.quantity import COORDINATES, array_of
 from substructures.sweeps.block import (
     AT_ONCE,
     Block,
@@ -42,7 +39,8 @@ from substructures.sweeps.block import (
     shape_maker,
     slow_columns,
 )
-from substructures.sweeps.document import QuantityColumn, Query, SweepDocument
+from substructures.sweeps.document import Query, SweepDocument
+from substructures.sweeps.names import check_names
 from substructures.sweeps.plan import Plan, check_size, check_template, given_options
 from substructures.sweeps.shapes import Option, Shape, option_of
 
@@ -61,8 +59,8 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     check_size(document, [len(each) for each in options])
     check_template(document, options)
     plan = Plan(document, tuple(tuple(each) for each in options))
-    with_columns = plan.columns  # what can be wrong with them is said now
-    _check_names(plan, {d: _definition(d, library) for d in _first_digests(options)}, with_columns.quantities)
+    known = {digest: _definition(digest, library) for digest in _first_digests(options)}
+    check_names(plan, [[known[_digest(one)] for one in each] for each in options])
     rows = plan.rows
     size = max(AT_ONCE, -(-rows // ITEMS // AT_ONCE) * AT_ONCE)
     shapes = prod(len({programs[_digest(one)] for one in each}) for each in options)
@@ -72,6 +70,7 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     proven = sorted(SystemRandom().sample(range(rows), min(document.proof, rows)))
     common = {
         "sweep": {name: item[name] for name in OWN if name in item},
+        "order": {"columns": list(document.columns), "of": list(document.samples.of) if document.samples else []},
         "options": options,
         "programs": programs,
         "nodes": limits.job_nodes,
@@ -140,39 +139,6 @@ def _definition(digest: str, library: Library) -> Definition:
     return _definitions.once(digest, lambda: stored_definition(digest, library))
 
 
-def _check_names(plan: Plan, definitions: Mapping[str, Definition], quantities: Mapping[str, QuantityColumn]) -> None:
-    """Raise InvalidDocument for samples and coordinates that no combination has."""
-    own = {n: [definitions[_digest(one)] for one in each] for n, each in zip(plan.instances, plan.options, strict=True)}
-    units = {f"{n}.{p}": x.unit for n, some in own.items() for each in some for p, x in each.parameters.items()}
-    units |= {n: str(x.get("unit", "")) for n, x in plan.document.template.get("parameters", {}).items()}
-    coordinates = {f"{n}.{q}" for n, some in own.items() for each in some for q in topology(each).coordinates}
-    if faults := [*_of_samples(plan, units), *_of_columns(quantities, coordinates)]:
-        raise InvalidDocument(faults)
-
-
-def _of_samples(plan: Plan, units: Mapping[str, str]) -> Iterator[Fault]:
-    """Unknown parameters, and units that are none of theirs."""
-    for name, of in plan.document.samples.of.items() if plan.document.samples else ():
-        pointer, unit = f"/samples/of{pointer_step(name)}", units.get(name, "")
-        if name not in units:
-            yield Fault(pointer, "unknown-parameter", f"unknown parameter '{name[:80]}'{among(name, units)}")
-        elif of.unit and (not unit or read_unit(of.unit).dimension != read_unit(unit).dimension):
-            message = f"'{of.unit}' is no unit of '{name}', which is in '{unit or '1'}'"
-            yield Fault(f"{pointer}/unit", "unit-mismatch", message)
-
-
-def _of_columns(quantities: Mapping[str, QuantityColumn], coordinates: Collection[str]) -> Iterator[Fault]:
-    """Unknown coordinates of quantities along coordinates alone."""
-    for name, column in quantities.items():
-        array = array_of(column.quantity)
-        if array is None or set(array.axes) != {COORDINATES} or column.of is None:
-            continue
-        for one in [column.of] if isinstance(column.of, str) else column.of:
-            if one not in coordinates:
-                message = f"unknown coordinate '{one[:80]}'{among(one, coordinates)}"
-                yield Fault(f"/columns/{name}/of", "unknown-coordinate", message)
-
-
 def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     plan = plan_of(item)
     size, (start, stop) = plan.sampler.size, item["rows"]
@@ -203,14 +169,26 @@ def plan_of(item: ItemDocument) -> Plan:
 
 
 def _prepared(item: ItemDocument) -> _Prepared:
-    key = hashlib.sha256(write_json([item["sweep"], item["options"]])).hexdigest()
+    order = item.get("order", {})
+    key = hashlib.sha256(write_json([item["sweep"], item["options"], order])).hexdigest()
 
     def made() -> _Prepared:
         """The plan, read."""
-        document = read_model(SweepDocument, item["sweep"])
+        document = read_model(SweepDocument, _in_order(item["sweep"], order))
         return _Prepared(Plan(document, tuple(tuple(each) for each in item["options"])))
 
     return _plans.once(key, made)
+
+
+def _in_order(sweep: Mapping[str, Any], order: Mapping[str, Sequence[str]]) -> dict[str, Any]:
+    """The document with columns and samples as they were written: items are kept with sorted names."""
+    found = dict(sweep)
+    if order.get("columns"):
+        found["columns"] = {name: sweep["columns"][name] for name in order["columns"]}
+    if order.get("of"):
+        of = sweep["samples"]["of"]
+        found["samples"] = {**sweep["samples"], "of": {name: of[name] for name in order["of"]}}
+    return found
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
@@ -239,6 +217,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "finite": sum(finite),
         "refused": refusals.by_code,
         "proven": proven,
+        "ways": refusals.ways,
         "media_type": "application/x-npz",
     }
     files = {"rows": b"".join(write_npz({"row": found.rows, **found.columns}).pieces)}
@@ -260,7 +239,7 @@ def _proven(plan: Plan, found: Block, item: ItemDocument, option: Any) -> tuple[
         except InvalidInput as error:
             return (row, f"its tree is refused: {error}"), done
         fast = {name: float(found.columns[name][places[row]]) for name in slow}
-        if told := disagreement(fast, slow, condition):
+        if told := disagreement(fast, slow, condition, plan.columns.of_motions):
             return (row, told), done
         done += 1
     return None, done

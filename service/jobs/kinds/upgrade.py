@@ -23,7 +23,7 @@ from service.settings import Limits
 from substructures.documents import read_json, read_model
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
-from substructures.tree.model import couple
+from substructures.tree.model import couple_shape
 
 ALL = "*"
 
@@ -73,7 +73,7 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     with reading(f"the tree {name}", digest):
         spec, parts = tree_parts(item["parts"], blobs)
         old = Program.from_bytes(blobs[item["program"]])
-    model = couple(spec, parts, item["nodes"])
+    model = couple_shape(spec, parts, item["nodes"])
     found = improvement(old, model.program)
     told = {"name": name, "digest": digest, "program": model.program.digest, "nodes": len(model.program)}
     told["software"] = software()

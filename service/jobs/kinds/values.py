@@ -22,7 +22,10 @@ def without_formulas(summary: Mapping[str, Any]) -> Model:
     """The model of a stored summary with an empty program, for checks of names, units and lengths."""
     names = tuple(summary["coordinates"]), summary["joints"], tuple(summary["frames"])
     closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-    return Model(Program((), (), {}), *names, summary["parameters"], {}, closures, summary.get("inputs", {}))
+    tied = tuple(summary.get("velocity_constraints", ()))
+    empty = Program((), (), {})
+    inputs = summary.get("inputs", {})
+    return Model(empty, *names, summary["parameters"], {}, closures, inputs, velocity_constraints=tied)
 
 
 def check_states(summary: Mapping[str, Any], request: EvaluationRequest) -> States:

@@ -27,11 +27,14 @@ from service.settings import Limits
 from substructures.documents import read_json, read_model, write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.tree.model import couple
+from substructures.tree.model import couple_shape
 
 ALL = "*"
 #: what is stored of a tree beside its program, but for the certificate
-SUMMARY = ("coordinates", "joints", "frames", "closures", "reduction", "limited", "parameters", "inputs", "operations")
+SUMMARY = (
+    *("coordinates", "joints", "frames", "closures", "reduction", "limited", "driven", "velocity_constraints"),
+    *("parameters", "inputs", "operations", "numbers"),
+)
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
@@ -82,7 +85,7 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     with reading(f"the tree {name}", digest):
         spec, parts = tree_parts(item["parts"], blobs)
         Program.from_bytes(blobs[item["program"]])
-    model = couple(spec, parts, item["nodes"])
+    model = couple_shape(spec, parts, item["nodes"])
     _require_same(item["program"], model.program)
     made = read_json(write_json(model.summary()))
     wrong = [each for each, said in item["summary"].items() if made.get(each) != said]

@@ -15,6 +15,7 @@ from service.models.source import Source
 from substructures.errors import InvalidDocument, InvalidInput, TooLarge
 from substructures.expr.program import Program
 from substructures.late import Table
+from substructures.tree.document import require_unconstrained
 
 if TYPE_CHECKING:
     from substructures.analysis.identification.base_parameters import BaseParameters
@@ -36,7 +37,7 @@ OPTIONS = {
 }
 
 
-_made: Cache[Made] = Cache(2_000_000, lambda made: len(made.program))
+_made: Cache[Made] = Cache(300_000, lambda made: len(made.program))
 
 
 def made(source: Source, name: str, options: Options) -> Made:
@@ -44,6 +45,7 @@ def made(source: Source, name: str, options: Options) -> Made:
 
     Raises InvalidDocument (with pointers into the query), also for an option that the quantity does not have; TooLarge.
     """
+    require_unconstrained(source.model.constraint_names, name)
     quantity = _QUANTITIES[name]
     given = {key: texts for key, texts in options.items() if texts}
     check_options(name, given, quantity.options)

@@ -10,7 +10,7 @@ from service.models.formulas.entry import Made
 from service.models.requests import arguments, read_request
 from service.models.source import Source
 from service.schemas.analyses.velocity_constraints import VelocityConstraints
-from substructures.analysis.equations.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.errors import TooLarge
 
 

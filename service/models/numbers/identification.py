@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from service.models.formulas import base_of
 from service.models.numbers.analysis import Analysis
 from service.models.source import Source
 from service.schemas.measurements import ExcitationRequest, IdentificationRequest
+from substructures.analysis.identification.base_parameters import BaseParameters
+from substructures.analysis.identification.consistent import consistent_inertia
+from substructures.analysis.identification.findings import Identification
 from substructures.analysis.identification.fit import excitation, identify
+from substructures.analysis.identification.new_versions import new_versions
 from substructures.analysis.motion.integrators.progress import ProgressReport
 
 
@@ -18,10 +23,21 @@ def _excitation(source: Source, read: ExcitationRequest, _: ProgressReport) -> A
 
 
 def _identification(source: Source, read: IdentificationRequest, _: ProgressReport) -> Any:
-    model = source.model if read.known else None
-    return identify(
-        base_of(source, read.drives), **_motion(read), tau=read.tau, model=model, error_limit=read.error_limit
+    model, base = source.model if read.known else None, base_of(source, read.drives)
+    found = identify(
+        base, **_motion(read), tau=read.tau, model=model, held_out=read.held_out, error_limit=read.error_limit
     )
+    return _with_parts(source, read, base, found) if read.consistent else found
+
+
+def _with_parts(source: Source, read: IdentificationRequest, base: BaseParameters, found: Identification) -> Any:
+    """With consistent inertia and the next versions of the parts."""
+    if source.parts is None:
+        raise TypeError("parts expected")
+    regressor, d = source.regressor(), read.prior_deviation
+    inertia = consistent_inertia(base, regressor, found, parameters=read.parameters, prior_deviation=d)
+    parts = new_versions(*source.parts(), inertia)
+    return replace(found, inertia=inertia, parts=parts, checks=(*found.checks, *inertia.checks))
 
 
 def _motion(read: ExcitationRequest) -> dict[str, Any]:

@@ -13,6 +13,7 @@ from service.schemas.analyses.motions import (
     SensitivityRequest,
     SimulationRequest,
     SpanRequest,
+    WithPowers,
     WithReactions,
 )
 from substructures.analysis.from_fields import motion_arguments, sensitivity_arguments
@@ -23,6 +24,9 @@ from substructures.errors import Fault, InvalidArgument
 from substructures.quantities.powers import PowerModel
 from substructures.quantities.quantity import POWERS, REACTIONS
 from substructures.quantities.reactions import ReactionModel, read_joints
+
+#: fields of motions that are not differentiated
+SMOOTH = ("events", "fixed_step", "series", "reactions", "powers", "geodesic", "contacts")
 
 
 def _simulation(source: Source, request: SpanRequest, report: ProgressReport) -> Any:
@@ -35,6 +39,8 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
     by_load = _powers(source, request)
     if by_load is not None:
         numbers += len(by_load.rows) + n
+    if isinstance(request, SimulationRequest) and request.contacts:
+        numbers += 4 * len(request.contacts) + n
     check_size(source, len(request.output_times().grid()), numbers)
     rest = without(given, "q", "reactions", "powers")
     if isinstance(request, SimulationRequest) and request.friction == "loaded":
@@ -46,7 +52,7 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
 
 def _powers(source: Source, request: SpanRequest) -> PowerModel | None:
     """The powers, where they are wanted along a motion. Raises InvalidArgument."""
-    if not (isinstance(request, WithReactions) and request.powers):
+    if not (isinstance(request, WithPowers) and request.powers):
         return None
     found: PowerModel = _of_parts(source, POWERS, "/powers")
     return found
@@ -79,7 +85,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     n, given = source.model.dof, arguments(request)
     faults = [
         Fault(f"/{name}", "not-supported", f"sensitivities are computed without '{name}'")
-        for name in ("events", "fixed_step", "series", "reactions", "powers", "geodesic")
+        for name in SMOOTH
         if getattr(request, name)
     ]
     if request.friction != "regularised":
@@ -88,7 +94,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
         raise InvalidArgument(faults)
     columns = len(request.by) + (2 * n if request.of_start else 0)
     check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
-    rest = without(given, "q", "events", "fixed_step", "series", "reactions", "powers", "friction", "geodesic")
+    rest = without(given, "q", "friction", *SMOOTH)
     rest = sensitivity_arguments(**rest, progress=report, folder=source.folder)
     return sensitivities(source.model, request.q, **rest)
 

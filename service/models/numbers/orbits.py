@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from typing import Any
 
-from service.models.numbers.analysis import Analysis, check_size
+from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
+from service.models.results import SVG, TRAJECTORY
 from service.models.source import Source
-from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest
+from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest, PoincareSectionRequest
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import TIMES, Shooting, periodic_orbits
+from substructures.analysis.orbits.sections import poincare_section
 from substructures.quantities.numbers.states import read_states
 
 STATE = ("qd", "inputs", "parameters")
@@ -21,7 +23,9 @@ def _state(given: dict[str, Any]) -> dict[str, Any]:
     return {name: given[name] for name in STATE if name in given}
 
 
-def _integrator(source: Source, request: PeriodicOrbitRequest | LyapunovRequest, report: ProgressReport) -> Integrator:
+def _integrator(
+    source: Source, request: PeriodicOrbitRequest | PoincareSectionRequest | LyapunovRequest, report: ProgressReport
+) -> Integrator:
     relative, absolute = request.relative_tolerance, request.absolute_tolerance
     return Integrator(relative_tolerance=relative, absolute_tolerance=absolute, progress=report, folder=source.folder)
 
@@ -34,9 +38,16 @@ def _orbits(source: Source, request: PeriodicOrbitRequest, report: ProgressRepor
     given = _state(arguments(request)) | {"qd": read.qd[0]}
     shooting = Shooting(request.period, request.fixed, request.hold, request.turns)
     family: dict[str, Any] = {"vary": request.vary, "values": request.values}
+    family["events"] = [event.value() for event in request.events]
     return periodic_orbits(
         model, read.q[0], shooting, **given, **family, integrator=_integrator(source, request, report)
     )
+
+
+def _section(source: Source, request: PoincareSectionRequest, report: ProgressReport) -> Any:
+    check_size(source, request.count, 2 * source.model.dof + 1)
+    given = without(arguments(request), "q", "relative_tolerance", "absolute_tolerance")
+    return poincare_section(source.model, request.q, **given, integrator=_integrator(source, request, report))
 
 
 def _exponents(source: Source, request: LyapunovRequest, report: ProgressReport) -> Any:
@@ -50,6 +61,12 @@ def _exponents(source: Source, request: LyapunovRequest, report: ProgressReport)
 ANALYSES = {
     "periodic-orbits": Analysis(
         PeriodicOrbitRequest, _orbits, "Motions that come back, with Floquet's multipliers and their stability"
+    ),
+    "poincare-sections": Analysis(
+        PoincareSectionRequest,
+        _section,
+        "The states in which a motion crosses a surface in one direction",
+        tuple(media for media in TRAJECTORY if media != SVG),
     ),
     "lyapunov-exponents": Analysis(
         LyapunovRequest,

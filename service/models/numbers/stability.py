@@ -16,6 +16,7 @@ from service.schemas.analyses.stability import (
     RootLocusRequest,
     SteadyMotionsRequest,
 )
+from substructures.analysis.from_fields import linearisation_arguments
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.frequency_response import COUNT, frequency_response
@@ -32,7 +33,7 @@ def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport
     given = {"q": read.q, "qd": read.qd, "qdd": read.qdd}
     states = read_states(source.model, given, source.limits.states).count
     check_size(source, states, 7 * n * n + 3 * n * inputs + len(read.outputs) * (2 * n + inputs))
-    return linearise(source.model, **arguments(read))
+    return linearise(source.model, **linearisation_arguments(source.model, **arguments(read)))
 
 
 def _response(source: Source, read: FrequencyResponseRequest, _: ProgressReport) -> Any:
@@ -42,12 +43,18 @@ def _response(source: Source, read: FrequencyResponseRequest, _: ProgressReport)
     return frequency_response(model, **arguments(read))
 
 
+def _steady(source: Source, read: SteadyMotionsRequest, _: ProgressReport) -> Any:
+    n = source.model.dof
+    check_size(source, 1 if read.vary is None else 20 * read.steps, 5 * n * n + 5 * n)
+    return steady_motions(source.model, **arguments(read))
+
+
 ANALYSES = {
     "linearisations": Analysis(
         LinearisationRequest,
         _linearisation,
         "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
-        "of closed loops in independent coordinates, about one state",
+        "of closed loops in independent coordinates, about one state; with velocity constraints about one motion",
     ),
     "frequency-responses": Analysis(
         FrequencyResponseRequest,
@@ -66,8 +73,10 @@ ANALYSES = {
     ),
     "steady-motions": Analysis(
         SteadyMotionsRequest,
-        lambda source, read, _: steady_motions(source.model, **arguments(read)),
-        "Steady motions: cyclic coordinates at constant rates, all others still; each with its stability and why",
+        _steady,
+        "Steady motions: cyclic coordinates at constant rates, all others still; each with its stability and why; "
+        "families over a parameter, a rate or a momentum with their bifurcations",
+        DRAWN,
     ),
     "root-loci": Analysis(
         RootLocusRequest,

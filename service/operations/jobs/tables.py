@@ -77,6 +77,7 @@ def _made(connection: Connection, job: Job) -> Table:
     plan = plan_of(read_json(results.first_item(connection, job.id).encode()))
     blocks: list[Block] = []
     finite = rows = proven = 0
+    ways: Counter[str] = Counter()
     refused: dict[str, dict[str, Any]] = {}
     after = -1
     while items := rows_of_jobs.page_items(connection, job.id, None, after, ITEMS):
@@ -89,12 +90,20 @@ def _made(connection: Connection, job: Job) -> Table:
             finite, proven = finite + told["finite"], proven + told["proven"]
             for code, each in told["refused"].items():
                 refused.setdefault(code, {**each, "rows": 0})["rows"] += each["rows"]
+            ways.update(told.get("ways", {}))
             content = results.get_file(connection, item.key, "rows")
             if content is not None and told["kept"]:
                 arrays = rows_of(content)
                 blocks.append(Block(arrays.pop(ROW), arrays))
     block = joined(plan, blocks)
-    about = {"rows": plan.rows, "done": rows, "finite": finite, "kept": len(block.rows), "proven": proven}
+    about: dict[str, Any] = {
+        "rows": plan.rows,
+        "done": rows,
+        "finite": finite,
+        "kept": len(block.rows),
+        "proven": proven,
+    }
+    about["ways"] = dict(ways)
     return Table(plan, {ROW: block.rows, **_choices(plan, block.rows), **block.columns}, {**about, "refused": refused})
 
 

@@ -19,8 +19,9 @@ from typing import Any
 
 from service.content.folder import Listing, Read, Stamp, content_of, listed, read, stamp
 from service.messages.refusals import SHOWN, NotDerived, Refused, StaleError, known_refusal
-from service.messages.viewer import FOLDER, PRIVATE
+from service.messages.viewer import FOLDER, PRIVATE, PUBLIC_ONLY
 from service.operations import catalogue
+from service.operations.sharing.provenance import derived_from
 from service.queries import folders
 from service.queries.common import is_conflict, is_outage
 from service.settings import Settings
@@ -172,6 +173,8 @@ class Folder:
         store, definition = self._store, found.definition
         if definition is None:
             raise RuntimeError("a file without a definition")
+        with store.database.read() as connection:
+            derived_from(connection, PUBLIC_ONLY, found.entry)  # who reads what is refused may see no more
         limits = {"nodes": store.settings.limits.job_nodes}
         make = partial(catalogue.derived, store.job_worker(FOLDER.owner), definition, limits)
         submission = catalogue.prepare(store, FOLDER, definition, found.entry, make=make)
@@ -191,7 +194,7 @@ class Folder:
             return
         for name in sorted(self._parts - here):
             with self._store.database.write() as connection:
-                numbers = catalogue.withdraw(connection, FOLDER, name)
+                numbers = catalogue.withdraw_all(connection, FOLDER, name)
             what = f"{len(numbers)} versions are withdrawn" if numbers else "what others stored of it stays"
             _log.info("%s: its file is gone; %s", name, what)
             self._parts.discard(name)

@@ -4,11 +4,12 @@ tree as an item of a work, with its digests and the contents that go with them.
 
 from __future__ import annotations
 
-from functools import partial
 from typing import Any
 
 from service.content.integrity import reading
+from service.jobs.kinds.requested.derived import read_derived
 from service.jobs.kinds.trees import pinned
+from service.jobs.worker import Worker
 from service.messages.viewer import ANYBODY
 from service.operations.library import StoreLibrary
 from service.queries import trees
@@ -16,31 +17,50 @@ from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument
 from service.store.store import Store
 from substructures.documents import read_json
+from substructures.errors import InvalidDocument
+from substructures.expr.program import Program
 from substructures.part.part import Part
+from substructures.quantities.derivatives import SINGULAR, SingularMetric
 from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.numbers.evaluation import Evaluator
-from substructures.quantities.sources import Sources, of_parts
+from substructures.quantities.quantity import OF_PARTS
+from substructures.quantities.sources import Sources
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
 
-def sources_of(store: Store, tree: Tree, model: Model) -> Sources:
-    """What quantities of a tree are computed from."""
+def sources_of(store: Store, tree: Tree, model: Model, worker: Worker) -> Sources:
+    """What quantities of a tree are computed from; ``worker``: derives and certifies what is not in memory."""
+
+    def derive(model: Model, quantity: str) -> Program:
+        """A program of the model alone."""
+        return store.derived(model, quantity, lambda: _derived(store, tree, worker, quantity))
+
+    def of_parts(name: str) -> Any:
+        """What is derived of the parts of the tree beside its model."""
+        key = tree.digest, name, part_programs(store, tree)
+        return store.caches.of_parts.once(key, lambda: _derived(store, tree, worker, name))
+
     return Sources(
         model,
-        store.derived,
-        lambda name: _of_parts(store, tree, name),
+        derive,
+        of_parts,
         lambda: plausibility_of(store, tree, model),
         lambda values, names, states: _numeric(store, tree).answer(values, names, states),
     )
 
 
-def _of_parts(store: Store, tree: Tree, name: str) -> Any:
-    """What is derived of the parts of a tree beside its model. Raises TooLarge."""
-    parts, nodes = partial(tree_parts, store, tree), store.settings.limits.program_nodes
-    key = tree.digest, name, part_programs(store, tree)
-    return store.caches.of_parts.once(key, lambda: of_parts(*parts(), nodes)(name))
+def _derived(store: Store, tree: Tree, worker: Worker, source: str) -> Any:
+    """What a runner derives. Raises TooLarge, SingularMetric, TimeoutError."""
+    item, blobs = pinned_tree(store, tree, source in OF_PARTS)
+    nodes = store.settings.limits.program_nodes
+    try:
+        return read_derived(source, worker("derived", {**item, "source": source, "nodes": nodes}, blobs))
+    except InvalidDocument as error:
+        if [fault.code for fault in error.faults] == [SINGULAR]:
+            raise SingularMetric(error.faults) from None
+        raise
 
 
 def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
@@ -55,6 +75,8 @@ def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
 
 def engine_of(store: Store, tree: Tree, model: Model) -> Evaluator:
     """What computes them: a tree whose parts have kernels answers before it has one of its own."""
+    if model.driven:
+        return store.kernels
     found = _numeric(store, tree)
     parts_used = [m.part for m in found.assembly.mounted]
     return store.kernels.of_tree(model.program, parts_used, lambda: found)

@@ -13,7 +13,7 @@ from service.http.requests import StoreOf, ViewerOf, needs
 from service.jobs.worker import Worker
 from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
-from service.operations import catalogue, modules, pictures, trees
+from service.operations import catalogue, differences, modules, pictures, trees
 from service.pages.account import PageRoute
 from service.pages.bench import Bench, bench_page
 from service.pages.details import part_page, tree_page
@@ -35,7 +35,15 @@ from service.pages.model.screen import (
     picture_of,
 )
 from service.pages.model.shown import Shown
-from service.pages.versions import SHOWN, revisions_section, uses_section, versions_section, withdrawn_section
+from service.pages.versions import (
+    MOST_COMPARED,
+    SHOWN,
+    levels_section,
+    revisions_section,
+    uses_section,
+    versions_section,
+    withdrawn_section,
+)
 from service.queries import aliases, uses, versions
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
@@ -75,7 +83,9 @@ async def substructure(ref: str, request: Request, store: StoreOf, viewer: Viewe
         shown = of_part(version, part, asked.pose, asked.q)
         work = first_screen(store, shown, lambda: modules.of_version(store, version), worker, asked)
         told = html(work, requests(shown, _address(request)) if shown.coordinates else None)
-        notes = withdrawn_section(gone), [*versions_section(all_of_it), *uses_section(used, shown.reference)]
+        _, levels = differences.levels(store, viewer, worker, shown.reference, MOST_COMPARED)
+        built = [*levels_section(levels), *versions_section(all_of_it), *uses_section(used, shown.reference)]
+        notes = withdrawn_section(gone), built
         return _answer(request, part_page(version, names, part, told, notes))
 
     return await in_time(request, shown_page, ADVICE)

@@ -40,7 +40,7 @@ router = APIRouter(prefix="/v1/jobs/{job}", tags=["jobs"], dependencies=[needs("
 
 
 @router.get("/events", response_class=Response, responses=STREAM)
-def events(
+def stream_job_events(
     job: str,
     request: Request,
     store: StoreOf,
@@ -99,7 +99,7 @@ def _read(store: Store, job: str, seq: int) -> tuple[list[job_events.JobEvent], 
 
 
 @router.get("/archive", response_class=Response, responses=ZIP)
-def archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_job_archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Everything there is so far as a zip file: ``<position>/item.json`` and the files of the item beside it with
     the endings of their formats; the formulas of trees and parts that were stored once for all that share them,
     ``programs/<digest>.json`` by the ``program`` of items."""

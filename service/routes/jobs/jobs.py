@@ -42,7 +42,7 @@ FILE: dict[int | str, Any] = {
 
 
 @router.post("", status_code=202, response_model=JobView, dependencies=JOBS, openapi_extra=body_of("JobRequest"))
-def submit(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def submit_job(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Queue a job. 202 when it is on the disk; before that every item has been checked."""
     if isinstance(body, dict) and body.get("kind") in jobs.STORING:
         act.require("write")
@@ -81,7 +81,7 @@ def get_job(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
 
 
 @router.post("/{job}/cancel", response_model=JobView, dependencies=JOBS, openapi_extra=body_of("CancelRequest", False))
-def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+def cancel_job(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Cancel what is not finished; what runs is stopped within two seconds. Others' jobs need the scope admin."""
     read_model(CancelRequest, body)
 
@@ -101,7 +101,7 @@ def cancel(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Resp
     dependencies=JOBS,
     openapi_extra=body_of("RetryRequest", False),
 )
-def retry(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+def retry_job(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """What of a job failed or was cancelled once more, as a job of its own."""
     label = read_model(RetryRequest, body).label
 
@@ -115,7 +115,7 @@ def retry(job: str, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Respo
 
 
 @router.delete("/{job}", status_code=204, dependencies=JOBS)
-def remove(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def remove_job(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """Remove a job that has ended, with its results and with the states that were uploaded for it alone."""
     with store.database.write() as connection:
         jobs.remove(connection, viewer, job)
@@ -123,7 +123,7 @@ def remove(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
 
 
 @router.get("/{job}/items", response_model=ItemPage, dependencies=READ)
-def list_items(
+def list_job_items(
     job: str,
     request: Request,
     store: StoreOf,
@@ -148,7 +148,8 @@ def list_items(
 
 router.add_api_route(
     "/{job}/result",
-    list_items,
+    list_job_items,
+    name="list_job_results",
     methods=["GET"],
     response_model=ItemPage,
     dependencies=READ,
@@ -157,7 +158,7 @@ router.add_api_route(
 
 
 @router.get("/{job}/items/{position}/files/{name}", dependencies=READ, response_class=Response, responses=FILE)
-def get_file(job: str, position: int, name: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def get_job_file(job: str, position: int, name: str, store: StoreOf, viewer: ViewerOf) -> Response:
     """A file of a result."""
     with store.database.read() as connection:
         if not 0 <= position < MANY:

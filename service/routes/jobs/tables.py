@@ -61,7 +61,7 @@ def _found(store: Store, viewer: Viewer, job: str) -> Table:
 
 
 @router.get("/table", response_model=TablePage, dependencies=READ, responses=TABLE)
-def get_table(
+def get_job_table(
     job: str,
     request: Request,
     store: StoreOf,
@@ -79,7 +79,7 @@ def get_table(
 
 
 @router.get("/pareto", response_model=TablePage, dependencies=READ, responses=TABLE)
-def get_pareto(
+def get_job_pareto(
     job: str,
     request: Request,
     store: StoreOf,
@@ -97,7 +97,7 @@ def get_pareto(
 
 
 @router.get("/table/columns/{column}", response_model=ColumnView, dependencies=READ)
-def get_column(
+def get_job_column(
     job: str,
     column: str,
     store: StoreOf,
@@ -119,7 +119,7 @@ def get_column(
     responses=made(TreeView),
 )
 @timed("derive")
-def store_row(job: str, row: int, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
+def store_job_row(job: str, row: int, body: OptionalJsonBody, store: StoreOf, act: ActOf) -> Response:
     """Store the tree of a row, coupled and verified as any other."""
     given = read_model(RowTree, body)
     document = tables.tree_of(_found(store, act.viewer, job), row)

@@ -60,7 +60,9 @@ ExportOf = Annotated[ExportRequest, Depends(export_of)]
 
 
 @router.get("/export", dependencies=READ, responses=EXPORTED)
-async def export(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf) -> Response:
+async def export_substructure(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, wanted: ExportOf
+) -> Response:
     """Functions of the part as it stands alone for a target, on one calling convention.
 
     What takes longer than a request may becomes a job of kind `export`, as with `Prefer: respond-async`.

@@ -28,7 +28,7 @@ router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
     openapi_extra=body_of("KernelsRequest"),
 )
 @timed("evaluate")
-def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def compile_tree_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
     """Compile a tree for evaluations of these quantities together. 201 when something was compiled, else 200.
 
     Without this a tree is compiled in the background after its first evaluation, and at once for many states.
@@ -41,7 +41,8 @@ def compile_kernels(ref: str, body: JsonBody, store: StoreOf, act: ActOf) -> Res
         """Compile what the quantities come from."""
         quantities = read_quantities(EvaluationRequest.read(body).quantities)  # also the body of an evaluation
         rows = []
-        for source, program, names in steps(replace(sources_of(store, tree, model), numbers=None), quantities):
+        sources = replace(sources_of(store, tree, model, act.worker), numbers=None)
+        for source, program, names in steps(sources, quantities):
             if program is not None:
                 start = perf_counter()
                 kernel, is_new = store.kernels.compiled(program, names)

@@ -30,37 +30,45 @@ router = APIRouter(prefix="/v1", tags=["models"], dependencies=[needs("read")])
 
 
 @router.get("/trees/{ref}/program.wasm", response_class=Response, responses=MODULE)
-async def tree_module(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = "") -> Response:
+async def get_tree_module(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = ""
+) -> Response:
     """Quantities of a tree as a module of WebAssembly."""
     return await _program(request, lambda: modules.of_tree(store, viewer, ref), quantities, "wasm")
 
 
 @router.get("/trees/{ref}/program.json", response_model=ProgramView)
-async def tree_layout(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = "") -> Response:
+async def get_tree_layout(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = ""
+) -> Response:
     """What stands where in the memory of `program.wasm`, and how its functions are called."""
     return await _program(request, lambda: modules.of_tree(store, viewer, ref), quantities, "json")
 
 
 @router.get("/trees/{ref}/origins", response_model=OriginsView)
-async def tree_origins(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+async def get_tree_origins(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The bodies and symbols that every entry of metric, Christoffel symbols and forces comes from."""
     return await _origins(request, lambda: modules.of_tree(store, viewer, ref, has_parts=True))
 
 
 @router.get("/substructures/{ref}/program.wasm", response_class=Response, responses=MODULE)
-async def part_module(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = "") -> Response:
+async def get_substructure_module(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = ""
+) -> Response:
     """Quantities of a part, as it stands alone, as a module of WebAssembly."""
     return await _program(request, lambda: modules.of_part(store, viewer, ref), quantities, "wasm")
 
 
 @router.get("/substructures/{ref}/program.json", response_model=ProgramView)
-async def part_layout(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = "") -> Response:
+async def get_substructure_layout(
+    ref: str, request: Request, store: StoreOf, viewer: ViewerOf, quantities: Names = ""
+) -> Response:
     """What stands where in the memory of `program.wasm`, and how its functions are called."""
     return await _program(request, lambda: modules.of_part(store, viewer, ref), quantities, "json")
 
 
 @router.get("/substructures/{ref}/origins", response_model=OriginsView)
-async def part_origins(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
+async def get_substructure_origins(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Response:
     """The bodies and symbols that every entry of metric, Christoffel symbols and gravity comes from."""
     return await _origins(request, lambda: modules.of_part(store, viewer, ref))
 

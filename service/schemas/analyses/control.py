@@ -10,7 +10,7 @@ from pydantic import Field
 
 from service.schemas.measured import BY_NAME, COORDINATES, SECONDS, VELOCITIES
 from service.schemas.parts import RequestPart
-from substructures.analysis.control import nonlinear_program, problem
+from substructures.analysis.control import demands, problem
 from substructures.documents import DocumentPart
 
 LIMIT = "largest relative error by the size of steps in a right result, by a second run with steps half as long"
@@ -39,7 +39,7 @@ class ControlProblem(DocumentPart):
     ``steps``: Runge-Kutta steps in each of them.
     """
 
-    controls: tuple[str, ...] = Field(min_length=1, description="names of inputs")
+    controls: tuple[str, ...] = Field(description="names of inputs; none where something else is sought alone")
     cost: Cost = Cost()
     horizon: Annotated[float, SECONDS] = Field(gt=0, allow_inf_nan=False, description="s")
     intervals: int = Field(ge=1, le=problem.MAX_INTERVALS)
@@ -72,19 +72,31 @@ class End(RequestPart):
     q: Annotated[list[float | None] | dict[str, float | None], COORDINATES] = Field({}, description="rad, m")
     qd: Annotated[list[float | None] | dict[str, float | None], VELOCITIES] = Field({}, description="rad/s, m/s")
 
-    def value(self) -> nonlinear_program.End:
+    def value(self) -> demands.End:
         """As the science takes it."""
-        return nonlinear_program.End(self.q, self.qd)
+        return demands.End(self.q, self.qd)
 
 
 class OptimalControlRequest(ControlProblem):
-    """A problem with demands, bounds and a guess."""
+    """A problem with demands, bounds, limits along the motion and a guess; the horizon and parameters may be free."""
 
     end: End = End()
     bounds: Annotated[dict[str, tuple[float | None, float | None]], BY_NAME] = Field(
         {}, description="least and largest value by control"
     )
     guess: ByControl = Field({}, description="controls to begin with: one number, or one for each node")
+    path: dict[str, tuple[Finite | None, Finite | None]] = Field(
+        {}, description="least and largest value by expression in q, q', u, t and parameters, at all nodes; SI"
+    )
+    free_parameters: Annotated[dict[str, tuple[float | None, float | None]], BY_NAME] = Field(
+        {}, description="unknown beside the controls: least and largest value by parameter"
+    )
+    free_horizon: Annotated[tuple[Finite, Finite] | None, SECONDS] = Field(
+        None, description="least and largest horizon, s: it is unknown, 'horizon' is where the search begins"
+    )
+    warm_start: dict[str, Any] | None = Field(
+        None, description="an earlier answer (names, horizon, parameters, trajectory with series) to begin with"
+    )
     segments: int | None = Field(None, ge=1, description="divides intervals; default: the largest such up to 10")
     iterations: int = Field(500, ge=1, le=100_000)
     tolerance: float = Field(1e-8, gt=0, lt=1, description="change of the cost at which the search ends")

@@ -12,8 +12,8 @@ from service.schemas.numbers import StateColumns, ValueColumns
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Positive, Real
-from substructures.ensembles.columns import MotionColumn
-from substructures.sweeps.document import MOST_COLUMNS, Samples
+from substructures.ensembles.columns import MOST_COLUMNS, MotionColumn
+from substructures.ensembles.samples import Samples
 
 InputColumns = Annotated[dict[str, float | list[float] | str], SkipValidation, WithUnits()]
 

@@ -20,6 +20,7 @@ from service.schemas.measured import (
     EXPRESSION,
     EXPRESSIONS,
     INPUT_SIGNALS,
+    METRES_PER_SECOND,
     OF_QUANTITY,
     OF_SIGNAL,
     QUASI_VELOCITIES,
@@ -30,12 +31,14 @@ from service.schemas.measured import (
 )
 from service.schemas.parts import RequestPart
 from substructures.analysis import simulate as science
+from substructures.analysis.motion.problems.contacts import ROUGHEST
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, PlainNumber, Positive, Real
 from substructures.errors import InvalidArgument
 
 MAX_EVENTS = 100
+MAX_CONTACTS = 50
 
 
 def _listed(value: Any) -> Any:
@@ -104,6 +107,23 @@ class Event(RequestPart):
         return science.Event(self.name, self.quantity, self.level, self.direction, self.action, self.reset)
 
 
+class Contact(RequestPart):
+    """The origin of the frame ``point`` does not pass through the plane z = 0 of the world, or x, y of a frame."""
+
+    name: Name
+    type: Literal["point_plane", "point_line"] = Field("point_plane", description="point_line: slides along x alone")
+    point: str = Field(max_length=200, description="instance.port or instance.body")
+    plane: str = Field("world", max_length=200, description="world, instance.port or instance.body; normal: its z axis")
+    restitution: Annotated[Real, Field(ge=0, le=1)] = 0.0
+    friction: Annotated[Real, Field(ge=0, le=ROUGHEST)] = 0.0
+    when: str | None = Field(None, max_length=10_000, description="one comparison: else the point passes the plane")
+    rest_velocity: Annotated[Positive, METRES_PER_SECOND] = Field(1e-4, description="m/s; slower ones do not rebound")
+
+    def value(self) -> science.Contact:
+        """As the science takes it."""
+        return science.Contact(**dict(self))
+
+
 class FixedStep(RequestPart):
     """Real-time mode: every step takes the same, known time. Semi-implicit Euler, or Runge-Kutta of fourth order."""
 
@@ -157,15 +177,20 @@ class SpanRequest(StateRequest):
 
 
 class WithReactions(SpanRequest):
-    """``reactions``: those of all joints, or of some, by coordinates and ``instance.base``. ``powers``: of all."""
+    """``reactions``: those of all joints, or of some, by coordinates and ``instance.base``."""
 
     reactions: bool | Annotated[tuple[str, ...], Field(min_length=1)] = Field(
         False, description="force and moment that joints transmit: of all, or of these"
     )
+
+
+class WithPowers(WithReactions):
+    """Also the ``powers`` of all."""
+
     powers: bool = Field(False, description="the power of every load and joint, and whether they add up to dT/dt")
 
 
-class SimulationRequest(WithReactions):
+class SimulationRequest(WithPowers):
     """q'' = g^-1 (Q - Gamma q' q') of a tree without closures."""
 
     method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF", "LSODA", "Taylor"] = "DOP853"
@@ -175,6 +200,9 @@ class SimulationRequest(WithReactions):
         description="of joints: by the smooth law of the formulas, set-valued at rest, or smooth with their load",
     )
     geodesic: bool = Field(False, description="of the metric: a motion on which no force acts")
+    contacts: Annotated[tuple[Contact, ...], Field(max_length=MAX_CONTACTS)] = Field(
+        (), description="points that do not pass through planes, with impacts and Coulomb's friction"
+    )
 
 
 class LoopRequest(StateRequest):
@@ -202,7 +230,7 @@ class ReducedRequest(StateRequest):
     start: Annotated[dict[str, Real], COORDINATES] = Field({}, description="coordinates by name; rad, m")
 
 
-class ClosedRequest(WithReactions):
+class ClosedRequest(WithPowers):
     """A motion with closures from the closed state nearest to ``q``, ``qd``; see LoopRequest.
 
     ``reduction``: the state is projected onto the closures after every step, or independent coordinates are integrated.
@@ -210,14 +238,14 @@ class ClosedRequest(WithReactions):
 
     fixed: tuple[str, ...] = Field((), max_length=500)
     prescribed: Annotated[dict[str, Signal], COORDINATE_SIGNALS] = Field({}, description="by coordinate; rad or m")
-    method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
+    method: Literal["DOP853", "RK45", "RK23", "Radau", "BDF"] = "DOP853"
     reduction: Literal["projection", "partitioning"] = "projection"
     friction: Literal["regularised", "exact"] = Field(
         "regularised", description="of joints: by the smooth law of the formulas, or set-valued at rest"
     )
 
 
-class RollingRequest(SpanRequest, VelocityConstraints):
+class RollingRequest(WithReactions, VelocityConstraints):
     """A motion with velocity constraints from ``q`` and quasi-velocities ``v``, or velocities ``qd`` that meet them."""
 
     v: Annotated[Any, QUASI_VELOCITIES] = Field(

@@ -1,14 +1,14 @@
-"""Periodic orbits and Lyapunov exponents as they are asked for; SI units, angles in rad."""
+"""Periodic orbits, Poincare sections and Lyapunov exponents as they are asked for; SI units, angles in rad."""
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import Annotated, Literal
 
 from pydantic import Field
 
-from service.schemas.analyses.motions import Seconds, StateRequest
-from service.schemas.measured import OF_VARIED
-from substructures.documents.fields import Real
+from service.schemas.analyses.motions import MAX_EVENTS, Event, Seconds, StateRequest
+from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED
+from substructures.documents.fields import PlainNumber, Real
 
 Relative = Annotated[Real, Field(ge=1e-14, le=1e-2)]
 Absolute = Annotated[Real, Field(ge=0, le=1e-2)]
@@ -25,8 +25,21 @@ class PeriodicOrbitRequest(StateRequest):
     turns: dict[str, int] = Field({}, description="whole turns of revolute coordinates in a period")
     vary: str | None = Field(None, description="of a family: a parameter, or a coordinate or velocity that is held")
     values: Annotated[tuple[Real, ...], OF_VARIED] = Field((), max_length=1000, description="of `vary`")
+    events: tuple[Event, ...] = Field((), max_length=MAX_EVENTS, description="that act, each with its `reset`")
     relative_tolerance: Relative = 1e-11
     absolute_tolerance: Absolute = 1e-13
+
+
+class PoincareSectionRequest(StateRequest):
+    """A motion, and the surface ``quantity`` = ``level`` that it crosses, as of an event."""
+
+    quantity: Annotated[PlainNumber, EXPRESSION] = Field(description="in coordinates, velocities, parameters and t")
+    level: Annotated[Real, OF_QUANTITY] = 0.0
+    direction: Literal["rising", "falling", "both"] = "rising"
+    count: Annotated[int, Field(ge=1, le=1_000_000)] = Field(1000, description="of the first crossings")
+    duration: Seconds = Field(description="s, at most")
+    relative_tolerance: Relative = 1e-10
+    absolute_tolerance: Absolute = 1e-12
 
 
 class LyapunovRequest(StateRequest):

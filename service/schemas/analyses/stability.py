@@ -8,6 +8,7 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field
 
+from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.schemas.measured import (
     ACCELERATIONS,
     BY_NAME,
@@ -16,13 +17,15 @@ from service.schemas.measured import (
     METRES,
     MOMENTA_OF_COORDINATES,
     OF_PARAMETER,
+    OF_STEADY,
+    QUASI_VELOCITIES,
     RADIANS_PER_SECOND,
     SECONDS,
     VELOCITIES,
     Values,
 )
 from substructures.documents import DocumentPart
-from substructures.documents.fields import PlainNumber, Positive, Real
+from substructures.documents.fields import Name, PlainNumber, Positive, Real
 
 States = Annotated[Any, COORDINATES]
 #: by name, one number or one for each state
@@ -30,10 +33,11 @@ Columns = Annotated[dict[str, Any], BY_NAME]
 Reach = Annotated[Positive, METRES]
 
 
-class LinearisationRequest(DocumentPart):
+class LinearisationRequest(VelocityConstraints):
     """A state, or states along a trajectory; ``qdd``: default that of the motion.
 
-    With closures one state, which is moved onto them, and no ``qdd``.
+    With closures one state, which is moved onto them, and no ``qdd``. With ``constraints`` one motion, in
+    quasi-velocities: ``v``, or ``qd`` that meets them, and no ``qdd``.
     """
 
     q: States
@@ -48,6 +52,9 @@ class LinearisationRequest(DocumentPart):
         {}, max_length=1000, description="y: expressions in q, q', inputs and t"
     )
     of_inputs: tuple[str, ...] | None = Field(None, description="columns of B and D; default all inputs")
+    v: Annotated[Any, QUASI_VELOCITIES] = Field(
+        None, description="quasi-velocities, with constraints: a list, or an object by name; 0 by default"
+    )
 
 
 class LinearSystemRequest(DocumentPart):
@@ -97,6 +104,7 @@ class SteadyMotionsRequest(DocumentPart):
     """Either ``rates`` or ``momenta`` of cyclic coordinates; the search is that of equilibria.
 
     ``held``: what keeps its values when the motion is disturbed: momenta, or rates of coordinates that are driven.
+    ``vary`` and ``between``: families over a parameter, a rate or a momentum, with their bifurcations.
     """
 
     rates: Annotated[dict[str, Real] | None, VELOCITIES] = Field(
@@ -112,6 +120,17 @@ class SteadyMotionsRequest(DocumentPart):
     seed: Annotated[int, Field(ge=0)] = 0
     parameters: Values = Field({}, description="in place of their defaults")
     inputs: Values = Field({}, description="constant; by default their own, or 0")
+    vary: str | None = Field(None, description="of families: a parameter, or a coordinate that moves")
+    between: Annotated[tuple[Real, Real] | None, OF_STEADY] = Field(
+        None, description="of `vary`: the first and the last"
+    )
+    steps: Annotated[int, Field(ge=2, le=1000)] = Field(50, description="of a family over the range, at least")
+    velocities: dict[Name, str] | None = Field(
+        None, max_length=100, description="with velocity constraints: quasi-velocities, as of `velocity-equations`"
+    )
+    independent: tuple[str, ...] | None = Field(
+        None, max_length=500, description="with velocity constraints: or the coordinates whose velocities they are"
+    )
 
 
 class RootLocusRequest(DocumentPart):

@@ -1,4 +1,4 @@
-"""Constraints on velocities as they are sent; what they mean: substructures.analysis.equations.velocity_constraints."""
+"""Constraints on velocities as they are sent; what they mean: substructures.analysis.equations.nonholonomic."""
 
 from __future__ import annotations
 
@@ -8,48 +8,32 @@ from pydantic import Field
 
 from service.schemas.measured import METRES
 from service.schemas.parts import RequestPart
-from substructures.analysis.equations import velocity_constraints as science
+from substructures.analysis.equations.nonholonomic import velocity_constraints as science
 from substructures.documents import DocumentPart
 from substructures.documents.fields import BY_TYPE, Name, PlainNumber
+from substructures.tree.document import KnifeEdgeConstraint, LinearConstraint, RollingConstraint
 
-FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
 
-
-class Linear(RequestPart):
-    """An expression that is zero, linear in the velocities."""
-
-    type: Literal["linear"]
-    name: Name
-    expression: str
+class Linear(LinearConstraint, RequestPart):
+    """An expression that is zero, affine in the velocities: B(q) q' + b(q, t), b what a table or a belt gives."""
 
     def value(self) -> science.Linear:
         """As the science takes it."""
         return science.Linear(self.name, self.expression)
 
 
-class KnifeEdge(RequestPart):
+class KnifeEdge(KnifeEdgeConstraint, RequestPart):
     """A skate: no velocity across the edge, which lies along the first axis of the frame."""
-
-    type: Literal["knife_edge"]
-    name: Name
-    frame: FrameName
 
     def value(self) -> science.KnifeEdge:
         """As the science takes it."""
         return science.KnifeEdge(self.name, self.frame)
 
 
-class Rolling(RequestPart):
+class Rolling(RollingConstraint, RequestPart):
     """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
 
-    type: Literal["rolling"]
-    name: Name
-    frame: FrameName
     radius: Annotated[PlainNumber, METRES] = Field(description="m")
-    shape: Literal["disc", "sphere"] = "disc"
-    normal: tuple[PlainNumber, PlainNumber, PlainNumber] = Field(
-        (0, 0, 1), description="of the plane in the world (constant)"
-    )
 
     def value(self) -> science.Rolling:
         """As the science takes it."""

@@ -18,6 +18,7 @@ import numpy as np
 import scipy
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
+from substructures.analysis.closed.pivoting import singular_values
 from substructures.array import Array
 
 #: a whole step is on one branch without a further look where G changes by less than this from both of its ends: from
@@ -36,10 +37,13 @@ def change(A: Array, B: Array) -> float:
 
 
 def _from(A: Array, difference: Array) -> float:
-    U, S, _ = scipy.linalg.svd(A, full_matrices=False)
-    if not (len(S) and S[-1] > 0):
-        return np.inf if len(S) else 0.0
-    return float(np.linalg.norm((U.T @ difference) / S[:, None], 2))
+    if not len(A):
+        return 0.0
+    # A^T = V S U^T
+    _, S, Ut, info = scipy.linalg.lapack.dgesdd(A.T, full_matrices=0)
+    if info or not S[-1] > 0:
+        return np.inf
+    return float(singular_values((Ut @ difference) / S[:, None])[0])
 
 
 def singular_part(G_at: Callable[[float], Array | None], first: Array, last: Array) -> float | None:

@@ -5,21 +5,22 @@ With rows of closures and rows q_a - s(t) of prescribed coordinates:
     g q'' + Gamma q'q' = Q + G^T lambda        phi(q, t) = 0        G q' + phi_t = 0        G q'' + c = 0
 
 where c = G' q' for closures and -s'' for prescribed coordinates, whose multipliers are the forces of their actuators.
+Closures depend on the time where coordinates are driven.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import NumberOrExpression
-from substructures.analysis.closed.pivoting import pivoted
+from substructures.analysis.closed.pivoting import pivoted, singular_values
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.equations.kernels import Known
@@ -32,6 +33,8 @@ from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates, SaddlePoint
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
@@ -41,6 +44,8 @@ from substructures.quantities.closure_columns import row_bounds
 from substructures.tree.model import Model
 
 ALL = slice(None)
+#: of given motions: powers of the free velocities in T
+DRIVES = ("T_2", "T_0")
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the closures lose rank there, so that the motion is not determined; keep away from this dead centre or branching "
@@ -78,7 +83,7 @@ class Constrained:
         Raises InvalidInput (``/q``, ``/inputs/name``, ``/prescribed/name``, ...) and MissingValue.
         """
         self.model, self.n, start = model, model.dof, start.with_defaults(model)
-        needs = [*NEEDS, *(CLOSED if model.closures else ())]
+        needs = self._needs(bool(model.closures))
         self.conditions = read_conditions(model, start, span, needs, events, series)
         self.prescribed = Prescribed(model, prescribed or {}, span)
         self.labels = tuple(f"{rows.name}.{row}" for rows in model.closures for row in rows.rows)
@@ -97,14 +102,26 @@ class Constrained:
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
 
+    def _needs(self, is_closed: bool) -> list[str]:
+        """Outputs of the model."""
+        drives = [*DRIVES, *(("closure.rate",) if is_closed else ())] if self.model.driven else []
+        return [*NEEDS, *(CLOSED if is_closed else ()), *drives]
+
     def _bind(self, inputs: list[str], folder: Path | None) -> None:
-        outputs = [*NEEDS, *(CLOSED if self.closed else ())]
+        self._folder = folder
+        outputs = self._needs(bool(self.closed))
         known = Known(self.model.program.digest, self.model)
         source, kernel = _compiled(known, tuple(outputs), frozenset(inputs), folder)
-        self.conservative = not source.outputs[POWER].entries and not self.prescribed.index
+        self.is_still = not self.prescribed.index and not (self.closed and self.model.driven)
+        self.conservative = not source.outputs[POWER].entries and self.is_still
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
         self.inputs = VaryingInputs(self.conditions, self._t, self._x, folder)
-        self._out = {name: np.zeros((1, *source.outputs[name].shape)) for name in [*outputs, POWER]}
+        # rows of closures are written where they are wanted, before those of prescribed coordinates
+        rows = dict(zip((*CLOSED, "closure.rate"), (self.phi, self.G, self.c, self.phi_t), strict=True))
+        self._out = {
+            name: rows[name][None, : self.closed] if name in rows else np.zeros((1, *source.outputs[name].shape))
+            for name in [*outputs, POWER]
+        }
         columns = [(state_names(self.model), self._x), *self.inputs.columns]
         self._laws = Laws(source, kernel, self._out, self.conditions.values | {"t": self._t}, columns)
         self.g = self._out["metric"][0]
@@ -148,13 +165,9 @@ class Constrained:
         self._laws.run()
         # f = Q - Gamma q'q'
         np.subtract(out["forces"][0], out["bias"][0], out=self.f)
-        m = self.closed
-        if m:
-            self.phi[:m], self.c[:m] = out["closure.residual"][0], out["closure.acceleration"][0]
-            self.G[:m] = out["closure.jacobian"][0]
         if self.prescribed.index:
             # phi = q_a - s(t), phi_t = -s'(t), c = -s''(t)
-            motion = self.prescribed.at(t)
+            m, motion = self.closed, self.prescribed.at(t)
             self.phi[m:] = q[list(self.prescribed.index)] - motion[:, 0]
             self.phi_t[m:], self.c[m:] = -motion[:, 1], -motion[:, 2]
 
@@ -180,6 +193,18 @@ class Constrained:
             q2 = np.full(self.n, np.nan)
         return np.concatenate((self.qd, q2, (0.0,)))
 
+    def compiled(self, rows: NDArray[np.int64]) -> CompiledRates | None:
+        """(q', q'', power) of (t, q, q') with these rows, which may change, in machine code; None where more than
+        kernels is called, or closures move.
+        """
+        runs = [laws.run for laws in (*self.inputs.laws, self._laws)]
+        calls = tuple(run for run in runs if isinstance(run, BoundCall))
+        if len(calls) < len(runs) or self.inputs.has_tables or not self.is_still:
+            return None
+        out = self._out
+        saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], rows)
+        return CompiledRates(calls, self._t, self._x, np.zeros((1, self.n)), out[POWER], self._folder, saddle)
+
     @property
     def velocity_residual(self) -> Array:
         """G q' + phi_t."""
@@ -202,12 +227,15 @@ class Constrained:
 
     def share(self, rank: int, rows: NDArray[np.int64] | slice = ALL) -> float:
         """The rank-th singular value of (some rows of) the balanced G, over the largest there, or elsewhere."""
-        values = scipy.linalg.svdvals(self.balanced[rows]) if rank else np.ones(1)
+        values = singular_values(self.balanced[rows]) if rank else np.ones(1)
         return 0.0 if len(values) < rank else float(values[rank - 1] / max(values[0], 1.0))
 
     @property
     def energies(self) -> tuple[float, float]:
-        """T and V [J]."""
+        """T and V [J]; at given motions T_2 - T_0 and V, of Jacobi's energy."""
+        if self.model.driven:
+            T_2, T_0, V = (float(self._out[name][0]) for name in (*DRIVES, "potential_energy"))
+            return T_2 - T_0, V
         # T = q'^T g q' / 2
         return 0.5 * float(self.qd @ self.g @ self.qd), float(self._out["potential_energy"][0])
 
@@ -250,13 +278,13 @@ class Constrained:
     def factor(self, rows: NDArray[np.int64]) -> Factor:
         """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
         n, r = self.n, len(rows)
-        # A = [g G^T; G 0]
-        A = np.zeros((n + r, n + r), order="F")
+        # A = A^T = [g G^T; G 0]
+        A = np.zeros((n + r, n + r))
         A[:n, :n] = self.g
         if r:
-            G = self.G[rows]
-            A[n:, :n], A[:n, n:] = G, G.T
-        lu, pivots, info = scipy.linalg.lapack.dgetrf(A, overwrite_a=True)
+            A[n:, :n] = G = self.G.take(rows, axis=0)
+            A[:n, n:] = G.T
+        lu, pivots, info = scipy.linalg.lapack.dgetrf(A.T, overwrite_a=True)
         if info:
             raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
         return Factor(n, lu, pivots)
@@ -264,7 +292,7 @@ class Constrained:
     def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
         """q'' (n,) and the multipliers of the given rows. Raises Singular."""
         # g q'' + G^T (-lambda) = f, G q'' = -c
-        q2, minus = self.factor(rows).solve(self.f, -self.c[rows])
+        q2, minus = self.factor(rows).solve(self.f, -self.c.take(rows))
         if not np.isfinite(q2).all():
             raise Singular("the accelerations are not finite: check masses, inertias and loads")
         return q2, -minus
@@ -282,8 +310,7 @@ class Constrained:
         return np.sort(pivoted(self.balanced.T, rank)[:rank])
 
 
-@dataclass(frozen=True)
-class Factor:
+class Factor(NamedTuple):
     """Factors of [g G^T; G 0]."""
 
     n: int

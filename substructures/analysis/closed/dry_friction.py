@@ -31,6 +31,8 @@ from substructures.array import Array
 
 #: a joint has no lever where it moves by less than this part of the motion
 LEVER = 1e-6
+#: of times [s], 1 or more, at which watched quantities are zero
+RESOLUTION = 1e-14
 
 
 class DryConstrained(Constrained):
@@ -61,6 +63,9 @@ class DryConstrained(Constrained):
         self._without[:] = self.f
         self._without[self.laws.places] -= self._smooth
         self._take(-self.signs * self.laws.slipping(v))
+
+    def compiled(self, rows: NDArray[np.int64]) -> None:
+        """None: who sticks is decided beside the kernels."""
 
     @property
     def lost_power(self) -> float:
@@ -159,11 +164,12 @@ class ClosedDryMotion:
         """Who slips and who sticks at a state, and the state with those at rest at rest. Raises Singular."""
         s, places, x = self.s, self.laws.places, x.copy()
         q, qd = x[: self.n], x[self.n : 2 * self.n]
+        least = np.fmax(2 * REST * self.laws.velocity, np.abs(self._unresolved(t, x, self.signs)))
         s.move(t, q, qd)
         rows = s.independent_rows()
         N = s.basis(rows)
         able = N[places].any(axis=1)
-        rest = self._at_rest(qd[places]) | ((self.signs == 0) & able)
+        rest = (np.abs(qd[places]) <= least) | ((self.signs == 0) & able)
         # what comes to rest by that is at rest, too
         count = -1
         while count < rest.sum():
@@ -171,14 +177,20 @@ class ClosedDryMotion:
             stopped = places[rest & able]
             qd += _stopping(N, stopped, qd)
             qd[stopped] = 0.0
-            rest |= self._at_rest(qd[places])
+            rest |= np.abs(qd[places]) <= least
         signs = np.sign(qd[places]).astype(np.int64)
         signs[rest] = 0
         self._release(t, (q, qd), signs, np.flatnonzero(rest & able), (rows, N[places]))
+        if (rest & ~able).any():
+            # those without a lever that are past rest before the next time
+            change = self._unresolved(t, x, signs)
+            turn = rest & ~able & (np.abs(change) > REST * self.laws.velocity)
+            signs[turn] = np.sign(change[turn]).astype(np.int64)
         return signs, x
 
-    def _at_rest(self, v: Array) -> NDArray[np.bool_]:
-        return np.asarray(np.abs(v) <= 2 * REST * self.laws.velocity)
+    def _unresolved(self, t: float, x: Array, signs: Signs) -> Array:
+        """The changes of rates within the resolution of times (k,)."""
+        return self.moved(t, x, signs)[0][self.laws.places] * RESOLUTION * max(abs(t), 1.0)
 
     def _release(
         self,

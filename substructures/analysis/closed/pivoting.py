@@ -3,12 +3,21 @@
 from __future__ import annotations
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from substructures.array import Array
 
 #: lengths of rows or columns that differ by this part are equal
 TIE = 1e-6
+
+
+def singular_values(A: Array) -> Array:
+    """Of a matrix, the largest first; as scipy.linalg.svdvals, for small ones. Raises LinAlgError."""
+    _, values, _, info = scipy.linalg.lapack.dgesdd(A.T, compute_uv=0)
+    if info:
+        raise np.linalg.LinAlgError("there are no singular values of what is not finite")
+    return np.asarray(values, dtype=np.float64)
 
 
 def pivoted(A: Array, rank: int) -> NDArray[np.int64]:

@@ -15,12 +15,10 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
 from substructures.errors import among
-from substructures.expr.calculus.corners import corners, inner, on_side
-from substructures.expr.differentiate import derivative
+from substructures.expr.calculus.corners import corners, inner, rates
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
-from substructures.expr.walk import transfer
 from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
@@ -60,7 +58,7 @@ class Prescribed:
         self._time = np.zeros(1)
         self._places = list(formulas)
         self._found = np.zeros((1, len(formulas), 3))
-        rows = [_with_rates(x) for x in formulas.values()]
+        rows = [(x, *rates(x, "t")) for x in formulas.values()]
         names = list(given)
         for k, row in zip(formulas, rows, strict=True):
             _require_smooth(row, span, f"/prescribed/{escape(names[k])}", unit_of(names[k], ""))
@@ -97,17 +95,6 @@ class Prescribed:
         self._time[0] = t + (BESIDE if t < self._middle else -BESIDE) * max(1.0, abs(t))
         run()
         self.values[self._places, 1:] = self._found[0, :, 1:]
-
-
-def _with_rates(x: Expr) -> tuple[Expr, Expr, Expr]:
-    """s(t), s'(t), s''(t): with |x| = x sign x, whose derivatives need no quotient that is 0/0 where x = 0."""
-    found, graph = corners([x]), x.graph
-    sides = [graph.symbol(f"side {k}") for k in range(len(found))]
-    (smooth,) = on_side([x], dict(zip(found, sides, strict=True)))
-    rate = derivative(smooth, "t")
-    signs = {str(s.value): graph.function("sign", inner(node)) for s, node in zip(sides, found, strict=True)}
-    rate, second = transfer([rate, derivative(rate, "t")], graph, signs)
-    return x, rate, second
 
 
 def _require_smooth(row: tuple[Expr, Expr, Expr], span: tuple[float, float], pointer: str, unit: str) -> None:

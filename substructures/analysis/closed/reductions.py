@@ -17,9 +17,10 @@ import scipy
 from numpy.typing import NDArray
 
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
-from substructures.analysis.closed.pivoting import pivoted
+from substructures.analysis.closed.pivoting import pivoted, singular_values
 from substructures.analysis.closed.projection import CLOSED, project
 from substructures.array import Array
+from substructures.compile.motion import CompiledRates
 from substructures.mechanics.closure_rows import RANK
 
 #: independent rows or coordinates are chosen anew when they are worse conditioned than this part of the best choice
@@ -63,6 +64,14 @@ class Reduction(ABC):
     def rates(self, t: float, y: Array) -> Array:
         """y'. Raises Singular."""
 
+    def __call__(self, t: float, y: Array) -> Array:
+        """:meth:`rates`, as a function that integrators take. Raises Singular."""
+        return self.rates(t, y)
+
+    def compiled(self) -> CompiledRates | None:
+        """The same in machine code; None where it is not."""
+        return None
+
     @abstractmethod
     def choose(self, anew: bool = False) -> bool:
         """Look at the closures where s is: choose anew what has become ill conditioned; whether y changed its meaning.
@@ -83,14 +92,13 @@ class Reduction(ABC):
         return self.rank > 0 and not self.s.share(self.rank) > least
 
     def _acceleration(self) -> tuple[Array, float]:
-        """q'' and the power of lossy forces and of the actuators of prescribed coordinates, where s is."""
+        """q'' and the power of lossy forces, actuators of prescribed coordinates and moving closures, where s is."""
         s = self.s
         qdd, multipliers = s.accelerations(self.rows)
         # W' = (Q + dV/dq) q' + sum of lambda_k s'_k, and phi_t = -s'
         power = 0.0 if s.conservative else s.lost_power
-        for row, force in zip(self.rows, multipliers, strict=True):
-            if row >= s.closed:
-                power -= float(force * s.phi_t[row])
+        if not s.is_still:
+            power -= float(multipliers @ s.phi_t[self.rows])
         return qdd, power
 
     def _check_rank(self, anew: bool) -> None:
@@ -107,6 +115,15 @@ class Reduction(ABC):
 
 class Projected(Reduction):
     """y = (q, q', work)."""
+
+    def __init__(self, s: Constrained, rank: int) -> None:
+        super().__init__(s, rank)
+        #: the rows that machine code reads
+        self._read = self.rows.copy()
+
+    def compiled(self) -> CompiledRates | None:
+        """The equations with multipliers and the rows that are chosen then."""
+        return self.s.compiled(self._read)
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         """(q, q', work)."""
@@ -130,6 +147,7 @@ class Projected(Reduction):
     def choose(self, anew: bool = False) -> bool:
         """Rows only: y means the same whatever they are."""
         self._check_rank(anew)
+        self._read[:] = self.rows
         return False
 
 
@@ -146,6 +164,9 @@ class Partitioned(Reduction):
     def _partition(self) -> None:
         order = pivoted(self.s.balanced[self.rows], self.rank)
         self.dependent, self.independent = np.sort(order[: self.rank]), np.sort(order[self.rank :])
+        # where G_x and G_y are in G, and what their rows are over
+        self._x, self._y = (self.rows[:, None] * self.n + some for some in (self.dependent, self.independent))
+        self._reach, self._width = self.s.reach[self.rows], self.s.width[self.rows]
         self.best = self._condition()
 
     def _condition(self) -> float:
@@ -156,7 +177,7 @@ class Partitioned(Reduction):
         if not self.rank:
             return 1.0
         G = self.s.balanced[self.rows]
-        return float(scipy.linalg.svdvals(G[:, self.dependent])[-1] / scipy.linalg.svdvals(G)[-1])
+        return float(singular_values(G[:, self.dependent])[-1] / singular_values(G)[-1])
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         """(y, y', work) of the independent coordinates."""
@@ -171,8 +192,8 @@ class Partitioned(Reduction):
         size = np.inf
         for _ in range(20):
             s.move(t, q, qd)
-            residual, before = s.phi[self.rows], size
-            size = float(np.abs(residual / s.width[self.rows]).max(initial=0))
+            residual, before = s.phi.take(self.rows), size
+            size = float(np.abs(residual / self._width).max(initial=0))
             factor = self._factor()
             if (size <= CLOSED / 10 and size <= self._part(factor) ** 2 * CLOSED / 10) or before / 2 < size <= ROUNDING:
                 break
@@ -181,7 +202,7 @@ class Partitioned(Reduction):
         else:
             raise Singular("the dependent coordinates cannot be found: " + SINGULAR)
         # G_x x' = -(G_y y' + phi_t)
-        opening = s.G[np.ix_(self.rows, self.independent)] @ y[k:-1] + s.phi_t[self.rows]
+        opening = s.G.take(self._y) @ y[k:-1] + s.phi_t.take(self.rows)
         qd[self.dependent] = -self._solve(factor, opening)
         self.near = q
         s.move(t, q, qd)
@@ -191,7 +212,7 @@ class Partitioned(Reduction):
         """L U of the balanced columns G_d of the dependent coordinates, and the order of its rows."""
         if not self.rank:
             return np.ones((0, 0)), np.zeros(0, dtype=np.int32)
-        lu, order, info = scipy.linalg.lapack.dgetrf(self.s.balanced[np.ix_(self.rows, self.dependent)])
+        lu, order, info = scipy.linalg.lapack.dgetrf(self.s.G.take(self._x) / self._reach[:, None])
         if info:
             raise Singular(UNDETERMINED)
         return lu, order
@@ -209,7 +230,7 @@ class Partitioned(Reduction):
         """x with G_d x = b. Raises Singular."""
         if not self.rank:
             return b
-        x, _ = scipy.linalg.lapack.dgetrs(*factor, b / self.s.reach[self.rows])
+        x, _ = scipy.linalg.lapack.dgetrs(*factor, b / self._reach)
         if not np.isfinite(x).all():
             raise Singular(UNDETERMINED)
         return np.asarray(x, dtype=np.float64)

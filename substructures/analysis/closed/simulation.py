@@ -20,7 +20,8 @@ from substructures.analysis.closed.reductions import REDUCTIONS, Reduction
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.friction.dry_friction import friction_laws
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
+from substructures.analysis.motion.integrators.integration import STIFF, IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import energy_balance, unbalanced
 from substructures.analysis.motion.problems.kinds import ClosedMotion
@@ -36,11 +37,11 @@ from substructures.tree.model import Model
 #: largest residuals of positions and velocities [per s] along a right motion, over the width of their rows
 RESIDUAL = 1e-9
 OPENINGS = ("opening", "opening_rate")
-#: one-step methods, which can begin anew on the closures after every step
-METHODS = ("DOP853", "RK45", "RK23")
+#: explicit ones, and implicit ones for stiff motions, that go on from the closures after every step
+METHODS = (*EXPLICIT, "Radau", "BDF")
 #: steps from which on it is looked whether friction makes a motion stiff, and near rest: in velocities v_0 of its law
 MANY, NEAR_REST = 1000, 3
-ADVICE = "look for very stiff springs, for masses or lengths near zero and for jumps in loads"
+ADVICE = f"{STIFF}, or look for masses or lengths near zero and for jumps in loads"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -81,7 +82,7 @@ def simulate_closed(problem: ClosedProblem) -> Trajectory:
     x = np.concatenate((state.q, state.qd, (0.0,)))
     motion = _moved(s, problem, x, place.rank, progress, folder)
     found = _judged(s, problem, motion, place.rank)
-    found = replace(found, message=". ".join(filter(None, (found.message, _stiff(s, motion)))))
+    found = replace(found, message=". ".join(filter(None, (found.message, _stiff(s, problem, motion)))))
     s.conditions = replace(s.conditions, events=())
 
     def move(other: ClosedProblem, y: Array, told: ProgressReport | None, turning: bool) -> IntegratedMotion:
@@ -93,9 +94,10 @@ def simulate_closed(problem: ClosedProblem) -> Trajectory:
     return replace(found, checks=(*found.checks, *again))
 
 
-def _stiff(s: Constrained, motion: IntegratedMotion) -> str:
+def _stiff(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion) -> str:
     """What is said of many steps near rest, where the smooth law of friction is steep."""
-    if isinstance(s, DryConstrained) or motion.steps < MANY or "friction" not in s.model.program.outputs:
+    explicit = problem.integrator.method in EXPLICIT and not isinstance(s, DryConstrained)
+    if not explicit or motion.steps < MANY or "friction" not in s.model.program.outputs:
         return ""
     laws = friction_laws(s.model, s.conditions.values)
     rates = np.abs(np.array(motion.step_x)[:, s.n + laws.places])
@@ -105,7 +107,7 @@ def _stiff(s: Constrained, motion: IntegratedMotion) -> str:
     names = ", ".join(f"'{s.model.coordinates[a]}'" for a in laws.places[slow])
     return (
         f"{motion.steps:,} steps were taken, most of them while {names} nearly stood still, where the smooth law of "
-        "friction is stiff: 'friction': 'exact' needs no such steps"
+        "friction is stiff: the method 'Radau' and 'friction': 'exact' need no such steps"
     )
 
 
@@ -138,7 +140,7 @@ def _moved(
     given = x, span, problem.times.grid(), settings
     motion: IntegratedMotion
     if isinstance(s, DryConstrained):
-        motion = integrate_dry(ClosedDryMotion(s, reduction), *given, watches, breaks, told)
+        motion = integrate_dry(ClosedDryMotion(s, reduction), *given, watches, breaks, told, DryRun())
     else:
         watches = [*watches, *(s.corners(span[0], x, folder) if turning else [])]
         motion = integrate(reduction.rates, *given, watches, breaks, told, s.inputs.enter)

@@ -10,10 +10,12 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
+import scipy
 
 from substructures.analysis.closed.branches import FAR, change, singular_part
 from substructures.analysis.closed.constrained import SINGULAR, Singular
 from substructures.analysis.closed.reductions import Reduction
+from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.steppers import Stepper, within
 from substructures.array import Array
 
@@ -68,7 +70,7 @@ class ClosedStepper:
         """An integrator from the present state."""
         y = self.reduction.pack(*self._state(), float(self.y[-1]))
         step = {} if first is None else {"first_step": min(first, self.end - self.t)}
-        return self.make(self.reduction.rates, self.t, y, self.end, **step)
+        return self.make(self.reduction, self.t, y, self.end, **step)
 
     def step(self) -> str | None:
         """Advance by one step, at most to the end; a message when that failed. Raises Singular."""
@@ -117,10 +119,20 @@ class ClosedStepper:
         if self.reduction.choose():
             self._begin(self.inner.h_abs)
         else:
-            # the step goes on from the state on the closures: y and y' there
-            self.inner.y = self.reduction.pack(*self._state(), float(self.y[-1]))
-            self.inner.f = self.reduction.rates(self.t, self.inner.y)
+            self._go_on(self.reduction.pack(*self._state(), float(self.y[-1])))
         self.s.move(self.t, *self._state())
+
+    def _go_on(self, y: Array) -> None:
+        """The next step goes on from the state on the closures: y and y' there."""
+        if isinstance(self.inner, CompiledStepper):
+            self.inner.go_on(y)
+            return
+        self.inner.y = y
+        if isinstance(self.inner, scipy.integrate.BDF):
+            # its differences begin with y; those of higher order stay, as in CVODE beside a projection
+            self.inner.D[0] = y
+        else:
+            self.inner.f = self.inner.fun(self.t, y)
 
     def _begin(self, first: float) -> None:
         self._counted += self.inner.nfev
@@ -197,7 +209,8 @@ class ClosedStepper:
     def rough_output(self) -> Callable[[float], Array]:
         """The same, less accurate, but also where the accelerations are not determined."""
         self.reduction.expect(self._way[0])  # the integrator evaluates once more within the step
-        return self._landed(self.inner.dense_output())
+        plain = self.inner.plain() if isinstance(self.inner, CompiledStepper) else self.inner
+        return self._landed(plain.dense_output())
 
     def _landed(self, dense: Callable[[float], Array]) -> Callable[[float], Array]:
         (first, last), start, end = self._way, self.t_old, self.inner.t

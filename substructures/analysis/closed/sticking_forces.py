@@ -5,6 +5,8 @@ Rows of B have any length, and depend on each other where joints can only move t
 
 from __future__ import annotations
 
+from itertools import combinations
+from math import comb
 from typing import Any
 
 import numpy as np
@@ -18,6 +20,8 @@ from substructures.array import Array
 RANK = 1e-8
 #: of forces, what is left to be shared that counts as none
 NOTHING = 1e-13
+#: so many choices of zeros are looked at one by one
+MANY = 1000
 #: added to B B^T of unit rows, so that it is definite
 DEFINITE = 1e-13
 
@@ -61,12 +65,35 @@ def _shared(A: Array, b: Array, most: Array) -> Array:
         f[free[tight]] = size * (weight[free] * found)[tight]
         free = free[~tight]
         left = b - A @ f
-    # less rounding of the linear programs
+    # less rounding
     return np.asarray(f + A.T @ (b - A @ f))
 
 
 def _least_largest(A: Array, b: Array) -> tuple[Array, NDArray[np.bool_]]:
-    """h with A h = b whose largest |h_i| is least, and which of them are as large whatever the others are."""
+    """h with A h = b whose largest |h_i| is least, and which of them are as large whatever the others are.
+
+    By duality it is the largest b^T y with sum_i |(A^T y)_i| = 1 (r numbers y), which is where r - 1 of the (A^T y)_i
+    are zero; h has the signs of the others.
+    """
+    U, S, V = np.linalg.svd(A, full_matrices=False)
+    rank, k = int((RANK * S[0] < S).sum()), A.shape[1]
+    if not rank:
+        return np.zeros(k), np.ones(k, dtype=np.bool_)
+    # independent rows: V h = S^-1 U^T b
+    A, b = V[:rank], (U.T @ b)[:rank] / S[:rank]
+    if comb(k, rank - 1) > MANY:
+        return _by_linear_program(A, b)
+    zeros = np.array(list(combinations(range(k), rank - 1)), dtype=np.int64)
+    y = np.linalg.svd(A.T[zeros])[2][:, -1] if rank > 1 else np.ones((1, 1))
+    forms = y @ A
+    values = (y @ b) / np.abs(forms).sum(axis=1)
+    best = int(np.abs(values).argmax())
+    form = forms[best] / np.abs(forms[best]).max()
+    return values[best] * np.sign(form), np.abs(form) > RANK
+
+
+def _by_linear_program(A: Array, b: Array) -> tuple[Array, NDArray[np.bool_]]:
+    """The same where there are many choices."""
     k = A.shape[1]
     ones = np.ones((k, 1))
     # least s with h - s <= 0 and -h - s <= 0

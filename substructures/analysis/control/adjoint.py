@@ -54,6 +54,8 @@ from substructures.tree.model import Model, require_open
 
 ID = "inverse_dynamics"
 WEIGHT = "lambda.0"
+#: among what is varied it stands for the horizon, on which all times but the first depend
+HORIZON = "t"
 MOTION = ("metric", "force", "running_cost")
 ADJOINT = ("adjoint_q", "adjoint_qd", "control_gradient", "parameter_gradient")
 TERMINAL = ("terminal_cost", "terminal_q", "terminal_qd", "terminal_parameters")
@@ -83,10 +85,10 @@ def adjoint_equations(
     """The adjoint equations of a model for controls (names of inputs), a cost, and ``varied`` parameters.
 
     Raises InvalidInput for names that are not known (``/controls/i``, ``/varied/i``), for faults in the cost
-    (``/cost/running``), and for closures.
+    (``/cost/running``), and for closures. HORIZON among ``varied`` gives the derivatives by time there.
     """
     require_known("controls", "input", controls, inputs_of(model))
-    require_known("varied", "parameter", varied, model.parameters)
+    require_known("varied", "parameter", varied, {*model.parameters, HORIZON})
     require_open(model.closures, LINEAR)
     scope = Scope(Graph())
     source = derived(model, ID)

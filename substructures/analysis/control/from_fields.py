@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import fields
 from typing import Any
 
-from substructures.analysis.control.nonlinear_program import Demands
+from substructures.analysis.control.demands import Demands
 from substructures.analysis.control.problem import ControlProblem
 from substructures.documents.grouped import take
 

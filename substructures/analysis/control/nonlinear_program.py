@@ -1,133 +1,121 @@
-"""Optimal control as a nonlinear program: controls and starts of segments are the variables.
+"""Optimal control as a nonlinear program: controls u, starts s of segments, parameters p and the horizon T are unknown.
 
-    minimise J(u, s)    subject to    end_k(u, s) = s_(k+1),    end_last = what the end demands,    bounds on u
+    minimise J(u, s, p, T)    subject to    end_k = s_(k+1),    end_last = what the end demands,
+                                            bounds on u, p, T,  low <= c(x, u, t, p) <= high at all nodes
 
 (direct multiple shooting; all derivatives by the discrete adjoint of substructures.analysis.control.shooting).
 """
 
 from __future__ import annotations
 
-import sys
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any
-
 import numpy as np
 
-from substructures.analysis.arguments import real, whole
+from substructures.analysis.control.adjoint import HORIZON
+from substructures.analysis.control.demands import Demands, bounds_of, demanded, ranges_of, segments_of
+from substructures.analysis.control.path_limits import PathLimits
 from substructures.analysis.control.problem import ControlProblem, initial_state, per_node
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.control.warm_start import WarmStart, warm_start
+from substructures.analysis.given import require_known
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.errors import InvalidArgument, among
-from substructures.quantities.measured import numeric
+from substructures.errors import InvalidArgument
 from substructures.tree.model import Model
 
 #: variables and conditions: the solver's time grows with their third power
 MAX_VARIABLES = 2_000
 #: the cost of a motion that is not finite
 BEYOND = 1e30
-#: segments that are taken where nothing says how many
-SEGMENTS = 10
-MAX_ITERATIONS = 100_000
-
-
-#: numbers of the last state, None where nothing is demanded: all in the order of the coordinates, or some by name
-Demanded = Sequence[float | None] | Mapping[str, float | None]
-
-
-@dataclass(frozen=True)
-class End:
-    """Demands on the last state: ``q`` [rad, m] and ``qd`` [rad/s, m/s]."""
-
-    q: Demanded = field(default_factory=dict)
-    qd: Demanded = field(default_factory=dict)
-
-
-@dataclass(frozen=True)
-class Demands:
-    """What an optimum must meet, and how it is searched for.
-
-    ``end``: demands on the last state; ``bounds``: least and largest value by control [N m, N], None for none;
-    ``guess``: controls to begin with, by name one number or one for each node; ``segments``: divides the intervals
-    (default: the largest such up to 10); ``tolerance``: change of the cost at which the search ends, after
-    ``iterations`` at the latest. Raises InvalidArgument.
-    """
-
-    end: End = field(default_factory=End)
-    bounds: Mapping[str, tuple[float | None, float | None]] = field(default_factory=dict)
-    guess: Mapping[str, Any] = field(default_factory=dict)
-    segments: int | None = None
-    iterations: int = 500
-    tolerance: float = 1e-8
-
-    def __post_init__(self) -> None:
-        if self.segments is not None:
-            whole(self.segments, "segments", 1, sys.maxsize)
-        whole(self.iterations, "iterations", 1, MAX_ITERATIONS)
-        object.__setattr__(self, "tolerance", real(self.tolerance, "/tolerance"))
-        if not 0 < self.tolerance < 1:
-            code = "greater-than" if self.tolerance <= 0 else "less-than"
-            message = f"'tolerance' must lie between 0 and 1, found {self.tolerance:g}"
-            raise InvalidArgument.at("/tolerance", code, message)
 
 
 class ShootingProgram:
-    """The nonlinear program. Variables: controls (nodes, m), then the starts of all segments but the first."""
+    """The nonlinear program. Variables z: controls (nodes, m), the starts of all segments but the first, and what is
+    varied beside them: parameters, and the horizon last.
+    """
 
     def __init__(self, model: Model, problem: ControlProblem, wanted: Demands) -> None:
         self.model, self.problem, self.wanted, self.size = model, problem, wanted, 2 * model.dof
-        self.S = wanted.segments or max(k for k in range(1, SEGMENTS + 1) if problem.intervals % k == 0)
-        if problem.intervals % self.S:
-            message = f"{self.S} segments do not divide {problem.intervals} intervals"
-            raise InvalidArgument.at("/segments", "not-a-divisor", message)
-        self.demands = [*_demanded(model, wanted.end.q, "q", 0), *_demanded(model, wanted.end.qd, "qd", model.dof)]
+        self.S = segments_of(problem, wanted)
+        require_known("free_parameters", "parameter", wanted.free_parameters, model.parameters)
+        self.varied = (*wanted.free_parameters, *([] if wanted.free_horizon is None else [HORIZON]))
+        if not (problem.controls or self.varied):
+            message = "nothing is unknown: name controls, 'free_parameters', or a 'free_horizon'"
+            raise InvalidArgument.at("/controls", "too-short", message)
+        self.demands = [*demanded(model, wanted.end.q, "q", 0), *demanded(model, wanted.end.qd, "qd", model.dof)]
         self.first = initial_state(model, problem)
-        self.bounds = _bounds(problem.controls, wanted)
+        self.bounds = bounds_of(problem.controls, wanted)
+        self.ranges = ranges_of(wanted)
         self.m = len(problem.controls)
         self.split = problem.nodes * self.m
         self.rows = (self.S - 1) * self.size + len(self.demands)
-        size = self.split + (self.S - 1) * self.size + self.rows
+        self.own = self.split + (self.S - 1) * self.size
+        size = self.own + len(self.varied) + self.rows
         if size > MAX_VARIABLES:
             message = (
                 f"{size:,} variables and conditions; the limit is {MAX_VARIABLES:,}: take fewer intervals or segments"
             )
             raise InvalidArgument.at("/intervals", "too-large", message)
-        self.shooting = Shooting(model, problem, (), self.S)
+        self.shooting = Shooting(model, problem, self.varied, self.S)
+        self.limits_on_path = PathLimits(model, wanted.path, problem.controls, self.varied) if wanted.path else None
+        self.earlier = None if wanted.warm_start is None else warm_start(wanted.warm_start, model.coordinates)
         self._at: tuple[bytes, Rollout, Slope] | None = None
+        self._require_start()
 
     def guess(self) -> Array:
-        """Controls that were given; starts of segments on a line from the first state to the demanded one."""
-        controls = np.clip(per_node(self.problem, self.wanted.guess, "guess"), *self.bounds)
+        """Controls that were given; starts of segments on a line from the first state to the demanded one; all as in
+        the earlier result where there is one.
+        """
+        controls = per_node(self.problem, self.wanted.guess, "guess")
+        values = {**self.shooting.values, HORIZON: self.problem.horizon}
+        share = np.arange(1, self.S) / self.S
+        starts = self._line(share)
+        if self.earlier is not None:
+            _warm(self.problem, self.earlier, controls)
+            starts = self.earlier.state(share)
+            values |= self.earlier.parameters
+            values[HORIZON] = self.earlier.horizon or self.problem.horizon
+        others = np.clip([values[name] for name in self.varied], *self.ranges) if self.varied else []
+        return np.concatenate([np.clip(controls, *self.bounds).ravel(), starts.ravel(), others])
+
+    def _line(self, share: Array) -> Array:
         end = self.first.copy()
         for i, value in self.demands:
             end[i] = value
         # s_k = x_0 + k/S (x_end - x_0)
-        share = np.arange(1, self.S)[:, None] / self.S
-        return np.concatenate([controls.ravel(), (self.first + share * (end - self.first)).ravel()])
+        return np.asarray(self.first + share[:, None] * (end - self.first), dtype=np.float64)
 
     def parts(self, z: Array) -> tuple[Array, Array]:
         """Starts (S, 2 n) and controls (nodes, m)."""
-        starts = np.concatenate([self.first, z[self.split :]]).reshape(self.S, self.size)
-        return starts, z[: self.split].reshape(-1, self.m)
+        starts = np.concatenate([self.first, z[self.split : self.own]]).reshape(self.S, self.size)
+        return starts, z[: self.split].reshape(self.problem.nodes, self.m)
+
+    def found(self, z: Array) -> tuple[dict[str, float], float]:
+        """Parameters that are varied, and the horizon."""
+        # the solver may step outside by rounding
+        values = dict(zip(self.varied, np.clip(z[self.own :], *self.ranges).tolist(), strict=True))
+        return values, values.pop(HORIZON, self.problem.horizon)
+
+    def shooting_at(self, z: Array) -> Shooting:
+        """The equations with the parameters and the horizon of z."""
+        return self.shooting.at(*self.found(z)) if self.varied else self.shooting
 
     def evaluated(self, z: Array) -> tuple[Rollout, Slope]:
         """The motion, and the derivatives of the cost (row 0) and of every end state (other rows)."""
         key = z.tobytes()
         if self._at is None or self._at[0] != key:
-            run = self.shooting.run(*self.parts(z))
-            unit = (
-                np.concatenate([np.zeros((1, self.size)), np.eye(self.size)]) if self.rows else np.zeros((1, self.size))
-            )
+            shooting = self.shooting_at(z)
+            run = shooting.run(*self.parts(z))
+            needed = self.rows or self.limits_on_path is not None
+            unit = np.concatenate([np.zeros((1, self.size)), np.eye(self.size)]) if needed else np.zeros((1, self.size))
             ends = np.repeat(unit[:, None], self.S, axis=1)
-            slope = self.shooting.pullback(run, ends, np.eye(len(unit))[0])
+            slope = shooting.pullback(run, ends, np.eye(len(unit))[0])
             self._at = key, run, slope
         return self._at[1], self._at[2]
 
     def cost(self, z: Array) -> tuple[float, Array]:
         """J and its gradient."""
         run, slope = self.evaluated(z)
-        gradient = np.concatenate([slope.controls[0].ravel(), slope.start[0, 1:].ravel()])
+        gradient = np.concatenate([slope.controls[0].ravel(), slope.start[0, 1:].ravel(), slope.parameters[0]])
         if not (np.isfinite(run.cost) and np.isfinite(gradient).all()):
             return BEYOND, np.zeros_like(z)
         return run.cost, gradient
@@ -146,59 +134,103 @@ class ShootingProgram:
         _, slope = self.evaluated(z)
         result = np.zeros((self.rows, len(z)))
         kept = [range(self.size)] * (self.S - 1) + [[i for i, _ in self.demands]]
-        at, per = 0, slope.parts.shape[2] - 1
+        at = 0
         for s, indices in enumerate(kept):
             for i in indices:
-                # d end_(s,i)/du: the nodes of segment s alone
-                own = slope.parts[1 + i, s].ravel()
-                first = s * per * self.m
-                own = own[: self.split - first]
-                result[at, first : first + len(own)] = own
-                # d end_(s,i)/ds_s, and -1 for s_(s+1)
-                if s:
-                    before = self.split + (s - 1) * self.size
-                    result[at, before : before + self.size] = slope.start[1 + i, s]
+                self._by_end(result[at], slope, s, i)
+                # -1 for s_(s+1)
                 if s < self.S - 1:
                     result[at, self.split + s * self.size + i] = -1
                 at += 1
         return np.nan_to_num(result, nan=0.0, posinf=0.0, neginf=0.0)
 
+    def _by_end(self, row: Array, slope: Slope, s: int, i: int) -> None:
+        """d end_(s,i)/dz into a row of zeros."""
+        # the nodes of segment s alone
+        first = s * (slope.parts.shape[2] - 1) * self.m
+        own = slope.parts[1 + i, s].ravel()[: self.split - first]
+        row[first : first + len(own)] = own
+        if s:
+            before = self.split + (s - 1) * self.size
+            row[before : before + self.size] = slope.start[1 + i, s]
+        row[self.own :] = slope.shares[1 + i, s]
+
+    def on_path(self, z: Array) -> tuple[Array, Array]:
+        """What must not be negative, distances to the limits of the path at all nodes, and its derivatives by z."""
+        path = self.limits_on_path
+        if path is None:
+            return np.zeros(0), np.zeros((0, len(z)))
+        run, slope = self.evaluated(z)
+        starts, controls = self.parts(z)
+        shooting, nodes = self.shooting_at(z), np.arange(self.S + 1)
+        u = controls[np.minimum(nodes, self.problem.nodes - 1)]
+        t = self.problem.t + nodes / self.S * shooting.problem.horizon
+        value, by = path.at(shooting, np.concatenate([starts, run.end[-1:]]), u, t)
+        slopes = np.zeros((self.S + 1, len(path.texts), len(z)))
+        for k in nodes:
+            self._by_node(slopes[k], by[k], int(k), slope)
+        # c - low and high - c, where they are finite
+        signs = [(1.0, path.low, np.isfinite(path.low)), (-1.0, path.high, np.isfinite(path.high))]
+        rows = [(sign * (value - limit))[self._first_free :, some].ravel() for sign, limit, some in signs]
+        ways = [(sign * slopes)[self._first_free :, some].reshape(-1, len(z)) for sign, _, some in signs]
+        return np.nan_to_num(np.concatenate(rows), nan=-BEYOND, posinf=BEYOND, neginf=-BEYOND), np.nan_to_num(
+            np.concatenate(ways), nan=0.0, posinf=0.0, neginf=0.0
+        )
+
+    def _by_node(self, rows: Array, by: Array, k: int, slope: Slope) -> None:
+        """dc/dz at the node k into rows of zeros (expressions, variables), from dc/d(x, u, varied) ``by``."""
+        n, node = self.size, min(k, self.problem.nodes - 1)
+        if k == self.S:
+            ends = np.zeros((n, rows.shape[1]))
+            for i in range(n):
+                self._by_end(ends[i], slope, self.S - 1, i)
+            rows += by[:, :n] @ ends
+        elif k:
+            rows[:, self.split + (k - 1) * n : self.split + k * n] += by[:, :n]
+        rows[:, node * self.m : (node + 1) * self.m] += by[:, n : n + self.m]
+        others = by[:, n + self.m :].copy()
+        if self.varied and self.varied[-1] == HORIZON:
+            # t = t_0 + k/S T
+            others[:, -1] *= k / self.S
+        rows[:, self.own :] += others
+
+    def _require_start(self) -> None:
+        """The first state is given: what it alone decides must hold. Raises InvalidArgument."""
+        path = self.limits_on_path
+        #: the first node with a limit that anything unknown can meet
+        self._first_free = 0
+        if path is None:
+            return
+        z = self.guess()
+        value, by = path.at(self.shooting_at(z), self.first[None], self.parts(z)[1][:1], np.full(1, self.problem.t))
+        if by[0, :, self.size :].any():
+            return
+        self._first_free = 1
+        for text, x, outside in zip(path.texts, value[0], path.excess(value)[0], strict=True):
+            if outside > 0:
+                message = f"the motion starts at {x:g}: no control helps; give another 'q', 'qd' or limit"
+                raise InvalidArgument.at(f"/path/{escape(text)}", "start-outside", message)
+
     def limits(self) -> tuple[Array, Array]:
         """Bounds of all variables."""
         free = np.full((self.S - 1) * self.size, np.inf)
         low, high = (np.broadcast_to(b, (self.problem.nodes, self.m)).ravel() for b in self.bounds)
-        return np.concatenate([low, -free]), np.concatenate([high, free])
+        return np.concatenate([low, -free, self.ranges[0]]), np.concatenate([high, free, self.ranges[1]])
+
+    def violation(self, z: Array) -> float:
+        """The largest violation of a demand."""
+        outside = -float(self.on_path(z)[0].min(initial=0))
+        return max(float(np.abs(self.residual(z)).max(initial=0)), outside)
 
     def progress(self, z: Array) -> tuple[float, float]:
-        """Cost, and largest residual."""
-        return self.cost(z)[0], float(np.abs(self.residual(z)).max(initial=0))
+        """Cost, and the largest violation."""
+        return self.cost(z)[0], self.violation(z)
 
 
-def _demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[int, float]]:
-    """(index in (q, q'), value) of every demand. Raises InvalidArgument."""
-    pointer = f"/end/{field}"
-    if not isinstance(given, Mapping):
-        if len(given) != model.dof:
-            raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {model.dof} coordinates")
-        given = dict(zip(model.coordinates, given, strict=True))
-    for name in given:
-        if name not in model.coordinates:
-            message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates)}"
-            raise InvalidArgument.at(f"{pointer}/{escape(name)}", "unknown-coordinate", message)
-    pairs = ((a, given.get(name)) for a, name in enumerate(model.coordinates))
-    return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
-
-
-def _bounds(controls: Sequence[str], wanted: Demands) -> tuple[Array, Array]:
-    """Least and largest values of the controls, (m,). Raises InvalidArgument."""
-    low, high = np.full(len(controls), -np.inf), np.full(len(controls), np.inf)
-    for name, (least, most) in wanted.bounds.items():
-        pointer = f"/bounds/{escape(name)}"
-        if name not in controls:
-            message = f"'{name[:80]}' is not one of the controls{among(name, controls)}"
-            raise InvalidArgument.at(pointer, "unknown-input", message)
-        i = controls.index(name)
-        low[i], high[i] = -np.inf if least is None else least, np.inf if most is None else most
-        if not low[i] <= high[i]:
-            raise InvalidArgument.at(pointer, "empty", f"no number lies between {least} and {most}")
-    return low, high
+def _warm(problem: ControlProblem, earlier: WarmStart, controls: Array) -> None:
+    """Controls of the earlier result into those that were guessed."""
+    times = np.arange(problem.nodes) / problem.intervals
+    for i, name in enumerate(problem.controls):
+        column = earlier.column(name, times, problem.hold)
+        if column is not None:
+            controls[:, i] = column

@@ -2,12 +2,14 @@
 
 The nonlinear program of substructures.analysis.control.nonlinear_program is solved by sequential quadratic programming
 (D. Kraft, A software package for sequential quadratic programming, DFVLR-FB 88-28, 1988), or by L-BFGS-B where only
-bounds are demanded (both in SciPy). One segment is single shooting; more of them start from a guess of the motion and
-are better conditioned for long and unstable motions (multiple shooting).
+bounds are demanded (both in SciPy). The horizon and parameters may be unknown beside the controls, or alone. One
+segment is single shooting; more of them start from a guess of the motion and are better conditioned for long and
+unstable motions (multiple shooting).
 
 A result is judged by the necessary conditions of the optimum: the gradient of the Lagrangian vanishes in all free
-variables (Karush, Kuhn and Tucker), all demands hold, and, where l and the forces do not depend on time, the
-Hamiltonian is constant along the motion up to the discretisation of the controls (L. S. Pontryagin).
+variables, with multipliers of the right sign for bounds and limits that are reached (Karush, Kuhn and Tucker), all
+demands hold, and, where l and the forces do not depend on time, the Hamiltonian is constant along the motion up to the
+discretisation of the controls (L. S. Pontryagin); it is zero where the horizon is free and phi does not name the time.
 
 Example, a cart pendulum swung up in two seconds by a force of at most 20 N::
 
@@ -28,9 +30,10 @@ import scipy
 
 from substructures.analysis.arguments import positive
 from substructures.analysis.control.cost_gradient import trajectory
-from substructures.analysis.control.nonlinear_program import BEYOND, Demands, ShootingProgram
+from substructures.analysis.control.demands import Demands
+from substructures.analysis.control.nonlinear_program import BEYOND, ShootingProgram
 from substructures.analysis.control.problem import ERROR_LIMIT, ControlProblem, require_solvable
-from substructures.analysis.control.shooting import Rollout
+from substructures.analysis.control.shooting import Rollout, Shooting
 from substructures.analysis.control.step_error import motion_checks
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
@@ -41,10 +44,14 @@ from substructures.tree.model import Model
 STEPS = "the motion is not as accurate as 'error_limit' asks for: take more 'steps' or 'intervals'"
 #: no demands
 FREE = Demands()
+#: which of the variables
+Flags = np.ndarray[Any, np.dtype[np.bool_]]
 #: called with the number of an iteration, the cost and the violation
 IterationReport = Callable[[int, float, float], None]
 #: stationarity (relative to the largest derivative of the cost) that counts as an optimum
 STATIONARY = 1e-3
+#: distance of a limit along the path that counts as none, relative to the largest
+REACHED = 1e-6
 
 ADVICE = {
     "optimal": "",
@@ -58,8 +65,10 @@ class Optimum:
     """The best ``controls`` found (nodes, m) [N m, N], in the order of ``names``, with their cost and motion.
 
     ``status``: optimal; feasible (demands hold, not stationary yet); failed (they do not, or the motion is not
-    accurate); ``message`` says what to change.
-    ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost;
+    accurate); ``message`` says what to change. ``horizon`` [s] and ``parameters``: those given, or found where they
+    were unknown.
+    ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost or, where it
+    is larger, to the cost over the largest variable;
     ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
     where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
     series of substructures.analysis.control.cost_gradient, and the demands as its checks.
@@ -70,6 +79,8 @@ class Optimum:
     cost: float
     names: tuple[str, ...]
     controls: Array
+    horizon: float
+    parameters: dict[str, float]
     trajectory: Trajectory
     stationarity: float
     violation: float
@@ -105,9 +116,10 @@ def optimal_control(
 
     ``progress`` is called after every iteration with its number, the cost and the violation; what it raises ends the
     search. The motion under the controls that were found is judged by a second run with steps half as long, from the
-    start to the end in one piece: it may differ by ``error_limit``, relative. Demands that are not met are a result
-    with status ``failed`` and advice. Raises InvalidInput (``/controls/i``, ``/end/q``, ``/bounds/name``,
-    ``/segments``, ...) and MissingValue. Source: see above.
+    start to the end in one piece: it may differ, and leave limits of the path, by ``error_limit``, relative. Demands
+    that are not met are a result with status ``failed`` and advice. Raises InvalidInput (``/controls/i``, ``/end/q``,
+    ``/bounds/name``, ``/path/expression``, ``/free_parameters/name``, ``/free_horizon``, ``/segments``, ...) and
+    MissingValue. Source: see above.
     """
     require_solvable(model, problem)
     return _searched(ShootingProgram(model, problem, demands), positive(error_limit, "error_limit"), progress)
@@ -132,32 +144,37 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
     """SLSQP; L-BFGS-B without conditions."""
     wanted, bounds = search.wanted, scipy.optimize.Bounds(*search.limits())
     common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": note}
-    if not search.rows:
+    if not search.rows and search.limits_on_path is None:
         options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance, "gtol": 1e-10}
         return scipy.optimize.minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
-    conditions = {"type": "eq", "fun": search.residual, "jac": search.jacobian}
+    conditions: list[dict[str, Any]] = []
+    if search.rows:
+        conditions.append({"type": "eq", "fun": search.residual, "jac": search.jacobian})
+    if search.limits_on_path is not None:
+        one, by = (lambda x: search.on_path(x)[0]), (lambda x: search.on_path(x)[1])
+        conditions.append({"type": "ineq", "fun": one, "jac": by})
     options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}
-    return scipy.optimize.minimize(search.cost, z, method="SLSQP", constraints=[conditions], options=options, **common)
+    return scipy.optimize.minimize(search.cost, z, method="SLSQP", constraints=conditions, options=options, **common)
 
 
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:
     """The necessary conditions at z."""
     cost, _ = search.cost(z)
     nu, stationarity = _multipliers(search, z)
-    residual = search.residual(z)
-    violation = float(np.abs(residual).max(initial=0))
+    violation = search.violation(z)
     limit = max(1e-6, 10 * search.wanted.tolerance)
     status: Literal["optimal", "feasible", "failed"] = "failed"
     if violation <= limit and cost < BEYOND:
         status = "optimal" if stationarity <= STATIONARY else "feasible"
     advice = ADVICE[status]
     run, _ = search.evaluated(z)
-    motion, drift = _motion(search, run, nu)
+    shooting, (parameters, horizon) = search.shooting_at(z), search.found(z)
+    motion, drift = _motion(search, shooting, run, nu)
     met: About = ("end", "zero", "the end state and the joints of segments are demanded", "")
     still: About = ("stationarity", "zero", "the gradient of the Lagrangian, relative to that of the cost", "1")
     end = float(motion.t[-1])
     necessary = Check.at(met, violation, end, 1.0, limit), Check.at(still, stationarity, end, 1.0, STATIONARY)
-    accuracy = motion_checks(search.shooting, run, search.first, error_limit)
+    accuracy = motion_checks(shooting, run, search.first, error_limit, search.limits_on_path)
     if not verdict(accuracy):
         # of a motion that is wrong nothing is optimal
         status, advice = "failed" if verdict(accuracy) is False else status, advice or STEPS
@@ -167,6 +184,8 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
         cost,
         tuple(search.problem.controls),
         run.controls,
+        horizon,
+        parameters,
         replace(motion, checks=(*necessary, *accuracy)),
         stationarity,
         violation,
@@ -177,8 +196,10 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
 
 
 def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
-    """Multipliers nu of the conditions, and |d(J + nu . residual)/dz| in the free variables relative to |dJ/dz|."""
-    _, gradient = search.cost(z)
+    """Multipliers nu of the equations, and |d(J + nu . residual - mu . path)/dz| in the free variables relative to
+    |dJ/dz| (J/|z| where that is larger), with mu >= 0 of the limits that are reached.
+    """
+    cost, gradient = search.cost(z)
     A = search.jacobian(z)
     low, high = search.limits()
     margin = 1e-9 * (1 + np.abs(z))
@@ -188,16 +209,32 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     nu = np.zeros(search.rows)
     if search.rows:
         nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
-    slope = gradient + A.T @ nu
-    # at a lower bound the cost may only rise upwards, at an upper one downwards
-    slope[below] = np.minimum(slope[below], 0)
-    slope[above] = np.maximum(slope[above], 0)
-    # |dL/dz| relative to |dJ/dz|
-    largest = float(np.abs(slope).max(initial=0) / max(float(np.abs(gradient).max(initial=0)), 1e-12))
-    return nu, largest
+    # without demands dJ/dz itself vanishes: the cost over the size of the variables is the measure then
+    typical = abs(cost) / (1 + float(np.abs(z).max(initial=0)))
+    size = max(float(np.abs(gradient).max(initial=0)), typical, 1e-12)
+    largest = _left(gradient + A.T @ nu, below, above) / size
+    values, by = search.on_path(z)
+    reached = by[values <= REACHED * max(float(np.abs(values).max(initial=0)), 1.0)]
+    if largest <= STATIONARY or not (len(reached) or below.any() or above.any()):
+        return nu, largest
+    # dJ/dz + A^T nu - C^T mu - low + high = 0 with mu, low, high >= 0: they are not unique, least squares find some
+    unit = np.eye(len(z))
+    columns = np.concatenate([A, -reached, -unit[below], unit[above]]).T
+    least = np.zeros(columns.shape[1])
+    least[: search.rows] = -np.inf
+    found = scipy.optimize.lsq_linear(columns, -gradient, (least, np.inf), method="bvls").x
+    signed, mu = found[: search.rows], found[search.rows : search.rows + len(reached)]
+    left = _left(gradient + A.T @ signed - reached.T @ mu, below, above) / size
+    return (signed, left) if left < largest else (nu, largest)
 
 
-def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:
+def _left(slope: Array, below: Flags, above: Flags) -> float:
+    """The largest derivative that is not zero; at a lower bound the cost may rise, at an upper one fall."""
+    slope = np.where(below, np.minimum(slope, 0), slope)
+    return float(np.abs(np.where(above, np.maximum(slope, 0), slope)).max(initial=0))
+
+
+def _motion(search: ShootingProgram, shooting: Shooting, run: Rollout, nu: Array) -> tuple[Trajectory, float | None]:
     """The trajectory with the costates of the Lagrangian, and the drift of the Hamiltonian."""
     # L = J + nu . (end - demand): nu are the costates at the ends of segments
     ends = np.zeros((search.S, search.size))
@@ -205,12 +242,13 @@ def _motion(search: ShootingProgram, run: Rollout, nu: Array) -> tuple[Trajector
     ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
     for k, (i, _) in enumerate(search.demands):
         ends[-1, i] = nu[gaps + k]
-    shooting = search.shooting
     motion = trajectory(shooting, run, shooting.pullback(run, ends[None], np.ones(1)))
     motion = with_limits(shooting.model, shooting.problem.parameters, motion)
     program = search.shooting.equations.program
     if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
         return motion, None
     # dH/dt = 0 along an optimal motion where neither l nor the forces depend on t
-    H = motion.series["hamiltonian"]
-    return motion, float(np.ptp(H) / max(float(np.abs(H).max()), 1e-12))
+    H, n = motion.series["hamiltonian"], shooting.model.dof
+    # with a free horizon H is zero: lambda_q . q' is one of its terms
+    terms = (motion.series["costates"][:, :n] * motion.qd).sum(axis=1)
+    return motion, float(np.ptp(H) / max(float(np.abs(H).max()), float(np.abs(terms).max()), 1e-12))

@@ -26,6 +26,7 @@ from substructures.expr.program import Symbol
 from substructures.loads.scope import Scope
 from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.states import read_states
+from substructures.tree.document import require_unconstrained
 from substructures.tree.model import Model, require_open
 
 MAX_INTERVALS = 10_000
@@ -61,8 +62,9 @@ NO_COST = Cost()
 class ControlProblem:
     """What is controlled, what it costs, and how the equations of motion are discretised.
 
-    ``controls``: names of inputs. A control is constant in each of the ``intervals`` of the ``horizon`` [s] (``hold``:
-    constant) or linear between its ends (linear); ``steps``: Runge-Kutta steps in each of them. The motion starts at
+    ``controls``: names of inputs, none where parameters or the horizon are sought alone. A control is constant in each
+    of the ``intervals`` of the ``horizon`` [s] (``hold``: constant) or linear between its ends (linear); ``steps``:
+    Runge-Kutta steps in each of them. The motion starts at
     ``q`` [rad, m] with ``qd`` [rad/s, m/s] (default: at rest) at the time ``t`` [s]; ``inputs``: constant values of the
     other inputs [N m, N] (default: their own, or 0); ``parameters`` instead of their defaults. Raises InvalidArgument.
     """
@@ -80,8 +82,8 @@ class ControlProblem:
     parameters: Mapping[str, float] | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.controls, str) or not self.controls:
-            raise InvalidArgument.at("/controls", "too-short", "a list of at least one input is needed")
+        if isinstance(self.controls, str):
+            raise InvalidArgument.at("/controls", "list-expected", "a list of inputs is needed")
         object.__setattr__(self, "controls", tuple(self.controls))
         object.__setattr__(self, "horizon", positive(self.horizon, "horizon"))
         whole(self.intervals, "intervals", 1, MAX_INTERVALS)
@@ -99,6 +101,7 @@ class ControlProblem:
 
 def require_solvable(model: Model, problem: ControlProblem) -> None:
     """Raises InvalidInput for names that the model does not have, too many steps, and closures."""
+    require_unconstrained(model.constraint_names, "optimal-controls")
     require_open(model.closures, LINEAR)
     known, controls = inputs_of(model), problem.controls
     faults = [

@@ -13,7 +13,7 @@ Congress 1984); all segments and all rows of a Jacobian are integrated in one ba
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, replace
 from typing import Any
@@ -22,6 +22,7 @@ import numpy as np
 
 from substructures.analysis.control.adjoint import (
     ADJOINT,
+    HORIZON,
     MOTION,
     TERMINAL,
     WEIGHT,
@@ -65,19 +66,30 @@ class Rollout:
 
 @dataclass(frozen=True)
 class Slope:
-    """Derivatives of W numbers: by the ``start`` of each segment (W, S, 2 n), the ``controls`` (W, nodes, m) and the
-    varied ``parameters`` (W, r); ``costates`` (W, J + 1, S, 2 n) before every step and at the ends; ``parts``
-    (W, S, intervals/S + 1, m): what each segment adds to the derivatives by its nodes."""
+    """Derivatives of W numbers: by the ``start`` of each segment (W, S, 2 n), the ``controls`` (W, nodes, m) and what
+    is varied, ``parameters`` (W, r), which are the sum of those of all segments, ``shares`` (W, S, r); ``costates``
+    (W, J + 1, S, 2 n) before every step and at the ends; ``parts`` (W, S, intervals/S + 1, m): what each segment adds
+    to the derivatives by its nodes."""
 
     start: Array
     controls: Array
     parts: Array
-    parameters: Array
+    shares: Array
     costates: Array
+
+    @property
+    def parameters(self) -> Array:
+        """By what is varied, (W, r)."""
+        return self.shares.sum(axis=1)
 
 
 class Shooting:
     """The equations of a problem as compiled code. ``segments`` must divide ``problem.intervals``.
+
+    HORIZON among ``varied`` stands for the horizon T: with h = T / steps and t_i = t_0 + s_i T, and the multipliers
+    bar_i of the stages of the adjoint scheme,
+
+        dJ/dT = sum_i (H(bar_i) / T + s_i dH/dt)
 
     Raises InvalidInput (see adjoint_equations) and MissingValue for a parameter without a value.
     """
@@ -87,7 +99,9 @@ class Shooting:
         self.equations = adjoint_equations(model, problem.controls, problem.cost, varied)
         self.values = _constants(model, problem, self.equations)
         source = self.equations.program
-        self.motion, self.adjoint = compile_program(source, MOTION), compile_program(source, ADJOINT)
+        self.free = HORIZON in varied
+        self.motion = compile_program(source, MOTION)
+        self.adjoint = compile_program(source, (*ADJOINT, "hamiltonian") if self.free else ADJOINT)
         self.terminal = compile_program(source, TERMINAL)
         self.hamiltonian = compile_program(source, ("hamiltonian",))
         self.h = problem.horizon / (problem.intervals * problem.steps)
@@ -131,6 +145,14 @@ class Shooting:
         finer.segments, finer.h, finer.count = 1, self.h / 2, 2 * self.count * self.segments
         return finer
 
+    def at(self, parameters: Mapping[str, float], horizon: float) -> Shooting:
+        """The same problem for other values of parameters and another horizon; what was compiled is shared."""
+        other = copy(self)
+        other.problem = replace(self.problem, horizon=horizon)
+        other.h = horizon / (self.problem.intervals * self.problem.steps)
+        other.values = {**self.values, **parameters}
+        return other
+
     def pullback(self, run: Rollout, ends: Array, costs: Array) -> Slope:
         """Derivatives of ``ends``_ws . end_s + ``costs``_w cost for (W, S, 2 n) and (W,), by one pass backwards."""
         n, (W, S, _) = self.model.dof, ends.shape
@@ -138,7 +160,8 @@ class Shooting:
         lam = np.array(ends, dtype=np.float64)
         lam[:, -1] += costs[:, None] * np.concatenate([last["terminal_q"][0], last["terminal_qd"][0]])
         parts = np.zeros((W, S, self.problem.intervals // S + 1, run.controls.shape[1]))
-        parameters = costs[:, None] * last["terminal_parameters"][0]
+        shares = np.zeros((W, S, len(self.equations.varied)))
+        shares[:, -1] = costs[:, None] * last["terminal_parameters"][0]
         costates = np.empty((W, self.count + 1, S, 2 * n))
         costates[:, -1] = lam
         with np.errstate(all="ignore"):
@@ -152,11 +175,11 @@ class Shooting:
                     before = -np.concatenate([found["adjoint_q"], found["adjoint_qd"]], axis=-1)
                     total += before
                     self._to_nodes(parts, found["control_gradient"], j, i)
-                    parameters = parameters + found["parameter_gradient"].sum(axis=1)
+                    shares += self._by_varied(found, j, i)
                 # lambda_j = lambda_(j+1) + sum_i before_i
                 lam = lam + total
                 costates[:, j] = lam
-        return Slope(lam, self._joined(parts), parts, parameters, costates)
+        return Slope(lam, self._joined(parts), parts, shares, costates)
 
     def hamiltonians(self, run: Rollout, costates: Array) -> Array:
         """H before every step and at the last end, (S J + 1,), for the costates (J + 1, S, 2 n) of the cost."""
@@ -206,6 +229,17 @@ class Shooting:
         else:
             parts[:, :, k] += (1 - inside) * bar
             parts[:, :, k + 1] += inside * bar
+
+    def _by_varied(self, found: dict[str, Array], j: int, i: int) -> Array:
+        """Derivatives by what is varied at a stage, (W, S, r)."""
+        result = found["parameter_gradient"]
+        if self.free:
+            # H(bar_i) / T + s_i dH/dt
+            interval, inside = self._place(j, i)
+            share, at = (interval + inside) / self.problem.intervals, self.equations.varied.index(HORIZON)
+            result = result.copy()
+            result[..., at] = share * result[..., at] + found["hamiltonian"] / self.problem.horizon
+        return result
 
     def _joined(self, parts: Array) -> Array:
         """Derivatives by all nodes, (W, nodes, m)."""

@@ -11,24 +11,43 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from substructures.analysis.control.path_limits import PathLimits
 from substructures.analysis.control.problem import MAX_NUMBERS
 from substructures.analysis.control.shooting import Rollout, Shooting, Slope
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 
 HOW = "a second run with steps half as long finds the same: its difference is the error"
+WITHIN = "by how much it leaves its limits, between the nodes, too: more 'intervals' make it less"
 LARGE = "a second run with steps half as long would need too much memory: take fewer 'steps' or 'intervals'"
 #: of numbers that are zero but for it, beside the others
 ROUNDING = 1e-12
 ABRUPT = "the motion is not finite"
 
 
-def motion_checks(shooting: Shooting, run: Rollout, start: Array, limit: float) -> tuple[Check, ...]:
-    """Cost and motion of ``run`` are those of a run with half the steps from ``start`` (2 n,), in one piece."""
-    reason = _unable(shooting, run)
+def motion_checks(
+    shooting: Shooting, run: Rollout, start: Array, limit: float, path: PathLimits | None = None
+) -> tuple[Check, ...]:
+    """Cost and motion of ``run`` are those of a run with half the steps from ``start`` (2 n,), in one piece, which
+    keeps the limits of the ``path`` at all its steps.
+    """
+    reason, names = _unable(shooting, run), () if path is None else path.texts
     if reason:
-        return _left_out(("cost", "q", "qd"), reason)
-    return tuple(_motion(shooting, run, shooting.refined().run(start[None], run.controls), limit))
+        return _left_out(("cost", "q", "qd", *names), reason)
+    finer = shooting.refined()
+    two = finer.run(start[None], run.controls)
+    return (*_motion(shooting, run, two, limit), *(_kept(finer, two, path, limit) if path is not None else ()))
+
+
+def _kept(finer: Shooting, two: Rollout, path: PathLimits, limit: float) -> Iterator[Check]:
+    """Each expression stays within its limits, up to a part of the largest number of both."""
+    t = np.asarray(finer.problem.t + finer.h * np.arange(len(two.states)), dtype=np.float64)
+    value, _ = path.at(finer, two.states, finer.controls_at_steps(two.controls), t)
+    outside = path.excess(value)
+    for i, text in enumerate(path.texts):
+        sizes = [float(np.abs(value[:, i]).max(initial=0)), *(abs(x) for x in (path.low[i], path.high[i]))]
+        scale = max(x for x in (*sizes, 0.0) if np.isfinite(x))
+        yield Check.of((text, "zero", WITHIN, ""), outside[:, i], t, scale, limit)
 
 
 def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float) -> tuple[Check, ...]:

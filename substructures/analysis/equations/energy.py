@@ -101,15 +101,18 @@ def judged_energy(
     f: ModelFormulas, vanishes: VanishingOnAllSides, given: frozenset[str]
 ) -> tuple[EnergyRule, str] | None:
     """The rule of the energy and the reason; None where an input that varies is part of V."""
-    if depends_on([f.scalar("potential_energy")], given):
+    if depends_on([f.scalar("potential_energy")], given) or not f.is_scleronomic:
         return None
-    idle = f"; {closures_of(f.model)} do no work" if f.model.closures else ""
+    idle = f"; {constraints_in(f.model)} do no work" if f.multipliers else ""
+    if f.model.driven:
+        idle = "; Jacobi's T_2 - T_0 + V, relative to the given motions"
     rule = rule_of(f, f.power, vanishes)
     if rule == "constant":
         return rule, f"all forces have a potential that does not depend on time: Q_a q'^a + V' = 0{idle}"
     if rule == "falling":
         return rule, f"forces without potential are linear in the velocities: it falls where they damp{idle}"
-    return rule, f"it changes by the power of {_culprits(f, vanishes)}{idle}"
+    culprits = "the given motions and of forces without potential" if f.model.driven else _culprits(f, vanishes)
+    return rule, f"it changes by the power of {culprits}{idle}"
 
 
 def rule_of(f: ModelFormulas, power: Expr, vanishes: Callable[[Expr], bool]) -> EnergyRule:
@@ -133,9 +136,11 @@ def _culprits(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> str:
     return f"forces that are not in V: those on {names} have a potential, but none in closed form was found"
 
 
-def closures_of(model: Model) -> str:
-    """All closures by name, as part of a sentence."""
-    return "the closures " + ", ".join(f"'{rows.name}'" for rows in model.closures)
+def constraints_in(model: Model) -> str:
+    """All closures and velocity constraints by name, as part of a sentence."""
+    closures = "the closures " + ", ".join(f"'{rows.name}'" for rows in model.closures)
+    others = "the velocity constraints " + ", ".join(f"'{name}'" for name in model.constraint_names)
+    return " and ".join([closures] * bool(model.closures) + [others] * bool(model.constraint_names))
 
 
 def depends_on(exprs: Sequence[Expr], names: Iterable[str]) -> bool:

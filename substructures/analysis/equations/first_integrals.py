@@ -1,13 +1,14 @@
 """First integrals of a model as formulas, each with the reason why it is constant (notation.md, section 7).
 
-Energy: H' = Q_a q'^a + V' is the zero formula. Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0,
-then p_c = g_cb q'^b. The same for constant directions c^a across the coordinates: c^a p_a (:mod:`.symmetries`).
+Energy: H' = Q_a q'^a + V' is the zero formula; of given motions Jacobi's (section 12), beside momenta alone.
+Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0, then p_c = g_cb q'^b. The same for constant
+directions c^a across the coordinates: c^a p_a (:mod:`.symmetries`).
 Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero formula, which is so
 exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
 Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
-g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0.
-What is zero is decided by the graph, where equal formulas are one node, and by
-:mod:`substructures.expr.calculus.vanish`.
+g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0. So do
+velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. What is zero is decided by the
+graph, where equal formulas are one node, and by :mod:`substructures.expr.calculus.vanish`.
 """
 
 from __future__ import annotations
@@ -18,19 +19,21 @@ from functools import lru_cache
 from itertools import chain
 from typing import Literal
 
-from substructures.analysis.equations.energy import closures_of, depends_on, judged_energy
-from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
+from substructures.analysis.equations.energy import constraints_in, depends_on, judged_energy
+from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.free_motion import FreeMotion
 from substructures.analysis.equations.generators import Generators
 from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.kernels import Known, known_model
+from substructures.analysis.equations.nonholonomic.constrained_formulas import Constraints, formulas_of, rows_expected
+from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.subsystems import subsystems
 from substructures.analysis.equations.symmetries import Direction, directions
 from substructures.certificate.derived.integrals import constant
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.calculus.corners import VanishingOnAllSides, corners
-from substructures.expr.differentiate import directional
+from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, array, program
 from substructures.expr.walk import transfer
@@ -38,9 +41,12 @@ from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import Model
+from substructures.tree.model_outputs import KINEMATICS
 
+Names = frozenset[str]
 AXES = "xyz"
 UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
+MOMENTA = [f"{name}{given}" for name in UNITS for given in ("", "_0")]
 
 
 def first_integrals(
@@ -50,10 +56,10 @@ def first_integrals(
     search finds among integrals of this ``degree`` in the momenta at most, in models that are small enough for it
     (``searched`` tells).
 
-    ``inputs``: inputs that may have any value (default: those whose own default is not 0); all others are 0.
-    ``zero``: parameters that are 0.
-    What the reactions of closures could change, whatever they are, is not constant.
-    Raises InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
+    ``inputs``: inputs that may have any value (default: those whose own default is not 0); all others are 0, as are
+    the parameters ``zero``.
+    What the reactions of closures and velocity constraints could change, whatever they are, is not constant. Raises
+    InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     if degree not in (1, 2):
         message = f"integrals of degree {str(degree)[:80]} in the momenta are not looked for: give 1 or 2"
@@ -68,7 +74,7 @@ def first_integrals(
     ]
     if faults:
         raise InvalidArgument(faults)
-    return _first_integrals(known_model(model), frozenset(inputs), frozenset(zero), degree)
+    return _found(known_model(model), constraints_of(model), frozenset(inputs), frozenset(zero), degree)
 
 
 def acting_inputs(model: Model) -> list[str]:
@@ -77,23 +83,22 @@ def acting_inputs(model: Model) -> list[str]:
 
 
 @lru_cache(maxsize=32)
-def _first_integrals(known: Known, given: frozenset[str], zero: frozenset[str], degree: int) -> FirstIntegrals:
+def _found(known: Known, tied: Constraints, given: Names, zero: Names, degree: int) -> FirstIntegrals:
     model: Model = known.source
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
-    f = ModelFormulas(model, unused | zero)
+    f = formulas_of(model, tied, unused | zero)
     search = _Search(f)
     search.energy(given)
     search.momenta()
     search.cyclic()
     search.further(given)
     searched = search.beyond(degree)
-    outputs = {i.name: Formulas((), {(): x}) for i, x in search.found}
-    outputs["power"] = Formulas((), {(): f.power})
+    outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
     integrals = tuple(i for i, _ in search.found)
-    result, rows = program(f.graph, outputs, f.symbols), multipliers_of(model)
-    expectation = constant(result, [vars(each) for each in integrals], rows)
+    result, rows = program(f.graph, outputs, f.symbols), f.multipliers
+    expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result))
+    needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
-    needs = (*DYNAMICS, "linear_momentum", "angular_momentum", "rotation", "U", "Omega")
     result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
     return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
 
@@ -114,11 +119,14 @@ class _Search:
             self.found.append((Integral("energy", "energy", judged[0], "J", judged[1]), self.f.energy))
 
     def further(self, given: frozenset[str]) -> None:
-        """Those beside the momenta that are no combinations of them and of their products."""
+        """Those beside the momenta that are no combinations of them and of their products; none at given motions."""
+        if self.f.model.driven:
+            return
         for integral, value in self.found:
             if integral.rule == "constant" and integral.kind != "energy":
                 self.generators.add(value)
-        for integral, value in chain(self.freely.spin(), subsystems(self.f, self.vanishes, given)):
+        blocks = subsystems(self.f, self.vanishes, given) if self.f.is_scleronomic else ()
+        for integral, value in chain(self.freely.spin(), blocks):
             self._note_new(integral, value)
 
     def beyond(self, degree: int) -> tuple[int, str]:
@@ -145,19 +153,20 @@ class _Search:
         # d_c g_ab = Gamma_abc + Gamma_bac
         slopes = {(min(a, b), max(a, b), c): x + gamma.get((b, a, c), self.zero) for (a, b, c), x in gamma.items()}
         varied = {c for (_, _, c), x in slopes.items() if not self.vanishes(x)}
-        if f.model.closures:
-            # dphi_k/dq^c = G_kc
-            varied |= {c for (_, c), x in f.elements("closure.jacobian").items() if not self.vanishes(x)}
+        # dphi_k/dq^c = G_kc, or B_kc
+        varied |= {c for (_, c), x in f.constraint_rows.items() if not self.vanishes(x)}
+        rows = gradient(f.drives, f.model.coordinates)
+        varied |= {c for row in rows for c, x in enumerate(row) if not self.vanishes(x)}
         for c, name in enumerate(f.model.coordinates):
             if c not in varied and self.vanishes(forces[c]):
                 self.cyclic_names.append(name)
                 unit = "N m s" if f.model.joints[c] == "R" else "N s"
                 reason = f"the metric does not depend on '{name}' and no generalised force acts on it"
-                reason += f"; {closures_of(f.model)} do not depend on it" if f.model.closures else ""
+                reason += f"; {constraints_in(f.model)} do not depend on it" if f.multipliers else ""
                 self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
         moving = {i: x for i, x in slopes.items() if i[2] in varied}
         cyclic = [f.model.coordinates.index(name) for name in self.cyclic_names]
-        for direction in directions(f, moving, cyclic, self.vanishes):
+        for direction in () if f.model.driven else directions(f, moving, cyclic, self.vanishes):
             self._symmetry(direction)
 
     def _symmetry(self, found: Direction) -> None:
@@ -169,7 +178,7 @@ class _Search:
         direction = {f.model.coordinates[a]: texts.get(k, "0") for k, (a, _) in enumerate(components)}
         moved = ", ".join(f"'{name}' by {text}" for name, text in direction.items())
         reason = f"neither the metric nor the power of the forces changes when these move together: {moved}"
-        reason += f"; {closures_of(f.model)} do not change either" if f.model.closures else ""
+        reason += f"; {constraints_in(f.model)} do not change either" if f.multipliers else ""
         unit = "N m s" if f.model.joints[components[-1][0]] == "R" else "N s"
         name = "symmetry." + "-".join(direction)
         self._note(Integral(name, "symmetry", "constant", unit, reason, direction), found.of(f.momenta, f.graph))
@@ -197,6 +206,8 @@ class _Search:
         self._about(angular, pull)
         if not all(self.vanishes(rate) for rate in rates):
             self._along_axes(linear, angular)
+        if self.f.model.driven:
+            return
         self.freely = FreeMotion(self.f, linear, angular, constant, self._constant, self.vanishes)
         for integral, value in self.freely.with_time():
             self._note(integral, value)
@@ -204,7 +215,8 @@ class _Search:
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
         # momentum_i = n_ai q'^a
-        result = [self.zero] * 3
+        given = self.f.elements(f"{name}_0") if self.f.model.driven else {}
+        result = [given.get((i,), self.zero) for i in range(3)]
         for (a, i), x in self.f.elements(name).items():
             result[i] = result[i] + x * self.f.rates[a]
         return result
@@ -215,7 +227,7 @@ class _Search:
             return
         word = "force along" if kind == "linear_momentum" else "moment about"
         where = "" if kind == "linear_momentum" else " through the origin"
-        world = f"{closures_of(self.f.model)} and the world" if self.f.model.closures else "the world"
+        world = f"{constraints_in(self.f.model)} and the world" if self.f.multipliers else "the world"
         reason = f"gravity, loads and {world} exert no resultant {word} {label}{where}"
         self._note(Integral(f"{kind}.{label}", kind, "constant", UNITS[kind], reason), value)
 

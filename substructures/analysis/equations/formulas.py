@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
+from typing import Any
+
+import numpy as np
 
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.errors import InvalidDocument
@@ -11,22 +14,42 @@ from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.quantities.numbers.workspace import Workspace
+from substructures.tree.document import require_unconstrained
 from substructures.tree.model import Model, require_open
 
 #: what takes closures
 MOTIONS = "use loop states, simulations or velocity equations with constraints of the type 'closure'"
 
 
-def require_moving(model: Model) -> None:
-    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves."""
+def require_moving(model: Model, what: str = "linearisations") -> None:
+    """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves, and
+    (``has-velocity-constraints``) where ``what`` would ignore those of the tree.
+    """
+    require_unconstrained(model.constraint_names, what)
     if not model.dof:
-        raise InvalidDocument.at("", "no-coordinates", "the tree has no joint: there is nothing that moves")
+        why = "the motions of all coordinates are given" if model.driven else "the tree has no joint"
+        raise InvalidDocument.at("", "no-coordinates", f"{why}: there is nothing that moves")
 
 
-def require_tree(model: Model) -> None:
+def require_tree(model: Model, what: str = "this analysis") -> None:
     """Raises InvalidDocument: as :func:`require_moving`, and ``has-closures`` for a model with closed loops."""
-    require_moving(model)
+    require_moving(model, what)
     require_open(model.closures, MOTIONS)
+
+
+def unsteady(model: Model, inputs: Mapping[str, Any]) -> str:
+    """Why nothing can rest relative to the drives of a model, by its formulas and the values of ``inputs``; else
+    nothing. Formulas without given motions are taken at the time that is said.
+    """
+    if not model.driven:
+        return ""
+    used = {symbol.name for symbol in model.program.select(["metric", "bias", "forces"]).symbols}
+    if "t" in used:
+        return "the given motions make the equations depend on the time"
+    for name in (f"{name}{primes}" for name in model.driven for primes in ("", "'")):
+        if name in used and name in model.inputs and np.any(np.asarray(inputs.get(f"{name}'", 0))):
+            return f"the equations depend on '{name}', which changes: the input '{name}'' is not 0"
+    return ""
 
 
 def inputs_of(model: Model) -> tuple[str, ...]:
@@ -62,37 +85,65 @@ class ModelFormulas(Workspace):
         return self.factors.solve([f - b + r for f, b, r in zip(forces, bias, self.reactions, strict=True)])
 
     @cached_property
+    def multipliers(self) -> tuple[str, ...]:
+        """The symbols of those of the rows that hold the motion, of closures."""
+        return multipliers_of(self.model)
+
+    @cached_property
+    def constraint_rows(self) -> Mapping[tuple[int, ...], Expr]:
+        """G_ka of these rows."""
+        return self.elements("closure.jacobian") if self.multipliers else {}
+
+    @cached_property
+    def is_scleronomic(self) -> bool:
+        """Whether these rows do no work: closures that move with drives do."""
+        return not (self.model.driven and self.model.closures)
+
+    @cached_property
     def reactions(self) -> list[Expr]:
         """G^T lambda of closures, with a symbol ``lambda.<closure>.<row>`` [N, N m] for every row; else zeros."""
         result = [self.graph.zero] * self.n
-        names = multipliers_of(self.model)
+        names = self.multipliers
         for name in names:
             unit = "N" if name.rpartition(".")[2] in ("x", "y", "z", "length") else "N m"
             self.symbols[name] = Symbol(name, "input", unit)
-        for (k, a), x in self.elements("closure.jacobian").items() if names else ():
+        for (k, a), x in self.constraint_rows.items():
             result[a] = result[a] + x * self.graph.symbol(names[k])
         return result
 
     @cached_property
     def momenta(self) -> list[Expr]:
-        """p_a = g_ab q'^b."""
-        g = self.elements("metric")
+        """p_a = dT/dq'^a: g_ab q'^b, and g_a0 of given motions."""
+        g, mixed = self.elements("metric"), self.elements("g_a0") if self.model.driven else {}
         result = [self.graph.zero] * self.n
         for (a, b), x in sorted(g.items()):
             result[a] = result[a] + x * self.rates[b]
-        return result
+        return [p + mixed.get((a,), 0) for a, p in enumerate(result)]
+
+    @cached_property
+    def drives(self) -> list[Expr]:
+        """g_a0 that are not zero, and g_00; none without given motions."""
+        return [*self.elements("g_a0").values(), self.scalar("g_00")] if self.model.driven else []
 
     @cached_property
     def energy(self) -> Expr:
-        """H = T + V."""
+        """H = T + V; of given motions Jacobi's T_2 - T_0 + V."""
+        if self.model.driven:
+            return self.scalar("T_2") - self.scalar("T_0") + self.scalar("potential_energy")
         twice = self.graph.sum(p * v for p, v in zip(self.momenta, self.rates, strict=True))
         return twice / 2 + self.scalar("potential_energy")
 
     @cached_property
     def power(self) -> Expr:
-        """H' = Q_a q'^a + V': what forces without potential feed in (T' = Q_a q'^a because g' - 2C is skew)."""
+        """H' = Q_a q'^a + V': what forces without potential feed in (T' = Q_a q'^a because g' - 2C is skew); of given
+        motions H' = Q_a q'^a + V' - d_t T.
+        """
         work = self.graph.sum(f * v for f, v in zip(self.vector("forces"), self.rates, strict=True))
-        return work + self.along_motion([self.scalar("potential_energy")])[0]
+        result = work + self.along_motion([self.scalar("potential_energy")])[0]
+        if not self.model.driven:
+            return result
+        kinetic = self.graph.sum(self.scalar(name) for name in ("T_2", "T_1", "T_0"))
+        return result - directional([kinetic], self.time)[0]
 
     def along_motion(self, exprs: Sequence[Expr]) -> list[Expr]:
         """Derivatives with respect to time where q'' does not occur: seeds q' for q, 1 for t."""
@@ -104,4 +155,4 @@ class ModelFormulas(Workspace):
         return directional(exprs, self._seeds() | accelerations)
 
     def _seeds(self) -> dict[str, Expr]:
-        return {str(x.value): v for x, v in zip(self.q, self.rates, strict=True)} | {"t": self.graph.one}
+        return {str(x.value): v for x, v in zip(self.q, self.rates, strict=True)} | self.time

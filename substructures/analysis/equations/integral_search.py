@@ -47,8 +47,9 @@ FREE, SMALL = 1e-9, 1e-7
 def not_searched(f: ModelFormulas) -> str | None:
     """Why a model is not searched."""
     size = len(f.model.program.select(NEEDED))
-    if f.model.closures:
-        return "the model has closures"
+    if f.multipliers or f.model.driven:
+        held = "the model has velocity constraints" if f.model.velocity_constraints else "the model has closures"
+        return held if f.multipliers else "motions are given"
     if f.n > MOST:
         return f"{f.n} coordinates; the limit is {MOST}"
     if size > LIMIT:
@@ -120,11 +121,14 @@ def _candidates(ansatz: Ansatz, known: Generators) -> list[list[Column]]:
     if not (np.isfinite(values).all() and np.isfinite(rates).all()):
         return []
     found, trial = [], known.copy()
-    for support, c in _dependent(rates[: 2 * len(ansatz.columns) + 50]):
-        value = values[:, support] @ c
+    # of functions that depend on each other, as products of harmonics do, the first ones
+    some = 2 * len(ansatz.columns) + 50
+    own = np.delete(np.arange(len(ansatz.columns)), [support[-1] for support, _ in _dependent(values[:some])])
+    for support, c in _dependent(rates[:some, own]):
+        value = values[:, own[support]] @ c
         if trial.are_new(value):
             trial.add_values(value)
-            found.append([ansatz.columns[j] for j in support])
+            found.append([ansatz.columns[j] for j in own[support]])
     return found
 
 

@@ -29,6 +29,7 @@ from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
 from substructures.quantities.numbers.workspace import ID
+from substructures.tree.document import require_undriven
 from substructures.tree.model import Model, require_open
 
 #: operations without a derivative at a zero of their argument
@@ -69,6 +70,8 @@ def perturbation(model: Model) -> Program:
 @lru_cache(maxsize=32)
 def _perturbation(known: Known) -> Program:
     model: Model = known.source
+    if model.closures:
+        require_undriven(model.driven, "take simulations, or loop states")
     require_smooth(model)
     f = ModelFormulas(model)
     source = inverse_dynamics_jacobians(model)

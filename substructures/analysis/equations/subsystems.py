@@ -1,7 +1,8 @@
 """Subsystems that do not mix: blocks of coordinates, each with an energy of its own (notation.md, section 7).
 
 Coordinates are of one block where g_ab joins them, where g_ab or a force Q_a of one depends on the other, and where one
-closure holds both. Then g' and Q of a block know nothing of the rest, and with V_B, V where all others are 0,
+closure or velocity constraint holds both. Then g' and Q of a block know nothing of the rest, and with V_B, V where all
+others are 0,
 
     H_B = 1/2 sum over B of p_a q'^a + V_B,        H_B' = sum over B of Q_a q'^a + V_B'
 """
@@ -77,6 +78,6 @@ def _mixed(f: ModelFormulas) -> Iterator[list[int]]:
     for a, x in enumerate(f.vector("forces")):
         yield [a, *within(x)]
     rows: dict[int, set[int]] = {}
-    for (k, a), x in (f.elements("closure.jacobian") if f.model.closures else {}).items():
+    for (k, a), x in f.constraint_rows.items():
         rows[k] = rows.get(k, set()) | {a} | within(x)
     yield from map(sorted, rows.values())

@@ -1,8 +1,8 @@
 """Constant directions c of the configuration space along which nothing changes (Noether): screws, gears, joint moves.
 
 With constant c^e the metric is the same along c where L_c g = c^e d_e g_ab = 0, and the power of the forces on c is
-zero where c^e Q_e = 0; closures allow c where c^e G_ke = 0. Then c^a g_ab q'^b is constant. These are linear
-dependencies between the columns e of the functions
+zero where c^e Q_e = 0; closures and velocity constraints allow c where c^e G_ke = 0. Then c^a g_ab q'^b is constant.
+These are linear dependencies between the columns e of the functions
 
     d_e g_ab = Gamma_abe + Gamma_bae,        Q_e,        G_ke
 
@@ -92,9 +92,8 @@ def _rows(f: ModelFormulas, slopes: Mapping[tuple[int, int, int], Expr]) -> list
     forces = {e: x for e, x in enumerate(f.vector("forces")) if not x.is_zero}
     if forces:
         rows["forces",] = forces
-    if f.model.closures:
-        for (k, e), x in f.elements("closure.jacobian").items():
-            rows.setdefault(("closure", k), {})[e] = x
+    for (k, e), x in f.constraint_rows.items():
+        rows.setdefault(("constraint", k), {})[e] = x
     return list(rows.values())
 
 

@@ -48,6 +48,7 @@ from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel
+from substructures.tree.document import require_undriven
 from substructures.tree.model import require_open
 
 DRIVES = ("armature", "viscous", "coulomb", "offset")
@@ -144,6 +145,7 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     (size, limit). Source: M. Gautier and W. Khalil, 1990 (see above).
     """
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
+    require_undriven(Y.driven, "take the tree without 'driven', or the regressor")
     for i, name in enumerate(drives):
         if name not in DRIVES:
             message = f"{name[:40]!r} is not one of {', '.join(DRIVES)}{meant(name, DRIVES)}"

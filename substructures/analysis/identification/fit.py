@@ -16,16 +16,17 @@ parameters well when its singular value is not small beside the largest.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from typing import Any, Literal
+from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
-from substructures.analysis.arguments import positive
+from substructures.analysis.arguments import positive, real
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.given import StateArray
 from substructures.analysis.identification.base_parameters import BaseParameters
-from substructures.analysis.verdict import Check, verdict
+from substructures.analysis.identification.findings import LIMIT, Excitation, Identification
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
@@ -34,8 +35,6 @@ from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
-#: a scaled regressor of a larger condition number is badly excited
-LIMIT = 1e3
 #: relative size of a singular value that counts as zero
 RANK = 1e-10
 #: what the normal equations may leave
@@ -65,65 +64,6 @@ class _Data:
     outputs: Mapping[str, Array]
 
 
-@dataclass(frozen=True, repr=False)
-class Excitation:
-    """How well given motion excites the base parameters ``names`` (b).
-
-    ``singular_values`` (b,) and ``condition`` of the stacked base regressor with columns of length one; ``rank``;
-    ``weak``: those that take part in badly excited combinations (their share in singular vectors below the limit), the
-    worst first; ``is_good``; ``advice``.
-    """
-
-    names: tuple[str, ...]
-    singular_values: Array
-    condition: float
-    rank: int
-    weak: tuple[str, ...]
-
-    def __repr__(self) -> str:
-        sizes = f"parameters={len(self.names)}, rank={self.rank}, condition={self.condition:.4g}"
-        return f"Excitation({sizes})\n{self.advice or 'every base parameter is excited well'}"
-
-    @property
-    def is_good(self) -> bool:
-        """Every base parameter is excited, and the condition number is moderate."""
-        return self.rank == len(self.names) and self.condition <= LIMIT
-
-    @property
-    def advice(self) -> str:
-        """What to change."""
-        if self.is_good:
-            return ""
-        return "move more joints at a time, faster and farther, so that these parameters show: " + ", ".join(self.weak)
-
-
-@dataclass(frozen=True, repr=False)
-class Identification:
-    """``values`` (b,) in ``units``, their ``deviations`` (b,) (standard), ``residual`` (n,): root mean square of the
-    force that is not explained, by joint [N m, N]; ``excitation``. ``status``: identified; failed where the motion does
-    not excite all base parameters (``values`` is then the solution of least length)."""
-
-    names: tuple[str, ...]
-    units: tuple[str, ...]
-    values: Array
-    deviations: Array
-    residual: Array
-    excitation: Excitation
-    status: Literal["identified", "failed"]
-    message: str
-    checks: tuple[Check, ...] = ()
-
-    @property
-    def is_right(self) -> bool | None:
-        """Whether forces are explained, and parameters known, as accurately as was asked for; None if failed."""
-        return verdict(self.checks, self.status == "identified")
-
-    def __repr__(self) -> str:
-        worst = float(self.residual.max(initial=0))
-        finding = f"failed: {self.message}" if self.status == "failed" else f"largest unexplained force {worst:.4g}"
-        return f"Identification(parameters={len(self.names)}, joints={len(self.residual)})\n{finding}"
-
-
 def excitation(
     base: BaseParameters,
     q: StateArray,
@@ -151,6 +91,7 @@ def identify(
     *,
     parameters: Mapping[str, Any] | None = None,
     model: Model | None = None,
+    held_out: float = 0.0,
     error_limit: float = ERROR_LIMIT,
 ) -> Identification:
     """Base parameters beta from a measured motion: beta = argmin |D^-1 (W beta - tau + known)|^2 (see above).
@@ -158,7 +99,8 @@ def identify(
     ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N]; states also as columns by coordinate; ``qd`` None: at
     rest. ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and
     armature are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is
-    explained by the base parameters alone. Checks: the normal equations hold; the force that is not explained, and the
+    explained by the base parameters alone. ``held_out``: part of the samples, the last ones, that is predicted and not
+    fitted. Checks: the normal equations hold; the force that is not explained, and the
     force that any one standard deviation of a parameter makes, are parts of the force of every joint (root mean
     squares) that may reach ``error_limit``. A motion that does not excite all of them is a result with status
     ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
@@ -167,13 +109,28 @@ def identify(
     motion = _Motion(q, qd, qdd, parameters or {})
     data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
     force = _forces(tau, data)
-    limit = positive(error_limit, "error_limit")
-    return _fitted(base, data, force if model is None else force - _known(model, motion, data), limit)
+    limit, share = positive(error_limit, "error_limit"), real(held_out, "/held_out")
+    if not 0 <= share < 1:
+        raise InvalidArgument.at("/held_out", "out-of-range", f"a part below 1 is needed, found {share:g}")
+    inertial, W = force if model is None else force - _known(model, motion, data), data.outputs[REGRESSOR]
+    kept = len(W) - round(share * len(W))
+    found = _fitted(base, W[:kept], inertial[:kept], limit)
+    return found if kept == len(W) else _predicted(found, W[kept:], inertial[kept:], limit)
 
 
-def _fitted(base: BaseParameters, data: _Data, tau: Array, limit: float) -> Identification:
+def _predicted(found: Identification, W: Array, tau: Array, limit: float) -> Identification:
+    """With what is left of the force of samples that took no part."""
+    left = np.sqrt(np.mean((tau - W @ found.values) ** 2, axis=0))
+    size = np.sqrt(np.mean(tau**2, axis=0))
+    worst = float((left / np.where(size > 0, size, 1.0)).max(initial=0))
+    how = "root mean square of the force that is not predicted, over that of the force, of the worst joint"
+    check = Check.at(("held-out force", "accurate", how, "1"), worst, 0.0, 1.0, limit)
+    return replace(found, held_out=left, checks=(*found.checks, check))
+
+
+def _fitted(base: BaseParameters, W: Array, tau: Array, limit: float) -> Identification:
     """Least squares twice, the second time with the standard deviations of the first as weights."""
-    W, b = data.outputs[REGRESSOR], base.count
+    b = base.count
     judged = _excitation(base.names, W)
     if W.shape[0] * W.shape[1] <= b:
         message = f"{len(W)} samples of {W.shape[1]} joints cannot determine {b} parameters: give more"
@@ -187,7 +144,8 @@ def _fitted(base: BaseParameters, data: _Data, tau: Array, limit: float) -> Iden
     weight = np.tile(1 / np.maximum(sigma, least), len(W))
     values = _solved(flat * weight[:, None], force * weight)
     residual = tau - W @ values
-    spread = _deviations(flat * weight[:, None], residual.reshape(-1) * weight)
+    covariance = _covariance(flat * weight[:, None], residual.reshape(-1) * weight)
+    spread = np.sqrt(np.diag(covariance))
     full = judged.rank == b
     normal = flat * weight[:, None], residual.reshape(-1) * weight, force * weight
     return Identification(
@@ -195,6 +153,7 @@ def _fitted(base: BaseParameters, data: _Data, tau: Array, limit: float) -> Iden
         tuple(base.units[i] for i in base.base),
         values,
         spread,
+        covariance,
         np.sqrt(np.mean(residual**2, axis=0)),
         judged,
         "identified" if full else "failed",
@@ -285,13 +244,14 @@ def _solved(W: Array, tau: Array) -> Array:
     return np.asarray(np.linalg.lstsq(W / scale, tau, rcond=RANK)[0] / scale, dtype=np.float64)
 
 
-def _deviations(W: Array, residual: Array) -> Array:
-    """Square roots of the diagonal of sigma^2 (W^T W)^-1; infinite where W has not full rank."""
+def _covariance(W: Array, residual: Array) -> Array:
+    """sigma^2 (W^T W)^-1; infinite where W has not full rank."""
     length = np.linalg.norm(W, axis=0)
     scale = np.where(length > 0, length, 1.0)
     _, s, V = np.linalg.svd(W / scale, full_matrices=False)
     if s.min(initial=np.inf) <= RANK * s.max(initial=0):
-        return np.full(W.shape[1], np.inf)
+        return np.full((W.shape[1], W.shape[1]), np.inf)
     # cov = sigma^2 V diag(1/s^2) V^T,  sigma^2 = |r|^2 / (rows - columns)
     variance = float(residual @ residual) / (len(W) - W.shape[1])
-    return np.asarray(np.sqrt(variance * np.sum((V / s[:, None]) ** 2, axis=0)) / scale, dtype=np.float64)
+    root = (V / s[:, None]) / scale
+    return np.asarray(variance * (root.T @ root), dtype=np.float64)

@@ -29,7 +29,7 @@ from substructures.tree.model import Model
 RESERVED = frozenset(
     ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
 ) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction"}
-RESERVED |= {POWERS, *REACTIONS}
+RESERVED |= {"contact_forces", POWERS, *REACTIONS}
 
 
 @dataclass(frozen=True)
@@ -113,7 +113,7 @@ class Conditions:
             return g
 
         return [
-            Watch(e.name, level(k), DIRECTIONS[e.direction], e.action == "stop", e.level)
+            Watch(e.name, level(k), DIRECTIONS[e.direction], e.action == "stop", e.level, count=e.count)
             for k, e in enumerate(self.events)
         ]
 
@@ -147,6 +147,7 @@ def read_conditions(
     # u = u(q, q', t), quantities of events and series: one program for all
     expressions = read_expressions(model, groups)
     _check_names(model, start.parameters, followed)
+    _require_rates(model, start.inputs)
     constant = {name: x for name, x in start.inputs.items() if not isinstance(x, (Table, str))}
     found = symbol_values(model, {"parameters": start.parameters, "inputs": constant}, states, needs)
     values = {n: float(np.ravel(v)[0]) for n, v in found.items()}
@@ -170,6 +171,15 @@ def _curves(model: Model, given: Mapping[str, Signal], span: tuple[float, float]
             require_covered(one, span, pointer)
             curves[name] = Curve(one)
     return curves
+
+
+def _require_rates(model: Model, given: Mapping[str, Signal]) -> None:
+    """Raises InvalidArgument (``/inputs/name``, ``missing``) for a driven coordinate that varies without its rate."""
+    for name in [f"{name}{prime}" for name in model.driven for prime in ("", "'")]:
+        rate = f"{name}'"
+        if rate in model.input_names and isinstance(given.get(name), (Table, str)) and rate not in given:
+            message = f"'{name}' moves a coordinate and varies: give its derivative by time, '{rate}', too"
+            raise InvalidArgument.at(f"/inputs/{escape(rate)}", "missing", message)
 
 
 def _check_names(model: Model, parameters: Mapping[str, float], series: Mapping[str, object]) -> None:

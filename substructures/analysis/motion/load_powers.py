@@ -1,7 +1,7 @@
 """Powers of loads and joints along a motion, and whether they add up to the rate of the kinetic energy.
 
-dT/dt = dT/dq^a q'^a + dT/dq'^a q''^a is a derivative of T by formulas, in which no force is; the accelerations are
-those of the motion. Closures do no work; what moves a prescribed coordinate does.
+dT/dt = dT/dq^a q'^a + dT/dq'^a q''^a, and d_t T at given motions, is a derivative of T by formulas, in which no force
+is; the accelerations are those of the motion. Closures do no work; what moves a prescribed or driven coordinate does.
 """
 
 from __future__ import annotations
@@ -31,7 +31,7 @@ from substructures.quantities.numbers.workspace import Workspace
 from substructures.quantities.powers import PowerModel
 from substructures.tree.model import Model
 
-RATE = "kinetic_energy_rate"
+RATE, DRIVES = "kinetic_energy_rate", "drive_powers"
 
 
 def with_powers(
@@ -56,6 +56,10 @@ def with_powers(
         rate = motion.qd[:, model.coordinates.index(name)]
         rows, watts = (*rows, f"prescribed {name}"), motion.series["actuation"][:, k] * rate
         found = np.concatenate([found, watts[:, None]], axis=1)
+    if model.driven:
+        known = values | {f"{name}''": second[:, a] for a, name in enumerate(model.coordinates)}
+        watts = interpret_in_blocks(model.program, known, [DRIVES], len(motion.t))[DRIVES]
+        rows, found = (*rows, *(f"drive {name}" for name in model.driven)), np.concatenate([found, watts], axis=1)
     check = _check(model, values, second, found, motion, limit)
     return replace(motion, series={**motion.series, OUTPUT: found}, loads=rows, checks=(*motion.checks, check))
 
@@ -64,7 +68,7 @@ def kinetic_energy_rate(model: Model) -> Program:
     """dT/dt as a function of q, q', q'' and parameters: the output RATE [W]."""
     r = Workspace(model)
     T = replay(kept(model, "kinetic_energy"), r.graph, {})["kinetic_energy"].entries.get((), r.graph.zero)
-    seeds: dict[str, Expr] = {}
+    seeds: dict[str, Expr] = r.time if model.driven else {}
     for a, name in enumerate(model.coordinates):
         seeds |= {name: r.velocity_symbol(a), f"{name}'": r.acceleration_symbol(a)}
     return r.program({RATE: Formulas((), {(): directional([r.graph.lift(T)], seeds)[0]})})
@@ -98,4 +102,5 @@ def _check(
     violation = (found.sum(axis=1) - rate)[has]
     scale = float(np.abs(found[has]).sum(axis=1).max(initial=0)) or 1.0
     reason = "the powers of gravity, joints, actuators and loads add up to dT/dt"
+    reason = reason.replace(" and loads", ", loads and drives") if model.driven else reason
     return Check.of(("power", "zero", reason, "W"), violation, motion.t[has], scale, limit, noise[has])

@@ -94,7 +94,7 @@ def variational(model: Model, parameters: Sequence[str]) -> Program:
     """``acceleration`` (n,) and its ``variation`` (n,) along the symbols ``d.<name>`` of coordinates, velocities and
     the given parameters. Raises InvalidInput for closures and for a metric that is always singular.
     """
-    require_tree(model)
+    require_tree(model, "sensitivities")
     return _variational(Known(model.program.digest, model), tuple(parameters))
 
 

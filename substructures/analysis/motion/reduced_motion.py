@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import scipy
 
-from substructures.analysis.equations.quasi_velocities import QuasiVelocities
+from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integrators.zeros import Watch
@@ -35,6 +35,13 @@ class ReducedMotion:
         rates = compile_program(equations.program, ["rates"], folder)
         self._move = rates.bind({"rates": self._rates}, values, columns=columns)
         kernel = compile_program(equations.program, wanted, folder)
+        #: v', and the power of constraints that move, which depends on it
+        self._dv, self._power = np.zeros((1, self.p)), np.zeros(1)
+        self._work = None
+        if "constraint_power" in equations.program.outputs:
+            rate = compile_program(equations.program, ["constraint_power"], folder)
+            moving = [*columns, ([f"{name}'" for name in equations.velocities], self._dv), *self.inputs.columns]
+            self._work = rate.bind({"constraint_power": self._power}, values, columns=moving)
         source = equations.program.select(wanted)
         self._laws = Laws(source, kernel, self._out, values, [*columns, *self.inputs.columns])
 
@@ -69,6 +76,10 @@ class ReducedMotion:
         _, acceleration, info = scipy.linalg.lapack.dposv(out["metric"][0], force) if self.p else (None, force, 0)
         result[: self.n], result[-1] = self._rates[0], out["lost_power"][0]
         result[self.n : -1] = acceleration if not info else np.nan
+        if self._work is not None:
+            self._dv[0] = result[self.n : -1]
+            self._work()
+            result[-1] += self._power[0]
         return result
 
     def reduced(self, x: Array) -> Array:

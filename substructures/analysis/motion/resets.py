@@ -86,9 +86,10 @@ class Resets:
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
         n, model = self.conditions.model.dof, self.conditions.model
-        found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, list(ENERGY), 1)
-        metric, potential = (found[name][0] for name in ENERGY)
-        return float(0.5 * x[n:] @ metric @ x[n:] + potential)
+        names = [*ENERGY, "T_0"] if model.driven else list(ENERGY)
+        found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, names, 1)
+        metric, potential, *drives = (found[name][0] for name in names)
+        return float(0.5 * x[n:] @ metric @ x[n:] + potential - sum(drives))
 
 
 def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Problem], Trajectory]) -> Trajectory:

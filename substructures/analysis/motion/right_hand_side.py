@@ -84,7 +84,8 @@ class RightHandSide:
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
         self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, self._x, folder)
-        columns = [(self._names, self._x), *([] if self.inputs is None else self.inputs.columns)]
+        self._varying = [] if self.inputs is None else self.inputs.columns
+        columns = [(self._names, self._x), *self._varying]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
         source = _forward_program(Known(model.program.digest, model), frozenset(zero))
         self._laws = Laws(source, self.kernel, outputs, dict(values) | {"t": self._t}, columns)

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
-from substructures.analysis.equations.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
@@ -54,8 +54,8 @@ class RollingProblem(MotionProblem):
 def simulate_rolling(problem: RollingProblem) -> Trajectory:
     """Integrate the equations of motion with velocity constraints.
 
-    Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter B q'), ``gaps``, ``kinetic_energy``,
-    ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' is zero, gaps are
+    Series: ``v`` (K, p), ``multipliers``, ``constraints`` (K, m; the latter B q' + b), ``gaps``, ``kinetic_energy``,
+    ``potential_energy``, ``work`` [J], varying inputs, and those of the problem. Checks: B q' + b is zero, gaps are
     constant, and T + V - work is, but where springs depend on an input that varies. A span that cannot be finished is
     ``failed``. Raises InvalidInput (also for closures of the model that are not among the constraints; pointers start
     with names of arguments of ``simulate``), MissingValue and TooLarge.
@@ -70,7 +70,7 @@ def simulate_rolling(problem: RollingProblem) -> Trajectory:
     rolling = ReducedMotion(equations, conditions, problem.kind.form, folder)
     rolling.inputs.enter(*problem.span)
     choices = _choices(rolling, problem, folder)
-    y = np.concatenate((*_start(rolling, problem), (0.0,)))
+    y = np.concatenate((conditions.q, _start(rolling, problem), (0.0,)))
     x = choices.begun(start, y)
     if not np.isfinite(rolling.rates(start, y)).all():
         advice = "the accelerations are not determined at the start: check masses, inertias and quasi-velocities"
@@ -135,26 +135,35 @@ def _moved(
     return motion
 
 
-def _start(rolling: ReducedMotion, problem: RollingProblem) -> tuple[Array, Array]:
-    """q and v at the start."""
-    model, names = rolling.equations.model, rolling.equations.velocities
-    q, qd = rolling.conditions.q, rolling.conditions.qd
-    if problem.kind.v is not None and problem.start.qd is not None:
+def _start(rolling: ReducedMotion, problem: RollingProblem) -> Array:
+    """v at the start."""
+    conditions, equations = rolling.conditions, rolling.equations
+    place = conditions.values | dict(zip(equations.model.coordinates, conditions.q, strict=True))
+    qd = None if problem.start.qd is None else conditions.qd
+    return start_velocities(equations, place | {"t": problem.span[0]}, qd, problem.kind.v)
+
+
+def start_velocities(equations: QuasiVelocities, place: Mapping[str, Any], qd: Any, v: Any) -> Array:
+    """The quasi-velocities (p,) that ``v`` gives, (p,) or by name, or velocities ``qd`` (n,) that meet the constraints;
+    0 by default. ``place``: values of coordinates, parameters and t. Raises InvalidArgument.
+    """
+    names = equations.velocities
+    if v is not None and qd is not None:
         raise InvalidArgument.at("/v", "two-velocities", "give either 'v' or 'qd'")
-    place = rolling.conditions.values | dict(zip(model.coordinates, q, strict=True))
-    T = interpret(rolling.equations.program, place, ["T"])["T"]
+    found = interpret(equations.program, {**place, **dict.fromkeys(names, 0.0)}, ["T", "rates"])
+    T, given = found["T"], found["rates"]
     if not np.isfinite(T).all():
         message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
         raise InvalidArgument.at("/q", "singular-start", message)
-    if problem.start.qd is None:
-        return q, _by_name(problem.kind.v, names)
-    # q' = T v, in the sense of least squares, and exact for velocities that meet B q' = 0
-    v = np.asarray(np.linalg.lstsq(T, qd)[0], dtype=np.float64)
-    left = np.abs(T @ v - qd).max(initial=0)
+    if qd is None:
+        return _by_name(v, names)
+    # q' = T v + r, in the sense of least squares, and exact for velocities that meet B q' + b = 0
+    found_v = np.asarray(np.linalg.lstsq(T, qd - given)[0], dtype=np.float64)
+    left = np.abs(T @ found_v + given - qd).max(initial=0)
     if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
         message = f"these velocities violate the constraints by {left:.3g}; give 'v' ({', '.join(names)}) instead"
         raise InvalidArgument.at("/qd", "violated", message)
-    return q, v
+    return found_v
 
 
 def _by_name(given: Any, names: tuple[str, ...]) -> Array:
@@ -181,8 +190,8 @@ def _judged(choices: VelocityChoices, problem: RollingProblem, motion: Integrate
         x[places], found = _series(rolling, t[places], y)
         for name, values in found.items():
             columns.setdefault(name, np.zeros((len(t), *values.shape[1:])))[places] = values
-    # B_ka q'^a
-    slips = np.einsum("kma,ka->km", columns.pop("constraints"), x[:, n:])
+    # B_ka q'^a + b_k
+    slips = np.einsum("kma,ka->km", columns.pop("constraints"), x[:, n:]) + columns.pop("given", 0)
     v = states[:, n:-1] if choices.make is None else x[:, n + _places(equations)]
     series = columns | {"v": v, "work": states[:, -1], "constraints": slips}
     checks = _checks(t, series, problem.drift_limit, conditions.varied_potential())
@@ -213,7 +222,8 @@ def _series(rolling: ReducedMotion, t: Array, y: Array) -> tuple[Array, dict[str
     values: dict[str, Any] = conditions.values | conditions.inputs_at(t, x) | {"t": t}
     values |= dict(zip(rolling.columns, y[:, :-1].T, strict=True))
     values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
-    names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *(["gaps"] if equations.gaps else [])]
+    more = [name for name in ("gaps", "given") if name in equations.program.outputs]
+    names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *more]
     return x, interpret_in_blocks(equations.program, values, names, len(t))
 
 
@@ -243,7 +253,7 @@ def _checks(t: Array, series: Mapping[str, Array], limit: float, varied: Sequenc
     slips = np.abs(series["constraints"]).max(axis=1, initial=0)
     checks = [
         unbalanced(varied) if varied else energy_balance(t, series, not series["work"].any(), limit),
-        Check.of(("constraints", "zero", "B q' = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
+        Check.of(("constraints", "zero", "B q' + b = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
     ]
     if "gaps" in series:
         drift = spread(series["gaps"]).max(axis=1)

@@ -12,9 +12,12 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.contacts.contact_run import ContactRun, again, integrate_contacts, with_contacts
+from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide
+from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.fixed_step import march
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
@@ -59,15 +62,25 @@ class TreeProblem(MotionProblem):
         if self.kind.friction in WHY_NOT and (self.integrator.fixed_step or self.integrator.method == TAYLOR):
             message = f"{WHY_NOT[self.kind.friction]}: leave 'fixed_step' and the method Taylor out"
             raise InvalidArgument.at("/friction", "not-supported", message)
+        if self.kind.contacts and self.integrator.method not in EXPLICIT:
+            words = ", ".join(f"'{method}'" for method in EXPLICIT)
+            message = f"contacts are followed by explicit steps of any size: take one of {words}"
+            place = "/method" if self.integrator.fixed_step is None else "/fixed_step"
+            raise InvalidArgument.at(place, "not-supported", message)
+        if self.kind.contacts and acting(self.events):
+            i = next(i for i, event in enumerate(self.events) if event.reset)
+            message = "events do not act beside contacts, which have impacts of their own: leave 'reset' out"
+            raise InvalidArgument.at(f"/events/{i}/reset", "not-supported", message)
 
 
 def simulate_tree(problem: TreeProblem) -> Trajectory:
     """The motion of a tree from a start over a span of time, with the drift of all its first integrals.
 
     ``series`` of the result, (K,) each: ``energy`` [J], momenta and other first integrals, ``power``
-    [W], ``work`` [J], varying inputs under their names, and those of the problem. What goes wrong on the way is a
-    trajectory with status ``failed``, advice, and the motion up to there. Raises InvalidInput (``has-closures``;
-    pointers start with names of arguments of ``simulate``) and MissingValue.
+    [W], ``work`` [J], varying inputs under their names, and those of the problem; of k contacts ``gaps`` (K, k) [m] and
+    ``contact_forces`` (K, k, 3) [N]. What goes wrong on the way is a trajectory with status ``failed``, advice, and the
+    motion up to there. Raises InvalidInput (``has-closures``; pointers start with names of arguments of ``simulate``)
+    and MissingValue.
     """
     conditions = tree_conditions(problem)
     _check_method(conditions, problem)
@@ -107,6 +120,10 @@ def _simulate(problem: TreeProblem) -> Trajectory:
 def _right_hand_side(conditions: Conditions, problem: TreeProblem, folder: Path | None) -> RightHandSide:
     """x' = f(t, x), with friction by the load of joints where that is asked for."""
     given = problem.model, conditions.values, conditions.zero, conditions
+    if problem.kind.contacts:
+        found = DecidedContacts(*given, problem.kind.contacts, folder)
+        found.require_above(problem.span[0], conditions.start)
+        return found
     if problem.kind.friction == "loaded" and problem.kind.bearings is not None:
         return LoadedRightHandSide(*given, problem.kind.bearings, folder)
     return RightHandSide(*given, folder)
@@ -172,7 +189,11 @@ def _moved(
         watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)
         breaks = conditions.breaks(span)
         if problem.kind.friction == "exact":
-            motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told)
+            motion = integrate_dry(_dry(conditions, f), x, span, outputs, settings, watches, breaks, told, DryRun())
+        elif isinstance(f, DecidedContacts) and turning:
+            motion = integrate_contacts(f, x, span, outputs, settings, watches, breaks, told)
+        elif isinstance(f, DecidedContacts):
+            motion = again(f, x, span, outputs, settings)
         else:
             if turning and problem.integrator.method != TAYLOR:
                 watches = [*watches, *f.corners(span[0], x, folder)]
@@ -205,19 +226,24 @@ def _judged(
     if isinstance(f, LoadedRightHandSide):
         # as by a motor there: what is no force of the formulas changes energy and momenta
         acting += [f"tau.{name}" for name in f.loads.names]
+    if isinstance(f, DecidedContacts):
+        acting += [f"tau.{name}" for name in f.pushed]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
     series = integral_series(model, integrals, states)
     more: tuple[Check, ...] = ()
-    if isinstance(motion, DryRun):
+    if isinstance(motion, ContactRun) and isinstance(f, DecidedContacts):
+        more = with_contacts(f, motion, t, x, series)
+    elif isinstance(motion, DryRun):
         more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
     if isinstance(f, LoadedRightHandSide):
         more = (_with_loads(series, f, states, x, problem.drift_limit),)
     checks = judge(model, integrals, states, series, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
+    told = f.told if isinstance(f, DecidedContacts) else []
     span = reached(t, x[:, : f.n], x[:, f.n : 2 * f.n])
     x = x[results, : 2 * f.n]
     t = t[results]
@@ -231,7 +257,7 @@ def _judged(
         motion.status,
         motion.message,
         motion.steps,
-        crossings(problem.events, motion.found, model.dof),
+        tuple(sorted((*crossings(problem.events, motion.found, model.dof), *told), key=lambda event: event.t)),
         figures,
         motion.cancelled,
         span,

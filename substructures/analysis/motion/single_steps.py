@@ -22,6 +22,8 @@ from substructures.array import Array
 
 #: of steps, and of results, that are done again
 STEPS, RESULTS = 12, 6
+#: what is shorter than so many distances of its times from the next numbers is no step
+SHORT = 100
 #: so many steps at most for one of them
 MOST = 10_000
 #: a time and the state then
@@ -79,7 +81,13 @@ def _chosen(first: IntegratedMotion) -> tuple[list[Way], list[Way]]:
         before = int(np.searchsorted(times, results[k][0])) - 1
         if before >= 0:
             more.append((steps[before], results[k]))
-    return [(a, b) for a, b in found if b[0] > a[0]], [(a, b) for a, b in more if b[0] > a[0]]
+    return [way for way in found if _has_length(way)], [way for way in more if _has_length(way)]
+
+
+def _has_length(way: Way) -> bool:
+    """Whether there is more than rounding between two times: events may happen where a result is wanted."""
+    a, b = way[0][0], way[1][0]
+    return b - a > SHORT * float(np.spacing(max(abs(a), abs(b))))
 
 
 def _spread(count: int, most: int) -> list[int]:

@@ -15,7 +15,8 @@ from substructures.errors import listed
 @dataclass(frozen=True)
 class Crossing:
     """An event: ``name``, when [s], and the state; where it acts the state ``after`` it (q, q'), and by how much the
-    energy has changed [J].
+    energy has changed [J]. ``kind``: what a contact of that name does, impact, lift_off, stick or slip; of an impact
+    with its ``impulse`` along the normal and both tangents [N s].
     """
 
     name: str
@@ -24,10 +25,14 @@ class Crossing:
     qd: Array
     after: tuple[Array, Array] | None = None
     energy_change: float = 0.0
+    kind: str = ""
+    impulse: tuple[float, ...] = ()
 
     def plain(self) -> dict[str, Any]:
         """Plain data."""
-        told = {"name": self.name, "t": self.t, "q": self.q.tolist(), "qd": self.qd.tolist()}
+        told: dict[str, Any] = {"name": self.name, "t": self.t, "q": self.q.tolist(), "qd": self.qd.tolist()}
+        told |= {"kind": self.kind} if self.kind else {}
+        told |= {"impulse": list(self.impulse)} if self.impulse else {}
         if self.after is None:
             return told
         q, qd = self.after

@@ -1,1 +1,3 @@
-"""Periodic orbits with their multipliers, and Lyapunov exponents: what the linear neighbourhood of a motion tells."""
+"""Periodic orbits with their multipliers, Poincare sections, and Lyapunov exponents: whether motions come back, and how
+fast neighbours part.
+"""

@@ -2,15 +2,24 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
-from substructures.analysis.motion.parameter_sensitivity import Variation, require_plain, variational
+from substructures.analysis.motion.parameter_sensitivity import (
+    Variation,
+    require_plain,
+    sensitivities,
+    variational,
+)
+from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.simulation import tree_conditions
+from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
 
 
@@ -23,13 +32,38 @@ class Flow:
 
     def __init__(self, problem: MotionProblem) -> None:
         require_smooth(problem.model)
-        self.conditions, self.choice = tree_conditions(problem), problem.integrator
+        self.problem, self.conditions, self.choice = problem, tree_conditions(problem), problem.integrator
         require_plain(self.conditions, self.choice)
         self.model, self.n = problem.model, problem.model.dof
         self._f = Variation(self.conditions, (), True, self.choice.folder)
         self.start = self.conditions.start
         symbols = (*self.conditions.expressions.symbols, *variational(self.model, ()).symbols)
         self.is_forced = bool(self.conditions.curves) or any(symbol.kind == "time" for symbol in symbols)
+
+    def begun(self, x: Array, _period: float) -> Array:
+        """Where the search begins."""
+        return x
+
+    def motion(self, x: Array, period: float, count: int) -> tuple[Trajectory, Array]:
+        """The motion over a period at so many times, with its checks, and the monodromy matrix (2n, 2n)."""
+        start, n = self.problem.start, self.n
+        motion = sensitivities(
+            self.model,
+            x[:n],
+            (0.0, period),
+            qd=x[n:],
+            inputs=start.inputs,
+            parameters=start.parameters,
+            integrator=self.choice,
+            outputs=SensitivityOutputs(of_start=True, count=count),
+        )
+        without = {name: s for name, s in motion.series.items() if name != "d.start"}
+        return replace(motion, series=without), motion.series["d.start"][-1]
+
+    def volume(self, motion: Trajectory) -> float:
+        """det M = exp of the integral of the divergence; by the trapezoidal rule of a periodic function."""
+        states = np.column_stack([motion.q, motion.qd])
+        return float(np.exp(np.trapezoid(self.divergence(motion.t, states), motion.t)))
 
     def rate(self, t: float, x: Array) -> Array:
         """x' (2n,) at t."""

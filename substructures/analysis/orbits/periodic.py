@@ -9,19 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, Literal
 
 import numpy as np
 
 from substructures.analysis.arguments import positive
 from substructures.analysis.motion.conditions import state_names
-from substructures.analysis.motion.parameter_sensitivity import sensitivities
+from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputTimes
-from substructures.analysis.motion.problems.outputs import SensitivityOutputs
-from substructures.analysis.motion.problems.problem import Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
+from substructures.analysis.orbits.hybrid import HybridFlow
 from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stability
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
@@ -55,27 +56,28 @@ def periodic_orbits(
     parameters: Mapping[str, float] | None = None,
     vary: str | None = None,
     values: Sequence[float] = (),
+    events: Sequence[Event] = (),
     integrator: Integrator = DEFAULT,
 ) -> Family:
     """Orbits of a tree without closures near ``q``, ``qd``: one, or one for each of the ``values`` of ``vary``, a
     parameter or a component of the state that is held there.
 
-    ``inputs``: numbers, tables or expressions in t alone; then the period is given. Raises InvalidInput (pointers start
+    ``inputs``: numbers, tables or expressions in t alone; then the period is given. ``events``: those that act, by
+    their resets; a start at which one of them happens is moved along the motion. Raises InvalidInput (pointers start
     with names of arguments) and MissingValue.
     """
     given = dict(parameters or {})
     start = Start(q, qd, given, inputs or {})
-    problem = MotionProblem(
-        model=model, start=start, times=OutputTimes((0.0, positive(shooting.period, "period"))), integrator=integrator
-    )
+    times = OutputTimes((0.0, positive(shooting.period, "period")))
+    problem = TreeProblem(model=model, start=start, times=times, integrator=integrator, events=events)
     names = state_names(model)
-    _check(model, shooting, vary, names)
+    _check(model, shooting, vary, values, names)
     if vary is None:
         return Family(model.coordinates, None, (_Search(problem, shooting).run(),))
     return Family(model.coordinates, vary, tuple(_family(problem, shooting, vary, values)))
 
 
-def _family(problem: MotionProblem, shooting: Shooting, vary: str, values: Sequence[float]) -> Iterator[Orbit]:
+def _family(problem: TreeProblem, shooting: Shooting, vary: str, values: Sequence[float]) -> Iterator[Orbit]:
     """The orbits for all values, each from the one before."""
     names, start = state_names(problem.model), problem.start
     for value in values:
@@ -90,7 +92,7 @@ def _family(problem: MotionProblem, shooting: Shooting, vary: str, values: Seque
         yield orbit
 
 
-def _check(model: Model, shooting: Shooting, vary: str | None, names: Sequence[str]) -> None:
+def _check(model: Model, shooting: Shooting, vary: str | None, values: Sequence[float], names: Sequence[str]) -> None:
     faults = [
         Fault(f"/hold/{k}", "unknown-name", f"there is no coordinate or velocity '{name[:80]}'{among(name, names)}")
         for k, name in enumerate(shooting.hold)
@@ -106,6 +108,9 @@ def _check(model: Model, shooting: Shooting, vary: str | None, names: Sequence[s
             f"there is no parameter, coordinate or velocity '{vary[:80]}'{among(vary, [*model.parameters, *names])}"
         )
         faults.append(Fault("/vary", "unknown-name", message))
+    if (vary is None) != (len(values) == 0):
+        message = "'vary' says what, and 'values' which ones: give both, or none"
+        faults.append(Fault("/values" if vary else "/vary", "missing", message))
     if faults:
         raise InvalidArgument(faults)
 
@@ -119,8 +124,9 @@ def _with(model: Model, start: Start, place: int, value: float) -> Start:
 
 
 class _Search:
-    def __init__(self, problem: MotionProblem, shooting: Shooting) -> None:
-        self.problem, self.shooting, self.flow = problem, shooting, Flow(problem)
+    def __init__(self, problem: TreeProblem, shooting: Shooting) -> None:
+        self.problem, self.shooting = problem, shooting
+        self.flow = HybridFlow(problem) if problem.events else Flow(problem)
         n, names = self.flow.n, state_names(problem.model)
         self.held = [names.index(name) for name in shooting.hold]
         self.is_fixed = shooting.is_fixed or self.flow.is_forced
@@ -131,6 +137,11 @@ class _Search:
     def run(self) -> Orbit:
         """The orbit, or how far the search came."""
         x, period, best = self.flow.start.copy(), self.shooting.period, np.inf
+        if not self.held:
+            try:
+                x = self.flow.begun(x, period)
+            except EndsEarlyError as error:
+                return self._orbit(x, period, f"the motion from the start has no end: {error}", 0)
         for k in range(ITERATIONS):
             try:
                 step, size = self._step(x, period)
@@ -172,23 +183,19 @@ class _Search:
         return step, float(np.abs(gap).max() / (1 + np.abs(x).max()))
 
     def _orbit(self, x: Array, period: float, message: str, iterations: int) -> Orbit:
-        n, start = self.flow.n, self.problem.start
-        outputs = SensitivityOutputs(of_start=True, count=TIMES)
-        motion = sensitivities(
-            self.problem.model,
-            x[:n],
-            (0.0, period),
-            qd=x[n:],
-            inputs=start.inputs,
-            parameters=start.parameters,
-            integrator=self.problem.integrator,
-            outputs=outputs,
-        )
+        n = self.flow.n
+        try:
+            motion, monodromy = self.flow.motion(x, period, TIMES)
+        except EndsEarlyError as error:
+            message, names = message or str(error), self.problem.model.coordinates
+            motion = Trajectory(names, np.zeros(1), x[None, :n], x[None, n:], status="failed", message=message)
+            monodromy = np.full((2 * n, 2 * n), np.nan)
         if motion.status != "finished":
             message = message or motion.message
-        monodromy = motion.series["d.start"][-1]
-        multipliers = np.linalg.eigvals(monodromy)
-        multipliers = multipliers[np.argsort(-np.abs(multipliers), kind="stable")].astype(complex)
+        multipliers = np.full(2 * n, np.nan, dtype=complex)
+        if np.isfinite(monodromy).all():
+            multipliers = np.linalg.eigvals(monodromy).astype(complex)
+        multipliers = multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
         with np.errstate(divide="ignore", invalid="ignore"):
             exponents = np.log(multipliers) / period
         told: tuple[Any, str] = ("unknown", "no orbit was found")
@@ -196,20 +203,9 @@ class _Search:
         if not message:
             told = stability(multipliers, not self.flow.is_forced)
             checks = (*checks, *self._checks(x, period, motion, monodromy))
-        without = {name: s for name, s in motion.series.items() if name != "d.start"}
-        return Orbit(
-            x[:n],
-            x[n:],
-            period,
-            multipliers,
-            exponents,
-            *told,
-            "failed" if message else "finished",
-            message,
-            iterations,
-            checks,
-            replace(motion, series=without, checks=()),
-        )
+        status: Literal["finished", "failed"] = "failed" if message else "finished"
+        found = x[:n], x[n:], period, multipliers, exponents, *told, status, message, iterations
+        return Orbit(*found, checks, replace(motion, checks=()))
 
     def _checks(self, x: Array, period: float, motion: Trajectory, monodromy: Array) -> list[Check]:
         """The return, the multipliers' product, and the derivatives of the return map against differences."""
@@ -217,8 +213,7 @@ class _Search:
         gap = np.array([np.abs(states[-1] - x - self.turned).max()])
         about: About = ("return", "zero", "after a period the state is the first one", "")
         found = [Check.of(about, gap, last, 1 + float(np.abs(x).max()), RETURN)]
-        # det M = exp(integral of tr f_x); the trapezoidal rule of a periodic function
-        expected = float(np.exp(np.trapezoid(self.flow.divergence(motion.t, states), motion.t)))
+        expected = self.flow.volume(motion)
         sizes = np.abs(np.linalg.eigvals(monodromy))
         reason = "the product of the multipliers is exp of the integral of the divergence of the flow"
         scale = max(expected, 1e-3 * float(np.prod(np.maximum(1.0, sizes))))

@@ -6,6 +6,7 @@ import re
 from collections.abc import Sequence
 
 from substructures.analysis.report.report import (
+    CONCLUSIONS,
     QUANTITIES,
     SECTIONS,
     Coordinate,
@@ -16,7 +17,7 @@ from substructures.analysis.report.report import (
     some_terms,
     told_sizes,
 )
-from substructures.analysis.report.statements import MARK
+from substructures.analysis.report.statements import MARK, Statement
 from substructures.analysis.report.words import DERIVATION, REFERENCE
 from substructures.printers.latex_document import LatexDocument
 from substructures.printers.names import latex_names, latex_of
@@ -65,7 +66,8 @@ def latex_report(found: Report, picture: str = "", document: bool = True, limit:
     printed = {name: found.printed(name, LatexDocument, limit) for name in QUANTITIES if name in found.shown}
     for name, each in printed.items():
         lines += _quantity(found, name, each)
-    lines += _statements(found, "symmetries")
+    for about in CONCLUSIONS:
+        lines += _statements(found, about)
     lines += _sizes(found, printed["metric"])
     lines += [_title("Sources")]
     lines += [_text(f"{s.instance}: {s.title or s.name}. {s.source} {s.license}") for s in found.sources]
@@ -151,8 +153,14 @@ def _quantity(found: Report, name: str, each: Printed) -> list[str]:
     return [*(f"{words(x)}.\n" for x in each.said), *lines, *_statements(found, name)]
 
 
+def _told(each: Statement) -> str:
+    """A statement and what tells more, whose path may end a line behind a slash."""
+    more = rf" More: {words(each.request)}".replace("/", r"/\allowbreak ") if each.request else ""
+    return _named(each.marked) + more
+
+
 def _statements(found: Report, about: str) -> list[str]:
-    said = [_named(each.marked) for each in found.statements if each.about == about]
+    said = [_told(each) for each in found.statements if each.about == about]
     if not said:
         return []
     return [_title(SECTIONS[about]), r"\begin{itemize}", *(rf"\item {text}" for text in said), r"\end{itemize}"]

@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from xml.sax.saxutils import escape
 
 from substructures.analysis.report.report import (
+    CONCLUSIONS,
     QUANTITIES,
     SECTIONS,
     Printed,
@@ -62,7 +63,8 @@ def page_report(found: Report, svg: str = "", limit: int = LIMIT) -> str:
     for name, each in printed.items():
         lines += [*_headed(QUANTITIES[name]), *(f"<p>{_e(x)}.</p>" for x in each.said)]
         lines += [f'{WIDE}<div class="formulas">', *_formulas(each), "</div></div>", *_statements(found, name)]
-    lines += _statements(found, "symmetries")
+    for about in CONCLUSIONS:
+        lines += _statements(found, about)
     lines += _sizes(found, printed["metric"])
     lines += [*_headed("Sources"), "<ul>"]
     lines += [f"<li>{_e(f'{s.instance}: {s.title or s.name}. {s.source} {s.license}')}</li>" for s in found.sources]
@@ -143,7 +145,11 @@ def _name(latex: str, called: str) -> str:
 
 
 def _statements(found: Report, about: str) -> list[str]:
-    said = [f"<li>{_named(each.marked)}</li>" for each in found.statements if each.about == about]
+    said = [
+        f"<li>{_named(each.marked)}{f' More: <code>{_e(each.request)}</code>' if each.request else ''}</li>"
+        for each in found.statements
+        if each.about == about
+    ]
     return [f"<h3>{_e(SECTIONS[about])}</h3><ul>", *said, "</ul>"] if said else []
 
 

@@ -7,9 +7,15 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
+from substructures.analysis.report.bodies import body_statements
+from substructures.analysis.report.influence import influence_statements
+from substructures.analysis.report.omission import omission_statements
+from substructures.analysis.report.rest import rest_of, rest_statements
+from substructures.analysis.report.singular import singular_statements
 from substructures.analysis.report.sizes import SMALL, STATES, ElementSizes, element_sizes, missing_values, sampled
 from substructures.analysis.report.statements import (
     MARK,
+    Names,
     Statement,
     christoffel_statements,
     force_statements,
@@ -28,12 +34,16 @@ from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.numbers.limits import joint_limits
 from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.regressor import RegressorModel
 from substructures.tree.model import Model
 
 #: what is printed, and what it is called
 QUANTITIES = {
     "metric": "Mass matrix",
     "christoffel": "Christoffel symbols of the first kind",
+    "g_a0": "Metric of the given motions, g_a0",
+    "Gamma_ab0": "Velocity forces beside the given motions, Gamma_ab0",
+    "Gamma_a00": "Inertia forces of the given motions, Gamma_a00",
     "forces": "Generalised forces",
 }
 SECTIONS = {
@@ -41,7 +51,13 @@ SECTIONS = {
     "christoffel": "Structure of the Christoffel symbols",
     "forces": "What acts",
     "symmetries": "Symmetries and first integrals",
+    "rest": "Rest and small vibrations",
+    "parameters": "Which parameters matter most",
+    "omissions": "What may be left out",
+    "singular": "Where the mass matrix is singular",
 }
+#: sections that are about no quantity, and stand behind all of them
+CONCLUSIONS = tuple(name for name in SECTIONS if name not in QUANTITIES)
 
 
 @dataclass(frozen=True)
@@ -81,13 +97,16 @@ class SymbolRow:
 
 @dataclass(frozen=True)
 class Heading:
-    """What the report is about: ``title`` and ``description`` of a part, ``notes``: what was assumed."""
+    """What the report is about: ``title`` and ``description`` of a part, ``notes``: what was assumed; ``address``: path
+    of a stored tree, whose requests tell more.
+    """
 
     name: str
     title: str = ""
     description: str = ""
     digest: str = ""
     notes: tuple[str, ...] = ()
+    address: str = ""
 
 
 @dataclass(frozen=True)
@@ -159,7 +178,7 @@ class Report:
             for each in sizes
         ]
         told = {"threshold": SMALL, "states": STATES, "ranges": self.ranges, "entries": entries}
-        heading = vars(self.heading) | {"notes": list(self.heading.notes)}
+        heading = {k: x for k, x in vars(self.heading).items() if k != "address"} | {"notes": list(self.heading.notes)}
         return heading | {
             "dof": self.model.dof,
             "indices_from": 0,
@@ -178,14 +197,18 @@ def _text(metric: Printed, term: Any) -> str:
 
 
 def report(
-    model: Model, definitions: Mapping[str, Definition], heading: Heading, glossary: Program | None = None
+    model: Model,
+    definitions: Mapping[str, Definition],
+    heading: Heading,
+    glossary: Program | None = None,
+    regressor: RegressorModel | None = None,
 ) -> Report:
     """The report about a model; ``definitions``: of its parts, by instance; ``glossary``: names of steps
-    (:mod:`substructures.tree.glossary`).
+    (:mod:`substructures.tree.glossary`); ``regressor``: of the tree, for what is said of whole bodies.
 
-    Statements count the elements of arrays from 1 in words (g[1,2]) and from 0 in lists. Sizes of terms are at the
-    default values of the parameters, over states in the limits of the joints. Formulas are printed when they are asked
-    for. Raises TooLarge then.
+    Statements count the elements of arrays from 1 in words (g[1,2]) and from 0 in lists. Sizes of terms and rest are at
+    the default values of the parameters, sizes over states in the limits of the joints. Formulas are printed when they
+    are asked for. Raises TooLarge then.
     """
     quantities = [name for name in QUANTITIES if name in model.program.outputs]
     whole = model.program.select(quantities)
@@ -198,17 +221,28 @@ def report(
     called = dict(zip(known, short_names(list(known.values())), strict=True))
     shown = {name: _renamed(hoisted(whole.select([name])), called) for name in quantities}
     marked = {name: f"{MARK}{short}{MARK}" for name, short in called.items()}
-    statements = [
-        *metric_statements(model, marked),
-        *christoffel_statements(model, marked),
-        *force_statements(model, marked),
-        *symmetry_statements(model, marked),
-    ]
+    statements = _statements(model, marked, heading.address, regressor)
     sources = tuple(Source(instance, d.name, d.title, d.source, d.license or "") for instance, d in definitions.items())
     return Report(
         heading, model, _coordinates(model, called), _symbols(model, known, called), tuple(statements), sources, shown,
         called, None if glossary is None else renamed(glossary, called),
     )  # fmt: skip
+
+
+def _statements(model: Model, marked: Names, address: str, regressor: RegressorModel | None) -> list[Statement]:
+    """All that is said, in the order of the sections."""
+    rest = rest_of(model)
+    return [
+        *metric_statements(model, marked),
+        *christoffel_statements(model, marked),
+        *force_statements(model, marked),
+        *symmetry_statements(model, marked),
+        *rest_statements(model, marked, rest, address),
+        *influence_statements(model, marked, rest, address),
+        *omission_statements(model, marked, address),
+        *body_statements(model, marked, regressor, address),
+        *singular_statements(model, marked, address),
+    ]
 
 
 def _renamed(program: Program, called: Mapping[str, str]) -> Program:

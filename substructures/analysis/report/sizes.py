@@ -25,6 +25,8 @@ from substructures.tree.model import Model
 #: a share that is called small, states that are sampled, and the range of slides without limits [m]
 SMALL, STATES, SLIDE = 0.02, 400, 1.0
 SEED = 1
+#: errors of the kinetic energy and of forces that are allowed, and a force beside the largest of all that is rounding
+ALLOWED, ROUNDING = 0.01, 1e-12
 
 
 @dataclass(frozen=True)
@@ -104,3 +106,21 @@ def _values(
     names = {s.name: name for s, name in zip(shown.symbols, called, strict=True)}
     with np.errstate(all="ignore"):
         return interpret(terms, {s.name: known[names[s.name]] for s in terms.symbols})
+
+
+def shares(g: Array, others: Array, Q: Array, forces: Array) -> Array:
+    """(K, 2): how wrong kinetic energy and forces are with metrics ``others`` (K, S, n, n) for g (S, n, n) and
+    ``forces`` (K, S, n) for Q (S, n), the larger ones over all states S: |T' - T| <= e T with e the largest
+    |eigenvalue| of g^-1 (g' - g), forces beside the largest |Q_a| of the same coordinate.
+    Raises LinAlgError where g is not positive definite.
+    """
+    # the eigenvalues of g^-1 dg are those of L^-1 dg L^-T, g = L L^T
+    inverse = np.linalg.inv(np.linalg.cholesky(g))
+    changes = inverse @ (others - g) @ inverse.transpose(0, 2, 1)
+    there = np.asarray(np.isfinite(changes).all(axis=(1, 2, 3)) & np.isfinite(forces).all(axis=(1, 2)))
+    energy = np.abs(np.linalg.eigvalsh(np.where(np.isfinite(changes), changes, 0))).max(axis=(1, 2))
+    largest, wrong = np.abs(Q).max(axis=0), np.abs(forces - Q).max(axis=1)
+    # a force that is none but for rounding of its terms is none
+    wrong = np.where(wrong <= ROUNDING * largest.max(initial=0), 0.0, wrong)
+    parts = np.divide(wrong, largest, out=np.where(wrong > 0, np.inf, 0.0), where=largest > 0)
+    return np.where(there[:, None], np.stack([energy, parts.max(axis=1)], axis=1), np.inf)

@@ -29,9 +29,19 @@ Names = Mapping[str, str]
 
 
 @dataclass(frozen=True)
+class Figure:
+    """A number that carries a statement, in its unit."""
+
+    name: str
+    value: float
+    unit: str
+
+
+@dataclass(frozen=True)
 class Statement:
-    """``about``: metric, christoffel, forces or symmetries; ``code``: which statement it is; ``marked``: in words, with
-    names and elements between dollar signs.
+    """``about``: a key of SECTIONS of :mod:`.report`; ``code``: which statement it is; ``marked``: in words, with names
+    and elements between dollar signs; ``figures``: the numbers that carry it; ``request``: method and path that tell
+    more.
     """
 
     about: str
@@ -39,6 +49,8 @@ class Statement:
     marked: str
     entries: tuple[Index, ...] = field(default=())
     coordinates: tuple[str, ...] = ()
+    figures: tuple[Figure, ...] = ()
+    request: str = ""
 
     @property
     def text(self) -> str:
@@ -141,7 +153,8 @@ def christoffel_statements(model: Model, names: Names) -> Iterator[Statement]:
         acting[a].add((b, c))
     free = tuple(model.coordinates[a] for a, some in acting.items() if not some)
     if free:
-        text = f"The equations of {listed(names[c] for c in free)} have no velocity forces."
+        but = " but those of the given motions" if model.driven else ""
+        text = f"The equations of {listed(names[c] for c in free)} have no velocity forces{but}."
         yield Statement("christoffel", "no-velocity-forces", text, coordinates=free)
     centrifugal = {b for some in acting.values() for b, c in some if b == c}
     silent = tuple(name for a, name in enumerate(model.coordinates) if a not in centrifugal)
@@ -199,7 +212,7 @@ def symmetry_statements(model: Model, names: Names) -> Iterator[Statement]:
     for each in found.integrals:
         words = {"constant": "is constant", "falling": "falls", "balance": "changes by the power fed in"}[each.rule]
         condition = " while all inputs are zero" if has_inputs else ""
-        text = f"{_called(each.name, names)} {words}{condition}: {_in_short(each.reason, model, names)}."
+        text = f"{_called(each.name, names)} {words}{condition}: {in_short(each.reason, model, names)}."
         yield Statement("symmetries", each.kind, text, coordinates=tuple(each.direction))
     if not found.cyclic and not found.integrals:
         yield Statement("symmetries", "none", "No coordinate is cyclic, and no first integral follows from a symmetry.")
@@ -212,7 +225,12 @@ def _called(name: str, names: Names) -> str:
     return f"{said} {names.get(rest, rest)}" if dot else said
 
 
-def _in_short(reason: str, model: Model, names: Names) -> str:
+def reason_of(error: Exception) -> str:
+    """Why something cannot be told, without places in documents."""
+    return "; ".join(fault.message for fault in error.faults) if isinstance(error, InvalidInput) else str(error)
+
+
+def in_short(reason: str, model: Model, names: Names) -> str:
     """A reason with the names of coordinates that the other statements have."""
     for name in model.coordinates:
         reason = reason.replace(f"'{name}'", names[name])

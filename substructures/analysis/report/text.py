@@ -11,7 +11,7 @@ from substructures.analysis.report.report import (
     some_terms,
     told_sizes,
 )
-from substructures.analysis.report.statements import MARK
+from substructures.analysis.report.statements import MARK, Statement
 from substructures.printers.render import LIMIT
 from substructures.printers.text import Text
 
@@ -22,7 +22,7 @@ def text_report(found: Report, limit: int = LIMIT) -> str:
     lines = [heading.title or heading.name, "=" * len(heading.title or heading.name), ""]
     lines += [*filter(None, [heading.description]), *heading.notes]
     for about, title in SECTIONS.items():
-        lines += ["", title, *(f"* {each.text}" for each in found.statements if each.about == about)]
+        lines += ["", title, *(f"* {_told(each)}" for each in found.statements if each.about == about)]
     printed = {name: found.printed(name, Text, limit) for name in QUANTITIES if name in found.shown}
     lines += ["", "Sizes of terms", *_sizes(found, printed["metric"])]
     for name, p in printed.items():
@@ -33,6 +33,11 @@ def text_report(found: Report, limit: int = LIMIT) -> str:
         for s in found.sources
     ]
     return "\n".join(lines) + "\n"
+
+
+def _told(each: Statement) -> str:
+    """A statement and what tells more."""
+    return f"{each.text} More: {each.request}" if each.request else each.text
 
 
 def _sizes(found: Report, metric: Printed) -> list[str]:

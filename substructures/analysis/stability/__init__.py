@@ -7,7 +7,8 @@ equilibria              ``equilibria``: positions of rest of a model, each with 
 equilibrium_search      how they are found, of trees and of closed loops: Newton's method from many starts
 linearise               ``linearise``: M, D, K, F and A, B, C, D about states, for open trees
 linearise_closed        the same for closed loops, in independent coordinates
-linearisation_result    ``Linearisation`` and ``ClosedLinearisation``: what linearise gives
+linearise_constrained   with velocity constraints, about a motion: what is ignorable, steady motions, stability
+linearisation_result    ``Linearisation`` and its kinds: what linearise gives
 operating_point         what linearise is given, and what both of its ways share
 vibrations              modes of M x'' + D x' + K x = 0, and what they say about stability
 linear_system           the first-order system about one state: which modes inputs reach and outputs see
@@ -17,7 +18,10 @@ root_locus              ``root_locus``: eigenvalues of an equilibrium over a par
 meetings                derivatives where pieces of smooth laws meet, from both sides
 nearly_cyclic           coordinates that are cyclic but for the rounding of decimals
 steady_motions          ``steady_motions``: cyclic coordinates at constant rates, all others still, with their stability
+steady_conditions       what they are asked for: rates or momenta, and what varies
 steady_search           how they are found, and what linearises them
+steady_families         families of them over a parameter, a rate or a momentum, and their bifurcations
+continuation            curves F(u) = 0 by pseudo-arclength, and where two cross
 energy_integrals        stability by the energy at constant other first integrals (Routh, Lyapunov)
 ======================  ==============================================================================================
 

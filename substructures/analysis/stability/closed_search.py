@@ -91,7 +91,7 @@ class ClosedSearch(RestSearch):
         if not is_met(residual, J[: self.n, :k] * length[:k]):
             return None
         self.s.move(self.conditions.t, q, rest)
-        return None if self.s.upside_down() else self._wound(q)
+        return None if self.s.upside_down() else self.wound(q)
 
     def advice(self, q: Array, held: Sequence[int]) -> str:
         """Why there is none."""

@@ -9,15 +9,22 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from substructures.analysis.equations.formulas import require_moving
+from substructures.analysis.equations.formulas import require_moving, unsteady
 from substructures.analysis.stability.closed_search import ClosedSearch
+from substructures.analysis.stability.constrained_search import ConstrainedSearch
 from substructures.analysis.stability.equilibrium_search import RestConditions, RestSearch, SearchRange
 from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
-from substructures.analysis.stability.linearisation_result import ClosedLinearisation, Linearisation
+from substructures.analysis.stability.linearisation_result import (
+    ClosedLinearisation,
+    ConstrainedLinearisation,
+    Linearisation,
+)
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.verdict import Check
 from substructures.array import Array
+from substructures.errors import InvalidDocument
 from substructures.quantities.numbers.states import with_input_defaults
+from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 
 #: singular values of K below this share of the largest leave a direction undetermined
@@ -51,6 +58,8 @@ class Equilibrium:
         if self.at.status == "failed" or not len(self.at.K):
             why = self.at.message or "nothing is left to move"
             return Check.left_out(f"rest at {place}", "zero", why, needed=self.at.status == "failed")
+        if isinstance(self.at, ConstrainedLinearisation):
+            return still(f"rest at {place}", "no accelerations at rest", self.at.vd, self.at.M, self.at.K)
         names = self.at.independent if isinstance(self.at, ClosedLinearisation) else self.at.coordinates
         qdd = self.at.qdd[[self.at.coordinates.index(name) for name in names]]
         return still(f"rest at {place}", "no accelerations at rest", qdd, self.at.M, self.at.K)
@@ -58,7 +67,9 @@ class Equilibrium:
 
 @dataclass(frozen=True, repr=False)
 class Equilibria(FoundPlaces[Equilibrium]):
-    """All that were found. ``held``: coordinates on which no force and no closure depends, kept at their start."""
+    """All that were found. ``held``: coordinates on which no force and no closure depends, kept at their start; with
+    velocity constraints those that are ignorable.
+    """
 
     held: tuple[str, ...]
 
@@ -82,13 +93,21 @@ def equilibria(
     Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
     distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
     ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first moved onto the
-    closures; an equilibrium in a singular position has a linearisation that is ``failed``, and is not judged. That none
-    is found is a result with advice. Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces
-    without derivative) and MissingValue. Source: notation.md, section 7.
+    closures; with velocity constraints of the tree contacts are closed whose planes pass through the origin of the
+    world, and of families the places near ``starts`` and zero are found. An equilibrium in a singular position has a
+    linearisation that is ``failed``, and is not judged. That none is found is a result with advice. Raises InvalidInput
+    (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative, ``not-steady`` for given motions
+    that make them vary) and MissingValue. Source: notation.md, section 7.
     """
-    require_moving(model)
+    require_moving(model, "equilibria")
     conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))
+    if model.closures:
+        require_undriven(model.driven, "take simulations, or loop states")
+    if why := unsteady(model, conditions.inputs):
+        raise InvalidDocument.at("", "not-steady", f"{why}: nothing stays at rest; use periodic orbits, or simulations")
     within = SearchRange(starts, count, reach, seed)
+    if model.velocity_constraints:
+        return _constrained(ConstrainedSearch(model, within, conditions, None))
     search = ClosedSearch(model, within, conditions) if model.closures else RestSearch(model, within, conditions)
     places = search.starts()
     held = search.held(places)
@@ -97,8 +116,22 @@ def equilibria(
     found, _ = search.places(places, moving)
     names = tuple(model.coordinates[a] for a in held)
     results, left_out = confirmed([_described(model, conditions, q) for q in found])
-    message = left_out if results or left_out else search.advice(places[0], held)
-    return Equilibria(results, names, message=message)
+    return Equilibria(results, names, message=left_out if results or left_out else search.advice(places[0], held))
+
+
+def _constrained(search: ConstrainedSearch) -> Equilibria:
+    """At v = 0."""
+    places = []
+    for state in search.found():
+        at = state.at
+        # K dq = 0 for dq = T dv, up to rounding
+        _, sizes, rows = np.linalg.svd(at.K @ at.T)
+        free = rows[sizes <= SINGULAR * max(1.0, float(np.abs(at.K).max(initial=0)))] @ at.T.T
+        free = free / np.linalg.norm(free, axis=1, keepdims=True)
+        places.append(Equilibrium(at.q, free, at))
+    results, message = confirmed(places)
+    advice = "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"
+    return Equilibria(results, search.named(search.ignorable), message=message if results or message else advice)
 
 
 def _described(model: Model, conditions: RestConditions, q: Array) -> Equilibrium:

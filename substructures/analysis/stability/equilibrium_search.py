@@ -200,9 +200,9 @@ class RestSearch:
         # |Q_a| <= 1e-10 max(1, |K_ab|), or 1 at a corner of a force, where K has no value
         if not (np.abs(F) <= RESIDUAL * np.fmax(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all():
             return None
-        return self._wound(q)
+        return self.wound(q)
 
-    def _wound(self, q: Array) -> Array:
+    def wound(self, q: Array) -> Array:
         """Angles in (-pi, pi]."""
         # pi - (pi - q mod 2 pi)
         return np.where(self.turning, np.pi - np.mod(np.pi - q, 2 * np.pi), q)

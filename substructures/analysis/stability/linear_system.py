@@ -10,11 +10,13 @@ import numpy as np
 import scipy
 
 from substructures.analysis.arguments import NumberOrExpression
+from substructures.analysis.equations.formulas import unsteady
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise import linearise
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument
+from substructures.tree.document import require_unconstrained
 from substructures.tree.model import Model
 
 #: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
@@ -35,9 +37,12 @@ def linear_system(
     model: Model, q: StateArray, point: Mapping[str, Any], outputs: Mapping[str, NumberOrExpression]
 ) -> Linearisation:
     """A, B, C, D about one state, with inputs that act. Raises as :func:`linearise`, and InvalidArgument."""
+    require_unconstrained(model.constraint_names, "linear systems")
     if model.closures:
         message = "closures are not taken: linearise gives A, B, C, D in independent coordinates"
         raise InvalidArgument.at("/q", "closures", message)
+    if why := unsteady(model, point.get("inputs") or {}):
+        raise InvalidArgument.at("/q", "not-steady", f"{why}: linearise gives A, B, C, D at any time")
     found = linearise(model, q, outputs=outputs, **point)
     if found.M.ndim == 3:
         raise InvalidArgument.at("/q", "one-state", "one state is needed, not several")

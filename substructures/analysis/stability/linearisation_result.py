@@ -80,3 +80,40 @@ class ClosedLinearisation(Linearisation):
     qd: Array
     tangent: Array
     multipliers: Array
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class ConstrainedLinearisation(Linearisation):
+    """Of a motion with velocity constraints: M dv' + D dv + K dq = F du and dq' = T dv + R dq; x = (q, v).
+
+    For p quasi-``velocities`` and the ``constraints`` that hold: M, D (p, p), K (p, n), F (p, m), A (n+p, n+p),
+    B (n+p, m), C (k, n+p), R (n, n), T (n, p). ``q``, ``qd`` (n,), ``v``, ``vd`` (p,): the state and v' about which is
+    linearised; ``residual`` (p,). ``ignorable``: coordinates that change nothing but rates of such. Where v' = 0 and
+    all others rest the motion is steady: ``modes`` of its neighbours that keep the gaps, shapes in all coordinates, and
+    ``stability`` of what is not ignorable.
+    """
+
+    velocities: tuple[str, ...]
+    constraints: tuple[str, ...]
+    q: Array
+    qd: Array
+    v: Array
+    vd: Array
+    R: Array
+    T: Array
+    ignorable: tuple[str, ...]
+
+    def _finding(self) -> str:
+        if self.stability is None or not self.qd.any():
+            return super()._finding()
+        return f"about a steady motion, {self.stability.verdict}: {self.stability.reason}"
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether modes and stability are those of a steady motion, or of an equilibrium."""
+        return self.stability is not None
+
+    @property
+    def is_equilibrium(self) -> bool:
+        """Whether the steady motion is rest."""
+        return self.is_steady and not self.qd.any()

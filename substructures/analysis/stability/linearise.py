@@ -1,4 +1,6 @@
-"""Linearisation of a model in numbers: of open trees here, of closed loops by :mod:`.linearise_closed`."""
+"""Linearisation of a model in numbers: of open trees here, of closed loops by :mod:`.linearise_closed`, with velocity
+constraints by :mod:`.linearise_constrained`.
+"""
 
 from __future__ import annotations
 
@@ -9,11 +11,14 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.arguments import NumberOrExpression
-from substructures.analysis.equations.formulas import inputs_of, require_moving
+from substructures.analysis.equations.formulas import inputs_of, require_moving, unsteady
+from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
+from substructures.analysis.stability.linearise_constrained import linearise_constrained
 from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, stability
@@ -37,6 +42,7 @@ def linearise(
     inputs: Mapping[str, Any] | None = None,
     outputs: Mapping[str, NumberOrExpression] | None = None,
     of_inputs: Sequence[str] | None = None,
+    kind: ConstrainedMotion | None = None,
 ) -> Linearisation:
     """Perturbation equations and state-space matrices of a model about a state, or states along a trajectory.
 
@@ -45,16 +51,15 @@ def linearise(
     ``q``, ``qd``, ``qdd`` (n,) or (N, n), or by coordinate [rad, m, s]; ``qd`` is 0 by default, ``qdd`` that of the
     motion. ``t`` [s], ``parameters`` (in place of their defaults) and ``inputs`` [N m, N] (their defaults, or 0): one
     number, or (N,). ``outputs``: y by name, expressions in q, q', inputs, parameters and t; ``of_inputs``: the columns
-    of B and D (default all). A model with closures is linearised about the closed state nearest to one given state,
-    without ``qdd``, in independent coordinates, which gives a ClosedLinearisation.
+    of B and D (default all). With closures a ClosedLinearisation, about the closed state nearest to one given state, in
+    independent coordinates; ``kind``: velocity constraints (default: the tree's); ConstrainedLinearisation, one motion.
 
     Numerical failures (a singular metric, loops that cannot be closed) are results with status ``failed`` and advice.
     Raises InvalidInput (``/q``, ``/outputs/y``, ``/of_inputs/i``, ...; ``not-smooth`` for forces without derivative)
     and MissingValue. Source: P. C. Mueller and W. O. Schiehlen, Linear Vibrations, 1985; notation.md, section 7.
 
     >>> from substructures import couple, derive
-    >>> tree = {"name": "clock", "gravity": [0, 0, "-9.81"]}
-    >>> tree["instances"] = [{"name": "p", "substructure": "simple-pendulum"}]
+    >>> tree = {"name": "c", "gravity": [0, 0, -9.81], "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
     >>> hanging = linearise(couple(tree, {"p": derive("simple-pendulum")}), [0.0])
     >>> float(hanging.K[0, 0]), hanging.stability.verdict
     (9.81, 'stable')
@@ -63,6 +68,8 @@ def linearise(
     point = OperatingPoint(
         model, q, qd, qdd, t, parameters or {}, with_input_defaults(model, inputs or {}), outputs or {}, of_inputs
     )
+    if kind is not None or model.velocity_constraints:
+        return linearise_constrained(point, kind or ConstrainedMotion(constraints_of(model)))
     return linearise_closed(point) if model.closures else _linearise_tree(point)
 
 
@@ -81,7 +88,7 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
     by_output = point.output_matrices(chosen, values, len(qdd))
     result = _assembled(model, (chosen, tuple(point.outputs)), found, by_output, qdd)
-    message = fault_of(model.coordinates, result.qdd, result.D, result.K)
+    message = fault_of(model.coordinates, result.qdd, result.D, result.K, result.A)
     if message:
         result = replace(result, status="failed", message=message)
     return _judged(point, states, _single(result), values) if states.single else result
@@ -123,7 +130,7 @@ def _single(result: Linearisation) -> Linearisation:
 def _judged(point: OperatingPoint, states: States, result: Linearisation, values: Mapping[str, Any]) -> Linearisation:
     """With modes and stability where the state is an equilibrium."""
     still = not states.qd.any() and result.status == "finished"
-    if not still or not is_small(result.qdd, result.K, result.M):
+    if not still or not is_small(result.qdd, result.K, result.M) or unsteady(point.model, point.inputs):
         return result
     # a given q'' = 0 is an equilibrium only where M^-1 (g q'' + Gamma q' q' - Q) vanishes, too
     if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):

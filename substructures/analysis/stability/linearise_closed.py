@@ -36,6 +36,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import condition
 from substructures.quantities.numbers.states import read_states, symbol_values
+from substructures.tree.document import require_undriven
 
 NEEDS = ("metric", "bias", "forces", "closure.residual", "closure.jacobian", "closure.acceleration")
 ALONG = ("closure.jacobian", "closure.jacobian_rate", "closure.jacobian_second")
@@ -48,6 +49,7 @@ def linearise_closed(point: OperatingPoint) -> ClosedLinearisation:
     also ``modes`` and ``stability``. Loops that cannot be closed and singular positions are ``failed``, with advice.
     Raises InvalidInput (``one-state`` for a trajectory, ``not-smooth``) and MissingValue.
     """
+    require_undriven(point.model.driven, "take simulations, or loop states")
     model, values = point.model, _values(point)
     chosen = point.chosen_inputs()
     s = _constrained(point, values)

@@ -89,8 +89,10 @@ def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> P
     return program(graph, outputs, {s.name: s for s in source.symbols})
 
 
-def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array) -> str:
-    """What is not finite, with its place and what to change; else nothing. Leading axes of states are allowed."""
+def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array, A: Array | None = None) -> str:
+    """What is not finite, with its place and what to change; else nothing. Leading axes of states are allowed; ``A``:
+    of first order, not finite where M has no inverse.
+    """
     if not np.isfinite(qdd).all():
         return (
             "the accelerations are not finite here: the metric is singular or not positive definite, or numbers "
@@ -105,6 +107,11 @@ def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array) -> str:
                 "load has a root or a quotient at zero; add a small number under the root, or move the state away from "
                 "there"
             )
+    if A is not None and not np.isfinite(A).all():
+        return (
+            "the metric is singular here, up to rounding: a motion of the coordinates moves no mass (axes meet, or "
+            "bodies have no inertia); add rotor inertias, or move the state away from there"
+        )
     return ""
 
 

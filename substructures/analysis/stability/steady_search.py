@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -75,6 +75,15 @@ class SteadySearch(RestSearch):
     def _of_all(self, rows: Array) -> Array:
         return rows[:, self.still]
 
+    def put(self, name: str, value: float) -> None:
+        """Another value of a parameter, or of what is wanted of a moving coordinate."""
+        if name in self.model.coordinates:
+            self.wanted[self.moving.index(self.model.coordinates.index(name))] = value
+            return
+        self.known[name] = value
+        self.constant[name][0] = value
+        self.conditions = replace(self.conditions, parameters={**self.conditions.parameters, name: value})
+
     def whole(self, x: Array) -> Array:
         """All coordinates (n,), 0 where they move."""
         q = np.zeros(self.model.dof)
@@ -94,6 +103,10 @@ class SteadySearch(RestSearch):
         """E_x and its Jacobian by x, at constant rates or momenta, whichever are given, over the units."""
         found, _ = self._found(x)
         return found["residual"] / self.unit, self._slope(found) / self.unit[:, None]
+
+    def equations(self, x: Array) -> tuple[Array, Array]:
+        """What is zero in a steady motion (k,), over its units, and the Jacobian (k, r) there."""
+        return self.at(x)
 
     def _slope(self, found: dict[str, Array]) -> Array:
         """dE_x/dx."""
@@ -147,12 +160,13 @@ class SteadySearch(RestSearch):
             [f"{self.model.coordinates[s]}'" for s in self.moving],
             list(multipliers_of(self.model)),
         )
-        constant = {name: x for name, x in self.known.items() if not any(name in some for some in groups)}
+        # arrays are read in place
+        self.constant = {name: np.full(1, x) for name, x in self.known.items() if not any(name in g for g in groups)}
         self.x, self.w, self.multipliers = (np.zeros((1, len(some))) for some in groups)
         self.outputs = {name: np.zeros((1, *output.shape)) for name, output in source.outputs.items()}
         pairs = zip(groups, (self.x, self.w, self.multipliers), strict=True)
         columns = [(some, column) for some, column in pairs if some]
-        self.run = program_kernel(source).bind(self.outputs, constant, columns=columns)
+        self.run = program_kernel(source).bind(self.outputs, self.constant, columns=columns)
 
     def _found(self, x: Array) -> tuple[dict[str, Array], list[float]]:
         """All functions at x with the multipliers that were put down, and the rates there."""
@@ -191,6 +205,15 @@ class ClosedSteadySearch(SteadySearch):
         found, _ = super()._found(x)
         self.multipliers[0] = least_norm(found["closure.jacobian"], self.s.reach, found["residual"])
         return super()._found(x)
+
+    def equations(self, x: Array) -> tuple[Array, Array]:
+        """E_x - lambda_k G_kx with lambda of least squares, and phi_k over their widths."""
+        found, _ = self._found(x)
+        # the rest is P E with P = N (N^T N)^-1 N^T; its derivative is P (E_x,y - lambda_k G_kx,y) where it is zero
+        Q = np.linalg.qr(self._tangent(found)[0])[0]
+        E, K = found["residual"] / self.unit, Q @ Q.T @ self._slope(found) / self.unit[:, None]
+        phi, G = found["closure.residual"] / self.s.width, found["closure.jacobian"] / self.s.width[:, None]
+        return np.concatenate((E, phi)), np.concatenate((K, G))
 
     def _tangent(self, found: dict[str, Array]) -> tuple[Array, list[int]]:
         G = found["closure.jacobian"] / self.s.reach[:, None]
@@ -237,7 +260,7 @@ class ClosedSteadySearch(SteadySearch):
             return None
         x = self.x[0].copy()
         self.s.move(self.conditions.t, self.whole(x), np.zeros(self.model.dof))
-        return None if self.s.upside_down() else self._wound(x)
+        return None if self.s.upside_down() else self.wound(x)
 
 
 def _least(matrix: Array, right: Array) -> Array:

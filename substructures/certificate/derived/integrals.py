@@ -5,7 +5,7 @@ That a quantity is constant is checked with it: its derivative along the equatio
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from math import prod
 from typing import Any
@@ -14,7 +14,7 @@ from flint import arb, arb_mat
 
 from substructures.certificate.derived.model_at import Index, ModelAt, dot, solve, total
 from substructures.certificate.derived.model_formulas import Expectation, power, symmetric_of, vector_of
-from substructures.certificate.linear import Ball
+from substructures.certificate.linear import Ball, Matrix
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.slopes import tangents
@@ -26,24 +26,30 @@ AXES = "xyz"
 WITH_CENTRE = ("galilei", "spin")
 
 
-def constant(program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str]) -> Expectation:
+#: (B, b) of rows B q' + b = 0 that hold the motion, at a state
+Rows = Callable[[ModelAt], Sequence[Sequence[Ball]]]
+
+
+def constant(
+    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None = None
+) -> Expectation:
     """Energies, momenta and combinations of them, and the power; ``integrals``: name, kind, rule and direction of each.
 
     ``program``: of the integrals, whose derivatives along the motion have to vanish. ``multipliers``: symbols of the
-    reactions of closures.
+    reactions of closures, or of all ``rows``.
     """
-    return partial(_constant, program, integrals, multipliers)
+    return partial(_constant, program, integrals, multipliers, rows)
 
 
 def _constant(
-    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], m: ModelAt
+    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None, m: ModelAt
 ) -> Outputs:
     result = Outputs()
     found = {"linear_momentum": m.momentum("linear"), "angular_momentum": m.momentum("angular")}
     for each in integrals:
         name, kind = each["name"], each["kind"]
         if kind == "energy":
-            value = m.kinetic_energy() + m.scalar("potential_energy")
+            value = m.energy()
         elif kind == "subsystem":
             value = _energy_of(m, each["coordinates"])
         elif kind == "impulse":
@@ -63,7 +69,7 @@ def _constant(
             value = _component(m, found, kind, name.removeprefix(f"{kind}."))
         result.scalar(name, value)
     result.scalar("power", power(m))
-    _require_constant(program, [each for each in integrals if each["rule"] == "constant"], multipliers, m)
+    _require_constant(program, [each for each in integrals if each["rule"] == "constant"], multipliers, rows, m)
     return result
 
 
@@ -131,22 +137,29 @@ def _rate_of_momentum(m: ModelAt) -> list[Ball]:
 
 
 def _require_constant(
-    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], m: ModelAt
+    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None, m: ModelAt
 ) -> None:
-    """Raise VerificationFailed for an integral that changes along the motion, whatever the reactions of closures are;
-    they do no work."""
+    """Raise VerificationFailed for an integral that changes along the motion, whatever the reactions of closures and of
+    velocity constraints are; they do no work."""
     values = {**m.values, **dict.fromkeys(multipliers, arb(1))}
     found = operations_in_balls(program, values)
     free = tangents(program, found, m.motion(m.accelerations()))
     held = free
     if multipliers:
-        G = m.matrix("closure.jacobian")
+        G = m.matrix("closure.jacobian") if rows is None else _held(rows(m), integrals)
         beside = (arb_mat(1, len(multipliers), [k + 1 for k in range(len(multipliers))]) * G).entries()
         held = tangents(program, found, m.motion(m.accelerations(beside)))
     for each in integrals:
         change = free if each["kind"] in ("energy", "subsystem") else held
         if any(not change.get(entry, arb(0)).contains(0) for entry in program.outputs[each["name"]].entries):
             raise VerificationFailed(f"{each['name']} changes along the motion")
+
+
+def _held(rows: Sequence[Sequence[Ball]], integrals: Sequence[Mapping[str, Any]]) -> Matrix:
+    """B. Raises VerificationFailed for an energy where rows with a b do work."""
+    if any(not row[-1].contains(0) for row in rows) and any(i["kind"] in ("energy", "subsystem") for i in integrals):
+        raise VerificationFailed("velocity constraints that move do work")
+    return arb_mat(len(rows), len(rows[0]) - 1, [x for row in rows for x in row[:-1]])
 
 
 def reduced(cyclic: Sequence[str], rest: Sequence[str]) -> Expectation:

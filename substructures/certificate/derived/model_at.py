@@ -50,7 +50,7 @@ class ModelAt:
     def motion(self, second: Sequence[Ball]) -> dict[str, Ball]:
         """The direction of a motion with these accelerations: q', q'' and 1 for the time."""
         pairs = [(self.coordinates, self.rates), ([f"{name}'" for name in self.coordinates], second)]
-        return {"t": arb(1)} | {name: x for names, some in pairs for name, x in zip(names, some, strict=True)}
+        return self.time() | {name: x for names, some in pairs for name, x in zip(names, some, strict=True)}
 
     def elements(self, name: str) -> dict[Index, Ball]:
         """All elements of an output that are not zero by structure."""
@@ -93,16 +93,39 @@ class ModelAt:
 
     def momentum(self, name: str) -> list[Ball]:
         """sum_a p_a q'^a for the linear or angular momenta p_a of unit velocities."""
-        found = self.elements(f"{name}_momentum")
-        return [total(found.get((a, i), arb(0)) * x for a, x in enumerate(self.rates)) for i in range(3)]
+        found, drives = self.elements(f"{name}_momentum"), f"{name}_momentum_0"
+        given = self.elements(drives) if drives in self.program.outputs else {}
+        moved = (total(found.get((a, i), arb(0)) * x for a, x in enumerate(self.rates)) for i in range(3))
+        return [x + given.get((i,), arb(0)) for i, x in enumerate(moved)]
 
     def momenta(self) -> list[Ball]:
-        """p_a = g_ab q'^b."""
-        return times(self.matrix("metric"), self.rates)
+        """p_a = g_ab q'^b + g_a0, the last of given motions."""
+        return [x + y for x, y in zip(times(self.matrix("metric"), self.rates), self.drives(), strict=True)]
 
     def kinetic_energy(self) -> Ball:
-        """g_ab q'^a q'^b / 2."""
-        return dot(self.momenta(), self.rates) / 2
+        """g_ab q'^a q'^b / 2 + g_a0 q'^a + g_00 / 2."""
+        return (dot(self.momenta(), self.rates) + dot(self.drives(), self.rates) + self.drives_alone()) / 2
+
+    def kinetic_change(self, direction: Mapping[str, Ball]) -> Ball:
+        """The change of T in a direction at fixed velocities: T is linear in what it is made of."""
+        return ModelAt(self.program, self.coordinates, self.values, self.along(direction).found).kinetic_energy()
+
+    def energy(self) -> Ball:
+        """p_a q'^a - T + V."""
+        return dot(self.momenta(), self.rates) - self.kinetic_energy() + self.scalar("potential_energy")
+
+    def time(self) -> dict[str, Ball]:
+        """The direction in which the time alone changes, and driven coordinates that are inputs: those with a rate."""
+        inputs = (symbol.name for symbol in self.program.symbols if symbol.kind == "input")
+        return {"t": arb(1)} | {name: self.values[f"{name}'"] for name in inputs if f"{name}'" in self.values}
+
+    def drives(self) -> list[Ball]:
+        """g_a0, 0 where no motion is given."""
+        return self.vector("g_a0") if "g_a0" in self.program.outputs else [arb(0)] * self.n
+
+    def drives_alone(self) -> Ball:
+        """g_00."""
+        return self.scalar("g_00") if "g_00" in self.program.outputs else arb(0)
 
     def changed(self, direction: Mapping[str, Ball], second: Sequence[Ball]) -> list[Ball]:
         """The change of g q'' + Gamma q' q' - Q in a direction, in which q'' changes, too."""

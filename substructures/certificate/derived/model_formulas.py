@@ -12,7 +12,7 @@ from functools import partial
 
 from flint import arb
 
-from substructures.certificate.derived.model_at import ModelAt, dot, times, total
+from substructures.certificate.derived.model_at import ModelAt, dot, total
 from substructures.certificate.linear import Ball, Matrix
 from substructures.certificate.outputs import Outputs
 
@@ -74,7 +74,7 @@ def _lagrangian(m: ModelAt) -> Outputs:
 
 
 def _generalised_momenta(m: ModelAt) -> Outputs:
-    """g_ab q'^b."""
+    """dT/dq'^a."""
     result = Outputs()
     vector_of(result, "generalised_momenta", m.momenta())
     return result
@@ -167,23 +167,30 @@ def _christoffel_second_kind(m: ModelAt) -> Outputs:
 
 
 def _hamiltonian(m: ModelAt) -> Outputs:
-    """T + V at g q' = p."""
+    """p_a q'^a - T + V at dT/dq' = p."""
     result, p = Outputs(), _momentum_symbols(m)
-    result.scalar("hamiltonian", dot(p, m.solved(p)) / 2 + m.scalar("potential_energy"))
+    rates = _rates(m)
+    here = m.at({f"{name}'": x for name, x in zip(m.coordinates, rates, strict=True)})
+    result.scalar("hamiltonian", dot(p, rates) - here.kinetic_energy() + m.scalar("potential_energy"))
     vector_of(result, "pivots", relative_pivots(m.matrix("metric")))
     return result
 
 
 def _canonical_equations(m: ModelAt) -> Outputs:
-    """p'_a = Q_a + 1/2 d_a g_bc q'^b q'^c at g q' = p."""
+    """p'_a = Q_a + d_a T at dT/dq' = p."""
     result = Outputs()
-    rates = m.solved(_momentum_symbols(m))
+    rates = _rates(m)
     here = m.at({f"{name}'": x for name, x in zip(m.coordinates, rates, strict=True)})
-    slopes = [dot(times(here.by(name).matrix("metric"), rates), rates) / 2 for name in m.coordinates]
+    slopes = [here.kinetic_change({name: arb(1)}) for name in m.coordinates]
     vector_of(result, "coordinate_rates", rates)
     vector_of(result, "momentum_rates", [Q + x for Q, x in zip(here.vector("forces"), slopes, strict=True)])
     vector_of(result, "pivots", relative_pivots(m.matrix("metric")))
     return result
+
+
+def _rates(m: ModelAt) -> list[Ball]:
+    """q' with dT/dq' = p."""
+    return m.solved([p - x for p, x in zip(_momentum_symbols(m), m.drives(), strict=True)])
 
 
 def _momentum_symbols(m: ModelAt) -> list[Ball]:
@@ -234,6 +241,7 @@ def _with_power(names: Sequence[str], m: ModelAt) -> Outputs:
 
 
 def power(m: ModelAt) -> Ball:
-    """Q_a q'^a + V' at fixed inputs."""
-    along = m.along({"t": arb(1)} | dict(zip(m.coordinates, m.rates, strict=True)))
-    return total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)) + along.scalar("potential_energy")
+    """Q_a q'^a + V' - d_t T at fixed inputs; the metric depends on the time where motions are given."""
+    along = m.along(m.time() | dict(zip(m.coordinates, m.rates, strict=True)))
+    work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)) + along.scalar("potential_energy")
+    return work - m.kinetic_change(m.time())

@@ -8,7 +8,7 @@ from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
-from substructures.certificate.derived.model_at import ModelAt, total
+from substructures.certificate.derived.model_at import ModelAt, times, total
 from substructures.certificate.derived.model_formulas import (
     Expectation,
     columns_of,
@@ -19,7 +19,7 @@ from substructures.certificate.derived.model_formulas import (
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.stored import Pruned, operations_in_balls, pruned
+from substructures.certificate.stored import Pruned, Stored, operations_in_balls, pruned
 from substructures.certificate.texts import slope
 from substructures.expr.operations import Output
 
@@ -34,7 +34,8 @@ def _perturbed(inputs: Sequence[str], multipliers: Sequence[str], m: ModelAt) ->
     symmetric_of(result, "metric", m.matrix("metric"))
     result["damping"], result["stiffness"] = found["inverse_dynamics_qd"], found["inverse_dynamics_q"]
     # F = dQ/du
-    columns_of(result, "input", m.n, [m.by(name).vector("forces") for name in inputs])
+    # of driven coordinates that are inputs, the inertia, too
+    columns_of(result, "input", m.n, [[-x for x in m.changed({name: arb(1)}, m.second)] for name in inputs])
     result["residual"] = found["inverse_dynamics"]
     if multipliers:
         _closed(result, m, [m.values[name] for name in multipliers])
@@ -80,6 +81,35 @@ def _along(program: Pruned, series: Mapping[str, Any]) -> tuple[list[Any], Outpu
 
 def _coefficient(x: Any, order: int) -> Ball:
     return x[order] if isinstance(x, arb_series) else arb(0)
+
+
+def constrained(source: Stored, velocities: Sequence[str], inputs: Sequence[str]) -> Expectation:
+    """The equations ``source`` in quasi-velocities, certified before, linearised."""
+    return partial(_constrained, source, velocities, inputs)
+
+
+def _constrained(source: Stored, velocities: Sequence[str], inputs: Sequence[str], m: ModelAt) -> Outputs:
+    result, here, p = Outputs(), ModelAt(source, m.coordinates, m.values), len(velocities)
+    second = [m.values[f"{name}'"] for name in velocities]
+
+    def missing(at: ModelAt) -> list[Ball]:
+        """g* v' + bias - forces, or its change at fixed v'."""
+        inertia, bias, forces = times(at.matrix("metric"), second), at.elements("bias"), at.elements("forces")
+        return [x + bias.get((i,), arb(0)) - forces.get((i,), arb(0)) for i, x in enumerate(inertia)]
+
+    by_position = [here.by(name) for name in m.coordinates]
+    symmetric_of(result, "metric", here.matrix("metric"))
+    columns_of(result, "damping", p, [missing(here.by(name)) for name in velocities])
+    columns_of(result, "stiffness", p, [missing(at) for at in by_position])
+    columns_of(result, "input", p, [[-x for x in missing(here.by(name))] for name in inputs])
+    vector_of(result, "residual", missing(here))
+    result.matrix("T", (m.n, p), (), here.matrix("T"))
+    columns_of(result, "rates_by_position", m.n, [at.vector("rates") for at in by_position])
+    if "gaps" in source.outputs:
+        (k,) = source.outputs["gaps"].shape
+        changes = [at.elements("gaps") for at in by_position]
+        columns_of(result, "gaps_by_position", k, [[x.get((i,), arb(0)) for i in range(k)] for x in changes])
+    return result
 
 
 def first_order(texts: Sequence[Any], inputs: Sequence[str]) -> Expectation:

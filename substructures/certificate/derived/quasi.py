@@ -34,19 +34,23 @@ class Quasi:
     frames: Sequence[str]
     closed: Sequence[str]
 
+    def held(self, m: ModelAt) -> list[list[Ball]]:
+        """(B, b) at a state."""
+        return [[*self._row(label, m), b] for label, b in zip(self.rows, self._rests(m), strict=True)]
+
     def __call__(self, m: ModelAt) -> Outputs:
         """All outputs at a state."""
-        n, names = m.n, list(self.velocities)
-        p = len(names)
-        v, dv = ([m.values[f"{name}{prime}"] for name in names] for prime in ("", "'"))
-        own = [self._linear(text, m) for text in self.velocities.values()]
+        n, p = m.n, len(self.velocities)
+        v, dv = ([m.values[f"{name}{prime}"] for name in self.velocities] for prime in ("", "'"))
         B = [self._row(label, m) for label in self.rows]
-        # Y q' = (v, 0), Y^-1 = [T S]
-        Y = arb_mat(n, n, [x for row in (*own, *B) for x in row])
+        # Y q' = (v, -b), Y^-1 = [T S]
+        rows = [*(self._linear(text, m) for text in self.velocities.values()), *B]
+        Y = arb_mat(n, n, [x for row in rows for x in row])
         T, S = _inverse(Y, p)
-        rates, result = times(T, v), Outputs()
+        b, result = self._rests(m), Outputs()
+        rates = [x - y for x, y in zip(times(T, v), times(S, b), strict=True)]
         here = m.at({f"{q}'": x for q, x in zip(m.coordinates, rates, strict=True)})
-        # the stored T is compared with this one, so that its changes are those of T
+        # the stored T and q' are compared with these, so that their changes are those of T and of q' at fixed v
         served = ModelAt(self.program, m.coordinates, m.values)
 
         def turned(direction: Sequence[Ball]) -> Matrix:
@@ -54,10 +58,9 @@ class Quasi:
             return served.along(dict(zip(m.coordinates, direction, strict=True))).matrix("T")
 
         g, Q = here.matrix("metric"), here.vector("forces")
-        turning = times(turned(rates), v)
+        turning = served.along(m.time() | dict(zip(m.coordinates, rates, strict=True))).vector("rates")
         inertial = [x + y for x, y in zip(times(g, turning), here.vector("bias"), strict=True)]
-        second = times(T, dv)
-        missing = [x + y - f for x, y, f in zip(times(g, second), inertial, Q, strict=True)]
+        missing = [x + y - f for x, y, f in zip(times(g, times(T, dv)), inertial, Q, strict=True)]
         columns_of(result, "constraints", n - p, [[row[a] for row in B] for a in range(n)])
         columns_of(result, "T", n, [[T[a, i] for a in range(n)] for i in range(p)])
         vector_of(result, "rates", rates)
@@ -68,8 +71,10 @@ class Quasi:
         vector_of(result, "hamel_bias", bias)
         vector_of(result, "forces", times(T.transpose(), Q))
         _structure(result, Y, [turned([T[a, i] for a in range(n)]) for i in range(p)])
-        vector_of(result, "multipliers", times(S.transpose(), missing))
+        multipliers = times(S.transpose(), missing)
+        vector_of(result, "multipliers", multipliers)
         _energies(result, here, rates)
+        _work_of_constraints(result, self.program, b, multipliers)
         if self.gaps:
             vector_of(result, "gaps", [self._gap(label, m) for label in self.gaps])
         return result
@@ -77,6 +82,12 @@ class Quasi:
     def _linear(self, text: str, m: ModelAt) -> list[Ball]:
         """The coefficients of the velocities."""
         return [slope(text, m.values, f"{q}'") for q in m.coordinates]
+
+    def _rests(self, m: ModelAt) -> list[Ball]:
+        """b of every row: the expression where nothing moves."""
+        still = Numbers({**m.values, **{f"{q}'": arb(0) for q in m.coordinates}})
+        given = [self._given(label) for label in self.rows]
+        return [still.read(each["expression"]) if "expression" in each else arb(0) for each in given]
 
     def _row(self, label: str, m: ModelAt) -> list[Ball]:
         """B of one row."""
@@ -158,6 +169,13 @@ def _energies(result: Outputs, here: ModelAt, rates: Sequence[Ball]) -> None:
     moved = here.along({"t": arb(1)} | dict(zip(here.coordinates, rates, strict=True)))
     power = total(f * x for f, x in zip(here.vector("forces"), rates, strict=True))
     result.scalar("lost_power", power + moved.scalar("potential_energy"))
+
+
+def _work_of_constraints(result: Outputs, program: Stored, b: Sequence[Ball], multipliers: Sequence[Ball]) -> None:
+    """b and -lambda_k b_k, where they are served: a b that is left out shows in q'."""
+    if "given" in program.outputs:
+        vector_of(result, "given", b)
+        result.scalar("constraint_power", -total(x * y for x, y in zip(multipliers, b, strict=True)))
 
 
 def _columns(matrix: Matrix, some: Sequence[int]) -> Matrix:

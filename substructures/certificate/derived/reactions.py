@@ -1,8 +1,9 @@
 """Reactions by virtual power: every joint is released in all six directions, in which what it exerts does work.
 
 In the documents a massless body on a free joint is put before every joint, and before every instance. What its six
-actuators have to do while it rests, g q'' + Gamma q' q' - Q - G^T lambda of its coordinates, is the force and the
-moment that is transmitted there (d'Alembert's principle with released constraints), as of any other coordinate.
+actuators have to do while it rests, g q'' + Gamma q' q' - Q - G^T lambda of its coordinates less what the forces of
+contacts do there, is the force and the moment that is transmitted there (d'Alembert's principle with released
+constraints), as of any other coordinate.
 """
 
 from __future__ import annotations
@@ -14,11 +15,12 @@ from flint import arb
 from substructures.certificate.bodies import NONE, Bodies, Frame, coordinates_of, in_order
 from substructures.certificate.by_coordinate import rates
 from substructures.certificate.closures import ROWS, closure_outputs
+from substructures.certificate.described import closures_in, hosts_first
 from substructures.certificate.dynamics import motions, required
-from substructures.certificate.linear import Ball, Matrix, cross, dot, vector
-from substructures.certificate.numbers import Plain
+from substructures.certificate.linear import Ball, Matrix, column, cross, dot, vector, with_third_axis
+from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.tree_outputs import beside, built, closures_in, hosts_first, tree_symbols
+from substructures.certificate.tree_outputs import beside, built, tree_symbols
 from substructures.errors import VerificationFailed
 
 OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
@@ -49,12 +51,36 @@ def reaction_outputs(
         for (k, a), x in found["closure.jacobian"].entries.items():
             # a row of no effect has no symbol in any formula
             Q[a] = Q.get(a, arb(0)) + x * values.get(names[k], arb(0))
+    for a, x in _contacts(tree, bodies, numbers, values):
+        Q[a] = Q.get(a, arb(0)) + x
     needed = _required(bodies, speeds, second, numbers.vector(tree.get("gravity", NONE)) * -1)
     exerted = {j.coordinate: needed[a] - Q.get(a, arb(0)) for a, j in enumerate(bodies.joints)}
     places = list(_places(tree, definitions, bodies))
     if [name for name, *_ in places] != list(rows):
         raise VerificationFailed(f"the joints are not those of the documents: {', '.join(rows)}")
     return _shown(places, exerted)
+
+
+def _contacts(tree: Plain, bodies: Bodies, numbers: Numbers, values: Mapping[str, Ball]) -> Iterator[tuple[int, Ball]]:
+    """By joint the power of the forces of edges and rolling contacts at q' = 1: force . velocity of the point."""
+
+    def along(label: str, direction: Matrix) -> Matrix:
+        return direction * values.get(f"lambda.{label}", arb(0))
+
+    for given in tree.get("velocity_constraints", ()):
+        if "frame" not in given:
+            continue
+        frame, name = bodies.frames[given["frame"]], given["name"]
+        point, force = frame.p, along(name, column(frame.A, 1))
+        if "radius" in given:
+            plane = with_third_axis(numbers.vector(given.get("normal", (0, 0, 1))))
+            ways = [along(f"{name}.{row}", column(plane, i)) for i, row in enumerate(("slip_1", "slip_2", "contact"))]
+            force, down, axis = ways[0] + ways[1] + ways[2], column(plane, 2), column(frame.A, 2)
+            if given.get("shape", "disc") == "disc":
+                down = cross(axis, cross(down, axis))
+            point = point - down * (numbers.read(given["radius"]) / dot(down, down).sqrt())
+        for a in bodies.path(frame.carrier):
+            yield a, dot(bodies.joints[a].v + cross(bodies.joints[a].w, point), force)
 
 
 def _free_body(name: str, parent: str, called: str) -> Plain:

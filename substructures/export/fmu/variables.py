@@ -115,7 +115,8 @@ class Layout:
                 for i, (n, x) in _named(names, units)
             ]
         starts = u.defaults or (0.0,) * len(u)
-        found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(u.names, u.units)]
+        inputs = [name.replace("''", "_dd").replace("'", "_d") for name in u.names]
+        found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(inputs, u.units)]
         for i, (name, unit) in _named(p.names, p.units):
             if not isfinite(p.defaults[i]):
                 raise MissingValue(f"'{name}' has no value: give one, or a default in its definition")

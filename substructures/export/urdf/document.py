@@ -80,6 +80,10 @@ def _not_of_trees(spec: TreeSpec) -> Iterator[str]:
         yield f"the closure '{closure.name}' ({closure.type}): URDF has no loops"
     for load in spec.loads:
         yield f"the load '{load.name}' ({load.type})"
+    for name in spec.driven:
+        yield f"the given motion of '{name}'"
+    for each in spec.velocity_constraints:
+        yield f"the velocity constraint '{each.name}' ({each.type})"
 
 
 def _text(name: str, made: Links, reference: str, digest: str) -> bytes:

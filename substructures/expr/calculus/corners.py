@@ -20,8 +20,9 @@ from itertools import combinations
 from math import isqrt
 
 from substructures.expr.calculus.vanish import Vanishing
+from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.walk import build, reachable
+from substructures.expr.walk import build, reachable, transfer
 
 #: sides that are looked at, at most
 MAX_SIDES = 512
@@ -72,6 +73,19 @@ def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Exp
         else:
             new[node] = build(node.graph, node.op, [new[a] for a in node.args]) if node.args else node
     return [new[x] for x in exprs]
+
+
+def rates(expr: Expr, name: str) -> tuple[Expr, Expr]:
+    """First and second derivative by a symbol, with |x| = x sign x, so that no quotient is 0/0 where x = 0; of what is
+    an absolute value with no derivative there, half of those of both sides.
+    """
+    found, graph = corners([expr]), expr.graph
+    sides = [graph.symbol(f"side {k}") for k in range(len(found))]
+    (smooth,) = on_side([expr], dict(zip(found, sides, strict=True)))
+    rate = derivative(smooth, name)
+    signs = {str(s.value): graph.function("sign", inner(node)) for s, node in zip(sides, found, strict=True)}
+    first, second = transfer([rate, derivative(rate, name)], graph, signs)
+    return first, second
 
 
 class VanishingOnAllSides:

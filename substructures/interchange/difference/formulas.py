@@ -20,6 +20,8 @@ from substructures.expr.program import Formulas, program
 
 #: random states at which numbers are compared
 STATES = 16
+#: of coordinates, velocities and accelerations, in SI units
+RANGE = (-1.5, 1.5)
 #: relative difference of numbers that are equal
 TOLERANCE = 1e-12
 #: of the largest number of a quantity, where relative differences end
@@ -44,14 +46,15 @@ class FormulaSet:
 
 @dataclass(frozen=True)
 class EntryDifference:
-    """An entry that is not the same. ``change``: of its numbers at the defaults of both, over the random states,
-    relative to the largest; None where that is none. ``state``: of its formula: ``equal``, ``changed``, ``new`` or
-    ``gone``.
+    """An entry that is not the same. ``change``: the largest of its numbers at the defaults of both, over the random
+    states, relative to the largest number, and ``rms`` the root of the mean square; None where that is none. ``state``:
+    of its formula: ``equal``, ``changed``, ``new`` or ``gone``.
     """
 
     place: Place
     state: str
     change: float | None
+    rms: float | None
 
     def plain(self) -> dict[str, Any]:
         """As JSON data."""
@@ -86,6 +89,11 @@ class QuantityDifference:
         """The largest change of numbers; None where there is none that is a number."""
         return max((each.change for each in self.differing if each.change is not None), default=None)
 
+    @property
+    def rms(self) -> float | None:
+        """The largest root mean square of changes of an entry; None where there is none that is a number."""
+        return max((each.rms for each in self.differing if each.rms is not None), default=None)
+
     def plain(self, most: int) -> dict[str, Any]:
         """As JSON data, with the first ``most`` entries that differ."""
         counts = {state: self.count(state) for state in ("changed", "new", "gone")}
@@ -95,6 +103,7 @@ class QuantityDifference:
             **counts,
             "moved": self.moved,
             "change": self.change,
+            "rms": self.rms,
             "differing": [each.plain() for each in self.differing[:most]],
         }
 
@@ -121,20 +130,25 @@ def _quantity(
     changes = _changes(numbers, others, has_size)
     states = {place: _state(graph, ours.get(place), theirs.get(place)) for place in changes}
     differing = tuple(
-        EntryDifference(place, states[place], change)
-        for place, change in changes.items()
+        EntryDifference(place, states[place], change, rms)
+        for place, (change, rms) in changes.items()
         if states[place] != "equal" or change is None or change > TOLERANCE
     )
     size = max(_size(f, is_alike) for f in (x, y) if f is not None)
     return QuantityDifference(name, max(size, len(changes)), differing)
 
 
-def _changes(x: Mapping[Place, Array], y: Mapping[Place, Array], has_size: bool) -> dict[Place, float | None]:
-    """By element how far the numbers are apart; None where they are, and without sizes nobody can tell how far."""
+def _changes(
+    x: Mapping[Place, Array], y: Mapping[Place, Array], has_size: bool
+) -> dict[Place, tuple[float | None, float | None]]:
+    """By element how far the numbers are apart, at most and rms; None where they are, and without sizes nobody can tell
+    how far.
+    """
     # an entry that is as good as zero beside the others is not compared with itself
     least = NEGLIGIBLE * max((float(np.abs(v).max()) for some in (x, y) for v in some.values()), default=0.0)
     found = {place: _change(x.get(place), y.get(place), least) for place in {**x, **y}}
-    return {place: c if has_size or c is None or c <= TOLERANCE else None for place, c in found.items()}
+    unknown = None, None
+    return {place: c if has_size or c[0] is None or c[0] <= TOLERANCE else unknown for place, c in found.items()}
 
 
 def _placed(formulas: Formulas, labels: tuple[tuple[str, ...] | None, ...], is_alike: bool) -> dict[Place, Expr]:
@@ -175,28 +189,33 @@ def _numbers(
     return dict(zip(entries, (np.broadcast_to(x, (STATES,)) for x in numbers), strict=True)), set(found.symbols)
 
 
-def _change(x: Array | None, y: Array | None, least: float) -> float | None:
-    """The largest difference over the largest number; None where there is no number to compare with."""
+def _change(x: Array | None, y: Array | None, least: float) -> tuple[float | None, float | None]:
+    """The largest difference over the largest number, and the rms; None where there is no number to compare with."""
     if x is None or y is None:
-        return None
-    apart, scale = float(np.abs(y - x).max()), max(float(np.abs(x).max()), least)
-    if not apart:
-        return 0.0
-    return apart / scale if scale and np.isfinite(apart / scale) else None
+        return None, None
+    apart, scale = np.abs(y - x), max(float(np.abs(x).max()), least)
+    most = float(apart.max())
+    if not most:
+        return 0.0, 0.0
+    if not (scale and np.isfinite(most / scale)):
+        return None, None
+    return most / scale, most / scale * float(np.sqrt(np.mean((apart / most) ** 2)))
 
 
 def _values(a: FormulaSet, b: FormulaSet) -> tuple[dict[str, Array], dict[str, Array]]:
-    """Random numbers for coordinates, velocities and accelerations, the same for both; 0 for inputs and the time;
-    defaults of parameters, or that of the other side, or the same random number where there is none.
+    """Random numbers for coordinates, velocities, accelerations, the time and given motions, the same for both; 0 for
+    other inputs; defaults of parameters, or that of the other side, or the same random number where there is none.
     """
-    rng, common = np.random.default_rng(5), dict[str, Array]()
+    rng, given, common = np.random.default_rng(5), np.random.default_rng(6), dict[str, Array]()
     kinds = {name: symbol.kind for side in (a, b) for name, symbol in sorted(side.symbols.items())}
     for name, kind in sorted(kinds.items()):
-        if kind in ("input", "time"):
+        if kind == "time" or (kind == "input" and (name.endswith("'") or f"{name}'" in kinds)):
+            common[name] = given.uniform(0.5, 1.5, STATES)
+        elif kind == "input":
             common[name] = np.zeros(STATES)
         elif kind == "parameter":
             common[name] = np.full(STATES, rng.uniform(0.5, 1.5))
         else:
-            common[name] = rng.uniform(-1.5, 1.5, STATES)
+            common[name] = rng.uniform(*RANGE, STATES)
     ours, theirs = ({name: np.full(STATES, x) for name, x in side.defaults.items()} for side in (a, b))
     return {**common, **theirs, **ours}, {**common, **ours, **theirs}

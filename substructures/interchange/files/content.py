@@ -9,8 +9,13 @@ _MARK = re.compile(rb"\(\*|^\s*N[LJF]\s*=", re.MULTILINE)
 
 
 def is_foreign(data: bytes) -> bool:
-    """Whether a file is no document of ours, by its content: XML, a table or a SYMORO file."""
-    return is_xml(data) or is_par(data) or is_table(data)
+    """Whether a file is no document of ours, by its content: XML, USD, a table or a SYMORO file."""
+    return is_xml(data) or is_usd(data) or is_par(data) or is_table(data)
+
+
+def is_usd(data: bytes) -> bool:
+    """Whether a file is USD, as text or binary."""
+    return data.startswith((b"#usda ", b"PXR-USDC"))
 
 
 def is_xml(data: bytes) -> bool:
@@ -30,4 +35,4 @@ def is_table(data: bytes) -> bool:
 
 def is_par(data: bytes) -> bool:
     """Whether a file looks like one of SYMORO."""
-    return bool(_MARK.search(data[:4000])) and b"sigma" in data
+    return bool(_MARK.search(data[:4000])) and b"sigma" in data.lower()

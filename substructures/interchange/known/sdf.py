@@ -10,15 +10,18 @@ sdf/world: name
 sdf/model: name canonical_link placement_frame namespace
 sdf|world/actor|light|audio|gui|scene|physics|atmosphere|plugin|spherical_coordinates|state|population|road: *
 world/model: name canonical_link placement_frame namespace
-world/gravity|magnetic_field|wind|joint|frame|include: *
+world/gravity|magnetic_field|wind|joint|frame: *
 model/model: name canonical_link placement_frame namespace
 model/link: name
 model/joint: name type
 model/frame: name attached_to
-model/include|plugin|gripper|sensor: *
+sdf|world|model/include: merge
+include/uri|name|static|placement_frame:
+include/plugin: *
+model/plugin|gripper|sensor: *
 model/static|self_collide|allow_auto_disable|enable_wind:
 model/linear_bushing_rpy|ball_constraint|collision_filter_group: *
-model|link|joint|frame|inertial|collision|visual/pose: relative_to degrees rotation_format frame
+model|include|link|joint|frame|inertial|collision|visual/pose: relative_to degrees rotation_format frame
 link/inertial: auto
 link/collision|visual: name
 link/gravity|enable_wind|self_collide|kinematic|must_be_base_link|velocity_decay: *

@@ -52,8 +52,10 @@ class Bodies:
     report: Report
     links: list[Link] = field(default_factory=list)
     frames: list[NamedFrame] = field(default_factory=list)
+    sites: dict[str, tuple[str | None, Triple]] = field(default_factory=dict)
     armatures: Mapping[str, Number] = field(default_factory=dict)  #: of actuators, by joint
     dampings: Mapping[str, Number] = field(default_factory=dict)
+    springdampers: dict[str, tuple[float, float]] = field(default_factory=dict)  #: timeconst and dampratio, by joint
     _joints: int = 0
     _moving: set[str] = field(default_factory=set)
     _named: set[str] = field(default_factory=set)  #: names in the file, which nothing without a name gets
@@ -77,9 +79,11 @@ class Bodies:
             elif child.tag == "frame":
                 inner = child.attributes.get("childclass", childclass)
                 self._children(child, parent, inner, outer.beyond(self._seat(child)))
-            elif child.tag == "site" and "name" in child.attributes and parent is not None:
+            elif child.tag == "site" and "name" in child.attributes:
                 seat = outer.beyond(self._seat(self.defaults.applied(child, childclass)))
-                self.frames.append(NamedFrame(child.attributes["name"], parent, seat.position, seat.rpy))
+                self.sites[child.attributes["name"]] = parent, seat.position
+                if parent is not None:
+                    self.frames.append(NamedFrame(child.attributes["name"], parent, seat.position, seat.rpy))
             elif child.tag in _IGNORED:
                 self.report.ignored(child.place, f"{_IGNORED[child.tag]}: no influence on the equations of motion")
 
@@ -142,11 +146,14 @@ class Bodies:
         self._strict(node, kind)
         read = self._angle if kind == "revolute" else _plain
         laws = {key: self._law(node, key) for key in ("stiffness", "damping", "armature")}
+        if any(value(x) for x in node.numbers("springdamper", 2, (ZERO, ZERO))):
+            self.springdampers[name] = self._springdamper(node)
+            laws |= {"stiffness": ZERO, "damping": ZERO}
         laws["armature"] = _sum(laws["armature"], self.armatures.get(name, ZERO))
         laws["damping"] = _sum(laws["damping"], self.dampings.get(name, ZERO))
         if kind in ("free", "spherical"):
             anchor = ORIGIN if kind == "free" else outer.point(triple(node.numbers("pos", 3, ORIGIN)))
-            return Motion(name, kind, node.place, anchor=anchor, damping=laws["damping"], armature=laws["armature"])
+            return replace(Motion(name, kind, node.place, anchor=anchor), **laws)  # type: ignore[arg-type] # numbers
         axis = triple(node.numbers("axis", 3, _Z))
         if all(map(is_zero, axis)):
             raise refuse(node.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
@@ -165,11 +172,8 @@ class Bodies:
 
     def _strict(self, node: Node, kind: str) -> None:
         """What changes mechanics and is not read."""
-        if any(value(x) for x in node.numbers("springdamper", 2, (ZERO, ZERO))):
-            message = "springdamper is not read: give stiffness and damping (MuJoCo prints them after compilation)"
-            raise refuse(node.place, "not-read", message)
-        if kind in ("free", "spherical") and value(self._law(node, "stiffness")):
-            message = "the spring of a ball or free joint has no formula in yaw, pitch, roll: set stiffness to 0"
+        if kind in ("free", "spherical") and any(map(value, node.numbers("springdamper", 2, (ZERO, ZERO)))):
+            message = "springdamper of a ball or free joint is not read: give its stiffness and damping"
             raise refuse(node.place, "not-read", message)
         if kind == "spherical" and value(self._law(node, "armature")):
             raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
@@ -178,6 +182,13 @@ class Bodies:
             self.report.lost(node.place, message)
         if value(node.number("springyield", ZERO)):
             self.report.lost(node.place, "springyield is not read: the spring of the joint does not yield")
+
+    def _springdamper(self, node: Node) -> tuple[float, float]:
+        timeconst, dampratio = map(value, node.numbers("springdamper", 2))
+        if timeconst <= 0 or dampratio <= 0:
+            message = "springdamper needs two positive numbers: a time constant in s and a damping ratio"
+            raise refuse(node.place, "bad-value", message)
+        return timeconst, dampratio
 
     def _law(self, node: Node, name: str) -> Number:
         """Stiffness, damping or armature; polynomials of higher order are refused."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -12,8 +13,8 @@ from substructures.interchange.bindings import joints_of, mimic_of
 from substructures.interchange.merge import vector
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
-from substructures.interchange.robot import Link, Loop, Mimic
-from substructures.interchange.rotations import from_quaternion, from_rpy, to_rpy
+from substructures.interchange.robot import Link, Loop, Mimic, Motion
+from substructures.interchange.rotations import from_axis_angle, from_quaternion, from_rpy, to_rpy
 from substructures.interchange.xml import Node
 
 WORLD = "world"
@@ -24,7 +25,7 @@ Pose = tuple[Array, Array]
 def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop, ...]:
     """The closures of all active <connect> and <weld>; frames coincide where no joint has moved."""
     found: list[Loop] = []
-    poses = _poses(links)
+    poses = poses_of(links, {})
     for section in root.all("equality"):
         for node in section.children:
             if node.attributes.get("active", "true") == "false":
@@ -60,14 +61,28 @@ def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mi
     return tuple(found)
 
 
-def _poses(links: tuple[Link, ...]) -> dict[str | None, Pose]:
-    """Where the bodies are at the start."""
+def poses_of(links: tuple[Link, ...], q: Mapping[str, float]) -> dict[str | None, Pose]:
+    """Where the bodies are at the start; ``q``: of joints of one coordinate that are elsewhere."""
     still = np.eye(3), np.zeros(3)
     poses: dict[str | None, Pose] = {None: still, WORLD: still}
     for link in links:
         R, r = poses[link.parent]
-        poses[link.name] = R @ from_rpy(link.rpy), r + R @ [value(x) for x in link.position]
+        pose = R @ from_rpy(link.rpy), r + R @ [value(x) for x in link.position]
+        for motion in link.motions:
+            pose = _moved(pose, motion, q.get(motion.name, value(motion.offset)) - value(motion.offset))
+        poses[link.name] = pose
     return poses
+
+
+def _moved(pose: Pose, motion: Motion, by: float) -> Pose:
+    """Beyond a joint of one coordinate."""
+    if not by:
+        return pose
+    (R, r), axis, anchor = pose, np.array([value(x) for x in motion.axis]), [value(x) for x in motion.anchor]
+    if motion.type == "prismatic":
+        return R, r + R @ axis * (by / np.linalg.norm(axis))
+    turned = R @ from_axis_angle(list(axis), by)
+    return turned, r + R @ anchor - turned @ anchor
 
 
 def _loop(node: Node, name: str, poses: dict[str | None, Pose]) -> Loop:

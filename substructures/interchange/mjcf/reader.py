@@ -12,13 +12,15 @@ from substructures.interchange.mjcf.loops import bindings_of, loops_of
 from substructures.interchange.mjcf.meshes import Meshes
 from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
+from substructures.interchange.mjcf.springs import with_springs
+from substructures.interchange.mjcf.tendons import tendons_of
 from substructures.interchange.numbers import ORIGIN, Triple, decimal_of, number_of, triple, value
 from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Robot, in_order
 from substructures.interchange.xml import Node, read_xml
 
 GRAVITY = "0 0 -9.81"
-_READ = ("compiler", "option", "default", "worldbody", "equality", "include", "actuator")
+_READ = ("compiler", "option", "default", "worldbody", "equality", "include", "actuator", "tendon")
 _IGNORED = {
     "size": "memory", "statistic": "statistics", "visual": "how it looks", "asset": "how it looks",
     "contact": "contacts", "sensor": "sensors", "keyframe": "states", "custom": "user data",
@@ -49,16 +51,18 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     _tell_of_others(root, report)
     gravity, place = _gravity(root, report)
     links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
-    return Robot(
+    robot = Robot(
         root.attributes.get("model", ""),
         links,
         report,
         frames=tuple(bodies.frames),
         mimics=bindings_of(root, links, report),
         loops=loops_of(root, links, report),
+        tendons=tendons_of(root, links, bodies.sites, defaults, report),
         gravity=gravity,
         gravity_place=place,
     )
+    return with_springs(robot, bodies.springdampers)
 
 
 def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) -> Node:
@@ -72,7 +76,7 @@ def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) 
         if name not in included or name in above or len(above) > _MOST_INCLUDES:
             message = f"the file '{name[:80]}' is not followed: put its content here"
             raise refuse(child.place, "external-file", message)
-        children += _with_included(read_xml(included[name]), included, [*above, name]).children
+        children += _with_included(read_xml(included[name], name), included, [*above, name]).children
     return replace(node, children=children)
 
 
@@ -103,22 +107,11 @@ def _tell_of_others(root: Node, report: Report) -> None:
             continue
         if node.tag in _IGNORED:
             report.ignored(node.place, f"{_IGNORED[node.tag]}: no influence on the equations of motion")
-        elif node.tag == "tendon":
-            for tendon in node.children:
-                _tell_of_tendon(tendon, report)
         elif node.tag == "deformable":
             raise refuse(node.place, "not-read", "deformable bodies have no relative coordinates")
         elif node.tag == "extension":
             for plugin in node.children:
                 report.lost(plugin.place, "what a plugin does is not known here: its forces are left out")
-
-
-def _tell_of_tendon(node: Node, report: Report) -> None:
-    acting = [n for n in ("stiffness", "damping", "armature", "frictionloss") if n in node.attributes]
-    if acting:
-        report.lost(node.place, f"{', '.join(acting)} of a tendon is left out: add a load for it")
-    else:
-        report.ignored(node.place, "a tendon without stiffness and damping has no influence on the equations of motion")
 
 
 def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -16,16 +16,18 @@ from substructures.interchange.xml import Node, numbers_in
 WORLD = "world"
 #: R and origin in the frame of the outermost model
 Pose = tuple[Array, Array]
+HERE: Pose = (np.eye(3), np.zeros(3))
 
 
 @dataclass(frozen=True)
 class Framed:
-    """A pose relative to a frame by its full name."""
+    """A pose relative to a frame by its full name: its own, or that of ``placement``, which is given relative to it."""
 
     relative_to: str
     R: Array
     r: Array
     place: Place
+    placement: str = ""
 
 
 @dataclass
@@ -33,7 +35,8 @@ class Frames:
     """All frames of the file by their full names, ``model::link``; resolved on demand."""
 
     given: dict[str, Framed] = field(default_factory=dict)
-    _known: dict[str, Pose] = field(default_factory=dict)
+    _known: dict[str, Pose] = field(default_factory=lambda: {"": HERE})
+    _inside: dict[str, Pose | None] = field(default_factory=dict)  #: of placement frames, in what they place
 
     def add(self, name: str, framed: Framed) -> None:
         """A frame by its full name. Raises InvalidDocument for a second one of this name."""
@@ -47,8 +50,8 @@ class Frames:
         here = name
         while here not in self._known:
             if here == "":
-                self._known[""] = np.eye(3), np.zeros(3)
-                continue
+                message = "the world is no frame of a model: a frame that places one is given in it"
+                raise refuse(place, "unknown-frame", message)
             if here not in self.given:
                 raise refuse(place, "unknown-frame", f"there is no frame '{here}'{among(here, self.given)}")
             if here in chain:
@@ -57,9 +60,27 @@ class Frames:
             here = self.given[here].relative_to
         for each in reversed(chain):
             own = self.given[each]
-            R, r = self._known[own.relative_to]
-            self._known[each] = R @ own.R, r + R @ own.r
+            found = _beyond(self._known[own.relative_to], (own.R, own.r))
+            if own.placement:
+                R, r = self._placement(each, own)
+                found = _beyond(found, (R.T, -R.T @ r))
+            self._known[each] = found
         return self._known[name]
+
+    def _placement(self, name: str, own: Framed) -> Pose:
+        """Of a placement frame, in the frame that it places, and that it has to be given in."""
+        if name not in self._inside:
+            self._inside[name] = None  # until it is known
+            self._inside[name] = Frames(self.given, {name: HERE}, self._inside).pose(own.placement, own.place)
+        found = self._inside[name]
+        if found is None:
+            raise refuse(own.place, "cycle", f"the frame '{name}' is placed by one that is not given in it")
+        return found
+
+
+def _beyond(one: Pose, other: Pose) -> Pose:
+    """A pose that is given in one."""
+    return one[0] @ other[0], one[1] + one[0] @ other[1]
 
 
 def full_name(prefix: str, name: str) -> str:
@@ -67,6 +88,12 @@ def full_name(prefix: str, name: str) -> str:
     if name == WORLD:
         return ""
     return f"{prefix}__model__" if name == "__model__" else prefix + name
+
+
+def by_placement(own: Framed, node: Node, prefix: str) -> Framed:
+    """A model's pose as that of its frame ``placement_frame``, where it has this attribute."""
+    name = node.attributes.get("placement_frame", "")
+    return replace(own, placement=full_name(prefix, name)) if name else own
 
 
 def framed(pose: Node | None, prefix: str, place: Place, default: str = "") -> Framed:

@@ -8,7 +8,8 @@ so until 1.6, it is given in the frame of the model.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections import ChainMap
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal
 
@@ -33,7 +34,9 @@ from substructures.interchange.numbers import (
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
 from substructures.interchange.rotations import to_rpy, turned_inertia
-from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, framed, full_name
+from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, by_placement, framed, full_name
+from substructures.interchange.sdf.includes import with_included
+from substructures.interchange.sdf.merging import FLAG, canonical_link
 from substructures.interchange.xml import Node, numbers_in
 
 _IN_MODEL_FRAME = "1.4"  #: and where use_parent_model_frame says so
@@ -48,17 +51,19 @@ _ACTING: dict[str, tuple[str, ...]] = {
 }  # fmt: skip
 
 
-def read_sdf(root: Node) -> Robot:
-    """The robot of an SDF document with one model. Raises InvalidDocument with line and element."""
-    version = root.attributes.get("version", "")
+def read_sdf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
+    """The robot of an SDF document with one model. ``included``: contents of the files of models that it includes, by
+    their paths from it. Raises InvalidDocument with line and element.
+    """
+    report, version = Report(), root.attributes.get("version", "")
     if version not in _VERSIONS:
         raise refuse(root.place, "version", f"version '{version[:20]}' is none of {', '.join(_VERSIONS)}")
+    SDF.tell(root, report)
+    root = with_included(root, {} if included is None else included, (_IN_MODEL_FRAME,), report)
     worlds = [*root.all("world")]
     models = [m for holder in (worlds or [root]) for m in holder.all("model")]
     if len(models) != 1:
         raise refuse(root.place, "several-models", f"{len(models)} models: one is needed, put them into one file each")
-    report = Report()
-    SDF.tell(root, report)
     for joint in (each for world in worlds for each in world.all("joint")):
         report.lost(joint.place, "a joint beside the model is left out: put it into the model", "topology")
     return _Reader(models[0], report, version == _IN_MODEL_FRAME).robot(worlds[0] if worlds else None)
@@ -73,6 +78,7 @@ class _Reader:
         self.links: dict[str, Node] = {}
         self.joints: list[tuple[str, Node]] = []
         self.attached: dict[str, str] = {}  #: of frames what they are attached to
+        self.canonical: dict[str, str] = {}  #: of models their canonical links
         self._resolved: dict[str, str | None] = {}
         self._enter(model, "", framed(None, "", model.place))
 
@@ -115,13 +121,12 @@ class _Reader:
 
     def _enter(self, model: Node, prefix: str, placed: Framed) -> None:
         """All frames of a model: its own, and those of links, joints, frames and models in it."""
-        if "placement_frame" in model.attributes:
-            raise refuse(model.place, "not-read", "placement_frame is not read: give the pose of the model")
         base = f"{prefix}__model__"
-        self.frames.add(base, placed)
+        self.frames.add(base, by_placement(placed, model, prefix))
+        link = canonical_link(model)
+        if link is not None:
+            self.canonical |= dict.fromkeys(filter(None, (base, prefix.removesuffix("::"))), prefix + link)
         for node in model.children:
-            if node.tag == "include":
-                raise refuse(node.place, "external-file", "<include> is not followed: put the model's content here")
             if node.tag in ("link", "joint", "frame", "model"):
                 self._named(node, prefix, base)
             elif node.tag != "pose":
@@ -149,12 +154,12 @@ class _Reader:
             attached = node.attributes.get("attached_to")
             at = base if attached is None else prefix + attached
             self.attached[name] = at
-            self.frames.add(name, framed(node.one("pose"), prefix, node.place, at))
+            placed = framed(node.one("pose"), prefix, node.place, at)
+            self.frames.add(name, by_placement(placed, node, prefix))
         else:
-            placed = framed(node.one("pose"), prefix, node.place, base)
-            self.frames.add(name, placed)
-            none = Framed(name, np.eye(3), np.zeros(3), node.place)
-            self._enter(node, f"{name}::", none)
+            inner = f"{name}::"
+            self._enter(node, inner, framed(node.one("pose"), prefix, node.place, base))
+            self.frames.add(name, Framed(f"{inner}__model__", np.eye(3), np.zeros(3), node.place))
 
     def _carried(self, prefix: str, node: Node) -> Link:
         """The child link of a joint, placed on its parent, with the joint's axes through the joint's origin."""
@@ -201,7 +206,7 @@ class _Reader:
         numbers = [value(x) for x in numbers_in(xyz.text, 3, xyz.place, "xyz")]
         if not any(numbers):
             raise refuse(xyz.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
-        flag = node.one("use_parent_model_frame")
+        flag = node.one(FLAG)
         in_model = self.in_model_frame if flag is None else flag.text.strip() in _TRUE
         expressed = xyz.attributes.get("expressed_in") or ("__model__" if in_model else "")
         R = axes[0] if not expressed else self.frames.pose(full_name(prefix, expressed), xyz.place)[0]
@@ -240,9 +245,10 @@ class _Reader:
     def _link_of(self, name: str) -> str | None:
         """The link that a frame is attached to, perhaps over other frames; None for the model itself."""
         chain: dict[str, None] = {}
-        while name not in self._resolved and name in self.attached and name not in chain:
+        held = ChainMap(self.attached, self.canonical)
+        while name not in self._resolved and name in held and name not in chain:
             chain[name] = None
-            name = self.attached[name]
+            name = held[name]
         found = self._resolved.get(name, name if name in self.links else None)
         self._resolved |= dict.fromkeys(chain, found)
         return found

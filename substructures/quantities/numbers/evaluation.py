@@ -53,6 +53,7 @@ from substructures.quantities.sources import (
     cost,
     numbers_per_state,
     read_quantities,
+    require_there,
     steps,
 )
 from substructures.tree.model import Model
@@ -321,13 +322,13 @@ def check(
 ) -> States:
     """The states, when :func:`evaluate` would accept the arguments; nothing is computed.
 
-    Raises as :func:`evaluate`, but for formulas that are too large to be made here.
+    Raises as :func:`evaluate`, but for formulas that are too large to be made here, or take too long.
     """
     names = read_quantities(quantities)
     sources = _of_joints(sources, names, joints)
     given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
     states = read_states(sources.model, given, None)
-    with suppress(TooLarge):
+    with suppress(TooLarge, TimeoutError):
         values = _values(sources, given, along, states, names)
         for source, program, outputs in steps(sources, names):
             if program is not None and source != REACTIONS:
@@ -392,6 +393,7 @@ def _values(
 ) -> dict[str, Any]:
     """Values of all symbols. Raises InvalidArgument for an argument that a quantity needs."""
     model = sources.model
+    require_there(model, quantities)
     # the first quantity that needs an argument is the one that a message names
     needed = {field: name for name in reversed(quantities) for field in TABLE[name].requires}
     if "qdd" in needed and states.qdd is None and model.dof:

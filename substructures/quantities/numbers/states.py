@@ -158,7 +158,9 @@ def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
         Fault(
             f"/{name}/{escape(key)}",
             "unknown-coordinate",
-            f"unknown coordinate '{key[:80]}'{among(key, model.coordinates, k)}",
+            f"the motion of '{key}' is given ('driven'): leave it out"
+            if key in model.driven
+            else f"unknown coordinate '{key[:80]}'{among(key, model.coordinates, k)}",
         )
         for k, key in enumerate(unknown)
     ]

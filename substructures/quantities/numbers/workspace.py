@@ -16,8 +16,8 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
-from substructures.tree.model import Model, require_stored
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import Model
+from substructures.tree.model_outputs import KINEMATICS, require_stored
 
 #: of coordinates by the letter of their joint
 UNITS = {"R": "rad", "P": "m"}
@@ -109,6 +109,31 @@ class Workspace:
         for (a, b), x in matrix.items():
             entries[(a,)] = entries.get((a,), self.graph.zero) + x * self.velocity_symbol(b)
         return entries
+
+    @cached_property
+    def momenta(self) -> list[Expr]:
+        """p_a = dT/dq'^a = g_ab q'^b, and g_a0 of given motions."""
+        found = self.times_velocity(self.elements("metric"))
+        mixed = self.elements("g_a0") if self.model.driven else {}
+        return [found.get((a,), self.graph.zero) + mixed.get((a,), 0) for a in range(self.n)]
+
+    @cached_property
+    def kinetic_energy(self) -> Expr:
+        """T = 1/2 g_ab q'^a q'^b, and g_a0 q'^a + 1/2 g_00 of given motions."""
+        momentum = self.times_velocity(self.elements("metric"))
+        twice = self.graph.sum(p * self.velocity_symbol(a) for (a,), p in momentum.items())
+        if not self.model.driven:
+            return twice / 2
+        mixed = self.graph.sum(x * self.velocity_symbol(a) for (a,), x in self.elements("g_a0").items())
+        return (twice + self.scalar("g_00")) / 2 + mixed
+
+    @property
+    def time(self) -> dict[str, Expr]:
+        """Rates of what changes with the time alone: the time, and driven coordinates that are inputs."""
+        given = [name for name in self.model.driven if name in self.model.inputs]
+        names = [(f"{name}{primes}", f"{name}{primes}'") for name in given for primes in ("", "'")]
+        moving = {x: self.graph.symbol(rate) for x, rate in names if rate not in self.zero}
+        return {"t": self.graph.one, **moving}
 
     def inverse_dynamics(self, accelerations: Sequence[Expr] | None = None) -> list[Expr]:
         """g_ab q''^b + Gamma_abc q'^b q'^c - Q_a at the symbols q'', or at other expressions for them."""

@@ -14,6 +14,7 @@ solved as bounded least squares by an active set (P. B. Stark and R. L. Parker, 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -50,10 +51,15 @@ class FrictionLaws:
 
     def slipping(self, rates: Array) -> Array:
         """The size of the force of joints that slip, (..., k)."""
-        with np.errstate(divide="ignore", invalid="ignore"):
-            ratio = np.where(self.stribeck > 0, rates / self.stribeck, np.inf)
+        more, width = self._bump
         # F_c + (F_s - F_c) exp(-(v/v_s)^2)
-        return np.asarray(self.coulomb + (self.static - self.coulomb) * np.exp(-(ratio**2)))
+        return np.asarray(self.coulomb + more * np.exp(-np.square(rates / width)))
+
+    @cached_property
+    def _bump(self) -> tuple[Array, Array]:
+        """F_s - F_c and v_s; 0 and 1 where there is none."""
+        some = self.stribeck > 0
+        return np.where(some, self.static - self.coulomb, 0.0), np.where(some, self.stribeck, 1.0)
 
     def smooth(self, rates: Array) -> Array:
         """What the formulas of the model have, (..., k)."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
@@ -24,18 +24,17 @@ STUCK, LEAST = 50, 1e-9
 ADVICE = "joints stop and break away without end: raise 'max_steps', or take the smooth law of friction ('regularised')"
 
 
-class Sticking(Protocol):
-    """x' = f(t, x), x = (q, q', ...), while the joints with friction slip or stick as ``signs`` say."""
+class Deciding(Protocol):
+    """x' = f(t, x), x = (q, q', ...), while what sticks and slips does as ``signs`` say."""
 
-    laws: FrictionLaws
     n: int
 
     @property
-    def signs(self) -> Signs:
-        """By joint with friction: 1 and -1 slip that way, 0 sticks."""
+    def signs(self) -> Any:
+        """By joint with friction: 1 and -1 slip that way, 0 sticks; of contacts their modes."""
 
     @signs.setter
-    def signs(self, signs: Signs) -> None: ...
+    def signs(self, signs: Any) -> None: ...
 
     def __call__(self, t: float, x: Array) -> Array:
         """x' at (t, x)."""
@@ -43,14 +42,20 @@ class Sticking(Protocol):
     def enter(self, start: float, end: float) -> None:
         """Told the times between which it is called next."""
 
-    def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
-        """q'' (n,), the friction of the joints that have some (k,), and the power of all forces without potential."""
-
-    def decided(self, t: float, x: Array) -> tuple[Signs, Array]:
-        """Who slips and who sticks at a state, and the state with those at rest at rest."""
+    def decided(self, t: float, x: Array) -> tuple[Any, Array]:
+        """Who slips and who sticks at a state, and the state with those at rest at rest. Raises ArithmeticError."""
 
     def watches(self) -> list[Watch]:
         """What ends that."""
+
+
+class Sticking(Deciding, Protocol):
+    """The same of joints with friction."""
+
+    laws: FrictionLaws
+
+    def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
+        """q'' (n,), the friction of the joints that have some (k,), and the power of all forces without potential."""
 
 
 @dataclass
@@ -58,9 +63,10 @@ class DryRun(IntegratedMotion):
     """With the times from which on joints slip and stick as ``signs`` say."""
 
     since: list[float] = field(default_factory=list)
-    signs: list[Signs] = field(default_factory=list)
+    signs: list[Any] = field(default_factory=list)
+    advice: ClassVar[str] = ADVICE
 
-    def at(self, t: float) -> Signs:
+    def at(self, t: float) -> Any:
         """Who slips and who sticks at a time; of two that meet there the later one."""
         return self.signs[max(0, int(np.searchsorted(self.since, t, side="right")) - 1)]
 
@@ -71,7 +77,7 @@ class DryRun(IntegratedMotion):
             second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
         return second, force
 
-    def undecided(self, t: float, x: Array, signs: Signs, why: str) -> None:
+    def undecided(self, t: float, x: Array, signs: Any, why: str) -> None:
         """End where nobody can tell who slips and who sticks, with the state there."""
         self.since.append(t)
         self.signs.append(signs)
@@ -96,8 +102,11 @@ class DryRun(IntegratedMotion):
             self.status, self.message = piece.status, piece.message
 
 
+Run = TypeVar("Run", bound=DryRun)
+
+
 def integrate_dry(
-    f: Sticking,
+    f: Deciding,
     x: Array,
     span: tuple[float, float],
     outputs: Array,
@@ -105,9 +114,12 @@ def integrate_dry(
     watches: Sequence[Watch],
     breaks: Sequence[float],
     progress: TimeReport | None,
-) -> DryRun:
-    """As :func:`~substructures.analysis.motion.integrators.integration.integrate`; joints slip and stick."""
-    run, t, still = DryRun(), span[0], 0
+    run: Run,
+) -> Run:
+    """As :func:`~substructures.analysis.motion.integrators.integration.integrate`; joints slip and stick. ``run``: what
+    the pieces are added to.
+    """
+    t, still = span[0], 0
     while True:
         try:
             f.signs, x = f.decided(t, x)
@@ -128,7 +140,7 @@ def integrate_dry(
         if end >= span[1]:
             return run
         if still > STUCK or run.steps >= settings.max_steps:
-            run.end("failed", f"at t = {end:.9g} s {ADVICE}")
+            run.end("failed", f"at t = {end:.9g} s {run.advice}")
             return run
         t = end
 

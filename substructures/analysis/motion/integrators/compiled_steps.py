@@ -65,7 +65,7 @@ class CompiledStepper:
 
     def __init__(self, first: Any, end: float, run: Callable[[int], CompiledRun]) -> None:
         """``first``: SciPy's at the start, which chooses the first step; ``run``: of so many steps in a call."""
-        self.fun, self.nfev = first.fun, first.nfev
+        self.fun, self.nfev, self._plain, self._end = first.fun, first.nfev, type(first), end
         self._before = first.nfev - 1
         self.t, self.t_old = float(first.t), float(first.t)
         self.y: Array = np.array(first.y)
@@ -89,12 +89,31 @@ class CompiledStepper:
             self.status = "finished"
         return None
 
+    @property
+    def h_abs(self) -> float:
+        """The size of the step that is tried next."""
+        return self._run.next_step
+
+    def go_on(self, y: Array) -> None:
+        """The next step goes on from this state at the present time."""
+        self.y, self._before = y, self.nfev
+        self._run.begin(self.t, y, self._end, self._run.next_step)
+        self._made, self._next, self._tried = self._made[:0], 0, 1
+
+    def plain(self) -> Any:
+        """SciPy's stepper that made the last step, as its polynomial may be wanted."""
+        h = self.t - self.t_old
+        # any error is taken
+        solver = self._plain(self.fun, self.t_old, self.y_old, self.t, rtol=1.0, atol=1.0, first_step=h)
+        solver.step()
+        return solver
+
     def _more(self) -> bool:
         """Further steps: more and more of them, as the first ones may end at a corner."""
         self._made, self._next = self._made[:0], 0
         while not len(self._made) and self._run.status == RUNNING:
             self._made = self._run.advance(self._tried).copy()
-            self._tried = min(2 * self._tried, MOST)
+        self._tried = min(2 * self._tried, MOST)
         return bool(len(self._made))
 
     @cached_property

@@ -144,6 +144,8 @@ class _Run:
         self.outputs = outputs.tolist()
         self.next = 0
         self.levels: list[float] = []
+        #: how often each was zero
+        self.met = [0] * len(watches)
         #: the largest that they were
         self.sizes: list[float] = []
         self.span, self.tiny = span[1] - span[0], 0
@@ -237,7 +239,8 @@ class _Run:
                 self._turn(k, t, x, signs)
                 return t
             self.motion.found.append((k, t, x))
-            if self.watches[k].stops:
+            self.met[k] += 1
+            if self.watches[k].stops and self.met[k] >= self.watches[k].count:
                 self.motion.end("stopped", f"stopped by the event '{self.watches[k].name}' at t = {t:.9g} s")
                 self.collect(t, dense)
                 self.last = t, x

@@ -38,7 +38,8 @@ class Corner(Protocol):
 class Watch:
     """Zeros of g(t, x), a quantity less ``level``, that are looked for: ``direction`` +1 rising, -1 falling, 0 both.
 
-    ``corner``: at the zeros the right-hand side changes, and the integrator begins anew.
+    ``stops``: at the ``count``-th. ``corner``: at the zeros the right-hand side changes, and the integrator begins
+    anew.
     """
 
     name: str
@@ -47,6 +48,7 @@ class Watch:
     stops: bool = True
     level: float = 0.0
     corner: Corner | None = None
+    count: int = 1
 
 
 class Dense:

@@ -17,10 +17,10 @@ ACTIONS = ("stop", "record")
 class Event:
     """``quantity`` (an expression in coordinates, velocities, parameters and t, its unit) crosses ``level``.
 
-    ``direction``: which crossings count; ``action``: whether the motion stops there. ``reset``: coordinates and
-    velocities (``q'``) that jump there, each to an expression in the state before: the motion goes on. All crossings in
-    a step of the integrator are found, but for a pair that is less than 1/256 of the step apart. Raises
-    InvalidArgument.
+    ``direction``: which crossings count; ``action``: whether the motion stops there, at the ``count``-th. ``reset``:
+    coordinates and velocities (``q'``) that jump there, each to an expression in the state before: the motion goes on.
+    All crossings in a step of the integrator are found, but for a pair that is less than 1/256 of the step apart.
+    Raises InvalidArgument.
     """
 
     name: str
@@ -29,6 +29,7 @@ class Event:
     direction: Literal["rising", "falling", "both"] = "both"
     action: Literal["stop", "record"] = "stop"
     reset: Mapping[str, NumberOrExpression] = field(default_factory=dict)
+    count: int = 1
 
     def __post_init__(self) -> None:
         object.__setattr__(self, "level", real(self.level, "/level"))

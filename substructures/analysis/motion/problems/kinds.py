@@ -7,7 +7,8 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.analysis.arguments import one_of
-from substructures.analysis.equations.velocity_constraints import Constraint
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint
+from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.problem import StateVector
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
@@ -20,10 +21,12 @@ class TreeMotion:
 
     ``friction`` of joints that have some: by the smooth law of the formulas; ``exact``, set-valued at rest, with joints
     that stick; or ``loaded``, with what the reactions of joints add: ``bearings``, all reactions of the tree.
+    ``contacts``: points that do not pass through planes.
     """
 
     friction: Literal["regularised", "exact", "loaded"] = "regularised"
     bearings: ReactionModel | None = None
+    contacts: Sequence[Contact] = ()
 
     def __post_init__(self) -> None:
         one_of(self.friction, "friction", ("regularised", "exact", "loaded"))
@@ -33,6 +36,9 @@ class TreeMotion:
         if self.friction != "loaded" and self.bearings is not None:
             message = f"'bearings' go with 'loaded' friction, found '{self.friction}': leave them out"
             raise InvalidArgument.at("/bearings", "not-supported", message)
+        if self.friction != "regularised" and self.contacts:
+            message = f"contacts go with the smooth friction of joints, found '{self.friction}': leave 'friction' out"
+            raise InvalidArgument.at("/friction", "not-supported", message)
 
 
 @dataclass(frozen=True)

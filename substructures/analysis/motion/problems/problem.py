@@ -44,11 +44,11 @@ class Start:
 class Integrator:
     """How a motion is computed, and how accurate it must be.
 
-    ``method``: DOP853, RK45, RK23 for every model; Radau, BDF, LSODA (stiff equations) without closures; Taylor (with
-    the package heyoka) or a FixedStep (real time) for trees. Tolerances of a step, |error| <= absolute + relative |x|;
-    ``max_step`` [s], but of steps of a fixed size; ``max_steps``: so many accepted steps at most. ``drift_limit``:
-    relative drift of first integrals above which a result is not right. ``progress`` is told the finished share of the
-    span and stops by False; ``folder``: where compiled kernels are kept. Raises InvalidArgument.
+    ``method``: DOP853, RK45, RK23 and, of stiff equations, Radau, BDF for every model; LSODA (stiff) without closures;
+    Taylor (with the package heyoka) or a FixedStep (real time) for trees. Tolerances of a step, |error| <= absolute +
+    relative |x|; ``max_step`` [s], but of steps of a fixed size; ``max_steps``: so many accepted steps at most.
+    ``drift_limit``: relative drift of first integrals above which a result is not right. ``progress`` is told the
+    finished share of the span and stops by False; ``folder``: where compiled kernels are kept. Raises InvalidArgument.
     """
 
     method: str | FixedStep = "DOP853"

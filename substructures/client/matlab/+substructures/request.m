@@ -1,8 +1,9 @@
-function answer = request (path, body)
+function answer = request (path, body, method, headers)
   % REQUEST  Ask a server of substructures; needs nothing but MATLAB or Octave 7.
   %
   %   answer = substructures.request ("/v1/trees")                 GET
   %   answer = substructures.request ("/v1/trees", document)       POST, a struct, a containers.Map or JSON text
+  %   answer = substructures.request (path, document, "put", {"If-Match", etag})   any method, headers; [] sends nothing
   %
   % The server is that at the address in the environment variable SUBSTRUCTURES_SERVER (http://127.0.0.1:8000), asked
   % with the API key in SUBSTRUCTURES_KEY, if there is one. Lists of one may be sent and come as what stands alone, names
@@ -13,13 +14,25 @@ function answer = request (path, body)
     address = 'http://127.0.0.1:8000';
   end
   key = getenv ('SUBSTRUCTURES_KEY');
-  options = weboptions ('Timeout', 60);
+  if (nargin < 2)
+    body = [];
+  end
+  if (nargin < 3)
+    method = 'auto';
+  end
+  if (nargin < 4)
+    headers = cell (0, 2);
+  end
   if (~ isempty (key))
-    options = weboptions ('Timeout', 60, 'HeaderFields', {'Authorization', ['Bearer ' char(key)]});
+    headers(end + 1, :) = {'Authorization', ['Bearer ' char(key)]};
+  end
+  options = weboptions ('Timeout', 60, 'RequestMethod', char (method));
+  if (~ isempty (headers))
+    options.HeaderFields = headers;
   end
   url = [char(address) char(path)];
   try
-    if (nargin < 2)
+    if (isnumeric (body) && isempty (body))
       answer = webread (url, options);
     else
       if (~ (ischar (body) || isa (body, 'string')))

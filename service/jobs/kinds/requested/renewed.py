@@ -1,0 +1,40 @@
+"""What is stored, derived anew of its own documents (:mod:`service.operations.renewal`): works of the service."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from service.content.derivation import derived_part
+from service.content.summaries import part_content, tree_summary
+from service.database.packed import pack
+from service.jobs.engines.engine import Outcome
+from service.jobs.kinds.decoded import part_of
+from service.jobs.kinds.kind import Blobs
+from service.schemas.jobs import ItemDocument
+from substructures.tree.document import TreeSpec
+from substructures.tree.model import couple_shape
+from substructures.tree.plausibility import Plausibility
+
+Renewed = Callable[[ItemDocument, Blobs], Outcome]
+
+
+def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """Files ``program``, ``content`` of the definition with this digest. Raises as
+    :func:`service.content.derivation.derived_part`."""
+    part = derived_part(blobs[item["definition"]], item["recipe"], item["nodes"])
+    return Outcome(files=part_content(part, item["recipe"]).files())
+
+
+def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
+    """Files ``program`` (packed), ``summary`` of a stored document; ``parts``: the digests of definition and program of
+    every instance. Raises as :func:`substructures.tree.model.couple_shape`."""
+    spec = TreeSpec.stored(item["tree"])
+    parts = {name: part_of(definition, program, blobs) for name, (definition, program) in item["parts"].items()}
+    model = couple_shape(spec, parts, item["nodes"])
+    mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
+    told = {"program": model.program.digest, "nodes": len(model.program)}
+    told |= {"dof": model.dof, "joints": model.joints, "mass": mass}
+    return Outcome(told, {"program": pack(model.program), "summary": tree_summary(spec, model)})
+
+
+RENEWED: Mapping[str, Renewed] = {"renew-part": _part, "renew-tree": _tree}

@@ -1,0 +1,121 @@
+"""What an optimal control must meet: demands on the end, bounds, limits along the motion, and what else is unknown."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from substructures.analysis.arguments import real, whole
+from substructures.analysis.control.adjoint import HORIZON
+from substructures.analysis.control.path_limits import Limits, limits_of
+from substructures.analysis.control.problem import ControlProblem
+from substructures.array import Array
+from substructures.documents import escape
+from substructures.errors import InvalidArgument, among
+from substructures.quantities.measured import numeric
+from substructures.tree.model import Model
+
+#: segments that are taken where nothing says how many
+SEGMENTS = 10
+MAX_ITERATIONS = 100_000
+
+
+#: numbers of the last state, None where nothing is demanded: all in the order of the coordinates, or some by name
+Demanded = Sequence[float | None] | Mapping[str, float | None]
+
+
+@dataclass(frozen=True)
+class End:
+    """Demands on the last state: ``q`` [rad, m] and ``qd`` [rad/s, m/s]."""
+
+    q: Demanded = field(default_factory=dict)
+    qd: Demanded = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class Demands:
+    """What an optimum must meet, and how it is searched for.
+
+    ``end``: demands on the last state; ``bounds``: least and largest value by control [N m, N], None for none;
+    ``path``: the same by expression in coordinates, velocities, controls, parameters and ``t``, at all nodes (each
+    interval is a segment then). Unknown beside the controls: ``free_parameters``, between two values each, from
+    those of the problem on; with ``free_horizon`` [s], least and largest, the horizon, from that of the problem on.
+
+    ``guess``: controls to begin with, by name one number or one for each node; ``warm_start``: an earlier Optimum, or
+    its JSON, whose motion, controls, parameters and horizon the search begins with. ``segments``: divides the intervals
+    (default: the largest such up to 10); ``tolerance``: change of the cost at which the search ends, after
+    ``iterations`` at the latest. Raises InvalidArgument.
+    """
+
+    end: End = field(default_factory=End)
+    bounds: Limits = field(default_factory=dict)
+    guess: Mapping[str, Any] = field(default_factory=dict)
+    segments: int | None = None
+    iterations: int = 500
+    tolerance: float = 1e-8
+    path: Limits = field(default_factory=dict)
+    free_parameters: Limits = field(default_factory=dict)
+    free_horizon: tuple[float, float] | None = None
+    warm_start: Any = None
+
+    def __post_init__(self) -> None:
+        if self.segments is not None:
+            whole(self.segments, "segments", 1, sys.maxsize)
+        whole(self.iterations, "iterations", 1, MAX_ITERATIONS)
+        object.__setattr__(self, "tolerance", real(self.tolerance, "/tolerance"))
+        if not 0 < self.tolerance < 1:
+            code = "greater-than" if self.tolerance <= 0 else "less-than"
+            message = f"'tolerance' must lie between 0 and 1, found {self.tolerance:g}"
+            raise InvalidArgument.at("/tolerance", code, message)
+        if self.free_horizon is not None:
+            least, most = (real(x, f"/free_horizon/{i}") for i, x in enumerate(self.free_horizon))
+            if not 0 < least < most:
+                message = f"two rising times above zero are needed, found {least:g} and {most:g}"
+                raise InvalidArgument.at("/free_horizon", "empty", message)
+
+
+def segments_of(problem: ControlProblem, wanted: Demands) -> int:
+    """Their number. Raises InvalidArgument."""
+    count, intervals = wanted.segments, problem.intervals
+    if wanted.path and count not in (None, intervals):
+        message = f"with limits on the 'path' there are as many as intervals, {intervals}: leave 'segments' out"
+        raise InvalidArgument.at("/segments", "not-a-divisor", message)
+    if wanted.path:
+        return intervals
+    count = count or max(k for k in range(1, SEGMENTS + 1) if intervals % k == 0)
+    if intervals % count:
+        raise InvalidArgument.at("/segments", "not-a-divisor", f"{count} segments do not divide {intervals} intervals")
+    return count
+
+
+def ranges_of(wanted: Demands) -> tuple[Array, Array]:
+    """Least and largest values of free parameters and of a free horizon, in this order. Raises InvalidArgument."""
+    horizon: Limits = {} if wanted.free_horizon is None else {HORIZON: wanted.free_horizon}
+    return limits_of({**wanted.free_parameters, **horizon}, "free_parameters")
+
+
+def demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[int, float]]:
+    """(index in (q, q'), value) of every demand. Raises InvalidArgument."""
+    pointer = f"/end/{field}"
+    if not isinstance(given, Mapping):
+        if len(given) != model.dof:
+            raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {model.dof} coordinates")
+        given = dict(zip(model.coordinates, given, strict=True))
+    for name in given:
+        if name not in model.coordinates:
+            message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates)}"
+            raise InvalidArgument.at(f"{pointer}/{escape(name)}", "unknown-coordinate", message)
+    pairs = ((a, given.get(name)) for a, name in enumerate(model.coordinates))
+    return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
+
+
+def bounds_of(controls: Sequence[str], wanted: Demands) -> tuple[Array, Array]:
+    """Least and largest values of the controls, (m,). Raises InvalidArgument."""
+    for name in wanted.bounds:
+        if name not in controls:
+            message = f"'{name[:80]}' is not one of the controls{among(name, controls)}"
+            raise InvalidArgument.at(f"/bounds/{escape(name)}", "unknown-input", message)
+    limits_of(wanted.bounds, "bounds")
+    return limits_of({name: wanted.bounds.get(name, (None, None)) for name in controls}, "bounds")

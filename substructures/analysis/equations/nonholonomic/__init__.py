@@ -1,0 +1,1 @@
+"""Velocity constraints B q' + b = 0: their rows, quasi-velocities, Voronets' and Boltzmann-Hamel equations."""

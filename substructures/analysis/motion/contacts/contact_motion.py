@@ -1,0 +1,300 @@
+"""Equations of motion while contacts are open or closed, with the forces that closed ones need.
+
+Closed contacts keep their gaps, G_N q'' + G_N' q' = 0; those that stick keep their places, with the rows G_T as well;
+those that slip along d have the friction -mu lambda_N d:
+
+    g q'' + Gamma q'q' = Q + (G_N - mu d . G_T)^T lambda_N + G_T^T lambda_T
+
+Who does what is decided anew (see :mod:`.deciding`) where a gap closes, a force along the normal vanishes, a point that
+slips stops, or one that sticks needs more than mu lambda_N.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.contacts.complementarity import ROUNDS, SOFT
+from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
+from substructures.analysis.motion.integrators.steppers import Stepper
+from substructures.analysis.motion.integrators.zeros import Watch
+from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
+from substructures.analysis.motion.right_hand_side import RightHandSide
+from substructures.array import Array
+from substructures.errors import InvalidArgument
+from substructures.quantities.numbers.states import require
+from substructures.tree.model import Model
+
+#: of a contact; one that passes is below its plane, where it did not act when it came there; a full one has all of its
+#: friction, as one that slips, but others hold it
+PASSING, OPEN, STICK, FULL, SLIP = -1, 0, 1, 2, 3
+#: by contact (k, 3): one of these, and the way (2,) of its slip
+Modes = Array
+#: of the velocity below which restitution ends, 1e-4 m/s at most: an approach that is an impact, and a slip that is
+#: none where contacts change; by so much a point slips back before its stop is seen
+FAST, APPROACH, REST = 1e-4, 1e-3, 1e-6
+#: a contact with a smaller gap [m] touches; so far below may the start be
+TOUCHING, BELOW = 1e-9, 1e-6
+#: of the size of forces: how far beyond what it can do a contact is watched
+EDGE = 1e-9
+#: of the largest: what is nothing but rounding; an inverse mass above zero
+ROUNDING, LEAST = 4e-16, 1e-300
+#: gaps [m] and velocities [m/s] that are closed well enough within a motion; offset of a gap that opens slowly [m]
+DRIFT, SLOW = 1e-13, 1e-11
+#: states of a step that watches remember
+MANY = 256
+
+
+class ContactMotion(RightHandSide):
+    """x' = f(t, x), x = (q, q', W), while contacts are as ``modes`` say; W has the work of their forces.
+
+    ``gap`` (k,), ``G`` (k, 3, n), ``rate`` (k, 3) = G_0, ``bias`` (k, 3), ``acts`` (k,) and ``g`` (n, n) are those of
+    the last :meth:`look`; ``force`` (k, 3) along the normal and two tangents that of the last :meth:`evaluate`. Not for
+    several threads. Raises as RightHandSide and :func:`contact_rows`.
+    """
+
+    def __init__(
+        self,
+        model: Model,
+        values: Mapping[str, float],
+        zero: Iterable[str],
+        conditions: Conditions,
+        contacts: Sequence[Contact],
+        folder: Path | None = None,
+    ) -> None:
+        super().__init__(model, values, zero, conditions, folder)
+        self.has_power, self.contacts = True, tuple(contacts)
+        k, n = len(self.contacts), self.n
+        self.modes: Modes = np.zeros((k, 3))
+        self.friction = np.array([contact.friction for contact in self.contacts])
+        count = np.array([TANGENTS[contact.type] for contact in self.contacts])
+        self.tangents = (np.arange(2) < count[:, None]) & (self.friction > 0)[:, None]
+        self.rest_velocity = speed = np.array([contact.rest_velocity for contact in self.contacts])
+        self.approach, self.rest = (share * np.minimum(speed, FAST) for share in (APPROACH, REST))
+        self.force, self.scale, self.slow = np.zeros((k, 3)), np.ones(k), np.zeros(k)
+        self._watched: dict[tuple[float, bytes], tuple[Array, Array, Array]] = {}
+        found = {GAP: np.zeros((1, k)), ROWS: np.zeros((1, k, 3, n)), RATE: np.zeros((1, k, 3))}
+        found |= {BIAS: np.zeros((1, k, 3)), WHEN: np.zeros((1, k))}
+        self.gap, self.G, self.rate, self.bias, self.acts = (x[0] for x in found.values())
+        self.g = np.zeros((n, n))
+        source = contact_rows(model, contacts)
+        pushed = {a for i, r, a in source.outputs[ROWS].index if r == 0 or self.tangents[i, r - 1]}
+        #: coordinates that contact forces may act on
+        self.pushed = [model.coordinates[a] for a in sorted(pushed)]
+        known, columns = dict(values) | {"t": self._t}, [(state_names(model), self._x), *self._varying]
+        require(source, list(found), dict.fromkeys([*known, *(name for names, _ in columns for name in names)]))
+        self._see = program_kernel(source, folder).bind(found, known, columns=columns)
+        metric = program_kernel(model.program.select(["metric"]), folder)
+        self._weigh = metric.bind({"metric": self.g[None]}, known, columns=columns)
+
+    def compiled(self) -> None:
+        """Not: contact forces are found in between."""
+
+    @property
+    def signs(self) -> Modes:
+        """The modes."""
+        return self.modes
+
+    @signs.setter
+    def signs(self, modes: Modes) -> None:
+        self.modes = modes
+
+    @property
+    def closed(self) -> NDArray[np.bool_]:
+        """Contacts that are closed (k,)."""
+        return self.modes[:, 0] >= STICK
+
+    def require_above(self, t: float, x: Array) -> None:
+        """Raises InvalidArgument (``/q``) for a start at which a contact that acts is below its plane."""
+        self.look(t, x)
+        for contact, gap, acts in zip(self.contacts, self.gap.tolist(), (self.acts > 0).tolist(), strict=True):
+            if acts and gap < -BELOW:
+                message = (
+                    f"the point of the contact '{contact.name}' starts {-gap:.3g} m below its plane: raise it, or let "
+                    "the contact act later ('when')"
+                )
+                raise InvalidArgument.at("/q", "penetration", message)
+
+    def look(self, t: float, x: Array) -> None:
+        """Gaps, rows and the metric at a state."""
+        self._move(t, x)
+        self._see()
+        self._weigh()
+
+    def velocities(self, x: Array) -> Array:
+        """G q' + G_0 (k, 3) at the state that was looked at."""
+        return np.asarray(self.G @ x[self.n : 2 * self.n] + self.rate)
+
+    def power(self, x: Array) -> float:
+        """Of the forces of the last evaluation on the coordinates, at the state that was looked at [W]."""
+        return float((self.force * (self.G @ x[self.n : 2 * self.n])).sum())
+
+    def free(self, t: float, x: Array) -> Array:
+        """q'' (n,) without contact forces, a copy; gaps and rows are those of the state."""
+        second = super().evaluate(t, x)[0].copy()
+        self.look(t, x)
+        return second
+
+    def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
+        """(q'', pivots of the metric, power)."""
+        free, pivots, power = super().evaluate(t, x)
+        self.force[:] = 0.0
+        closed = np.flatnonzero(self.closed)
+        if not len(closed):
+            return free, pivots, power
+        self.look(t, x)
+        v = self.velocities(x)
+        ways = self._ways(v)
+        # rows J q'' = -bias; forces F = (G_N - mu d . G_T)^T, G_T^T
+        pressed = self.G[closed, 0] - np.einsum("i,ia,ian->in", self.friction[closed], ways[closed], self.G[closed, 1:])
+        of, tangent = np.nonzero(self.tangents & (self.modes[:, :1] == STICK))
+        J = np.concatenate([self.G[closed, 0], self.G[of, 1 + tangent]])
+        F = np.linalg.solve(self.g, np.concatenate([pressed, self.G[of, 1 + tangent]]).T)
+        bias = np.concatenate([self.bias[closed, 0], self.bias[of, 1 + tangent]])
+        found = least(J @ F, -(J @ free + bias), self.yields(np.concatenate([closed, of])))
+        self.force[closed, 0] = found[: len(closed)]
+        self.force[:, 1:] = -self.friction[:, None] * self.force[:, :1] * ways
+        self.force[of, 1 + tangent] = found[len(closed) :]
+        return free + F @ found, pivots, power + self.power(x)
+
+    def _ways(self, v: Array) -> Array:
+        """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: not turned back where
+        one would slip back after a stop.
+        """
+        slips, before = self.modes[:, 0] >= FULL, self.modes[:, 1:]
+        v_T = np.where(self.tangents, v[:, 1:], 0.0)
+        speed = np.linalg.norm(v_T, axis=1)
+        there = v_T / np.maximum(speed, 1e-300)[:, None]
+        there *= np.where((there * before).sum(axis=1) < 0, -1.0, 1.0)[:, None]
+        return np.where(slips[:, None], np.where((speed > self.approach)[:, None], there, before), 0.0)
+
+    def land(self, t: float, x: Array, closed: NDArray[np.bool_], still: NDArray[np.bool_] | None) -> Array:
+        """The nearest state in the metric whose ``closed`` gaps (k,) are zero and stay so, and whose points ``still``
+        do not slip; without these only positions change. It is looked at.
+        """
+        x, n = x.copy(), self.n
+        for _ in range(3):
+            self.look(t, x)
+            if np.abs(self.gap[closed]).max(initial=0) <= 1e-16:
+                break
+            x[:n] += self._change(self.G[closed, 0], -self.gap[closed])
+        if still is not None:
+            rows, v = (self._kept(of, closed, still) for of in (self.G, self.velocities(x)))
+            x[n : 2 * n] += self._change(rows, -v)
+        self.look(t, x)
+        return x
+
+    def _kept(self, rows: Array, closed: NDArray[np.bool_], still: NDArray[np.bool_]) -> Array:
+        """Of rows (k, 3, ...) those of velocities that are zero."""
+        of, tangent = np.nonzero(self.tangents & still[:, None])
+        return np.concatenate([rows[closed, 0], rows[of, 1 + tangent]])
+
+    def _change(self, J: Array, wanted: Array) -> Array:
+        """dq (n,) with J dq = wanted, least in the metric."""
+        W = np.linalg.solve(self.g, J.T)
+        A = J @ W
+        return np.asarray(W @ least(A, wanted, np.diag(A)))
+
+    def yields(self, some: NDArray[np.int64]) -> Array:
+        """G_N g^-1 G_N^T of each of these contacts, of the state that was looked at."""
+        G = self.G[some, 0]
+        return np.maximum(np.einsum("ia,ai->i", G, np.linalg.solve(self.g, G.T)), LEAST)
+
+    def stepper(self, plain: Stepper) -> Stepper:
+        """Steps that land on closed contacts where they have drifted from them."""
+
+        def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
+            """A stepper of f from x at start to end."""
+            solver = plain(f, start, x, end, **first_step)
+            step: Callable[[], str | None] = solver.step
+
+            def landed() -> str | None:
+                """A step, and the state on the contacts."""
+                message = step()
+                if solver.status != "failed" and self._has_drifted(solver.t, solver.y):
+                    solver.y = self.land(solver.t, solver.y, self.closed, self.modes[:, 0] == STICK)
+                    solver.f = solver.fun(solver.t, solver.y)
+                return message
+
+            solver.step = landed
+            return solver
+
+        return make
+
+    def _has_drifted(self, t: float, x: Array) -> bool:
+        closed = self.closed
+        if not closed.any():
+            return False
+        self.look(t, x)
+        rates = self._kept(self.velocities(x), closed, self.modes[:, 0] == STICK)
+        return bool(np.abs([*self.gap[closed], *rates]).max() > DRIFT)
+
+    def watches(self) -> list[Watch]:
+        """A gap closes, or a point comes back; a contact lifts off, stops, or sticks no more."""
+        found = []
+        self._watched.clear()
+        for i, mode in enumerate(self.modes[:, 0].tolist()):
+            if mode in (OPEN, PASSING):
+                found.append(Watch("gap", self._gap(i), -1 if mode == OPEN else 1))
+                continue
+            found.append(Watch("lift_off", self._margin(i, lambda p, _: p[0]), -1))
+            if mode == STICK and self.tangents[i].any():
+                found.append(Watch("slip", self._margin(i, lambda p, mu: mu * p[0] - np.hypot(p[1], p[2])), -1))
+            elif mode == SLIP and self.tangents[i].any():
+                found.append(Watch("stick", self._slip(i), -1))
+        return found
+
+    def _gap(self, i: int) -> Callable[[float, Array], float]:
+        """g_N of a contact; of one that opens slowly a little more, so that it is not closed at once."""
+
+        def g(t: float, x: Array) -> float:
+            """Of a state."""
+            return float(self._seen(t, x)[0][i] + self.slow[i])
+
+        return g
+
+    def _margin(self, i: int, left: Callable[[Array, float], float]) -> Callable[[float, Array], float]:
+        """What is left of a force of a contact, and EDGE of its size."""
+
+        def g(t: float, x: Array) -> float:
+            """Of a state."""
+            return float(left(self._seen(t, x)[2][i], self.friction[i]) + EDGE * self.scale[i])
+
+        return g
+
+    def _slip(self, i: int) -> Callable[[float, Array], float]:
+        """The velocity along the way of slip."""
+
+        def g(t: float, x: Array) -> float:
+            """Of a state."""
+            return float(self.modes[i, 1:] @ self._seen(t, x)[1][i, 1:] + self.rest[i])
+
+        return g
+
+    def _seen(self, t: float, x: Array) -> tuple[Array, Array, Array]:
+        """Gaps, velocities and forces at a state, which several watches look at."""
+        key = t, x.tobytes()
+        if key not in self._watched:
+            if len(self._watched) >= MANY:
+                self._watched.clear()
+            self.evaluate(t, x)
+            self.look(t, x)
+            self._watched[key] = self.gap.copy(), self.velocities(x), self.force.copy()
+        return self._watched[key]
+
+
+def least(A: Array, b: Array, yields: Array) -> Array:
+    """x with A x = b; where many do, that of rows that yield a little, as in :func:`.complementarity.coulomb`."""
+    x, left, soft = np.zeros(len(b)), b, A + np.diag(SOFT * np.maximum(yields, LEAST))
+    for _ in range(ROUNDS if len(b) else 0):
+        x += np.linalg.solve(soft, left)
+        left = b - A @ x
+        if np.abs(left).max() <= ROUNDING * (np.abs(A) @ np.abs(x) + np.abs(b)).max():
+            break
+    return x

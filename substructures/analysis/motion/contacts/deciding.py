@@ -1,0 +1,177 @@
+"""Impacts, and what contacts do after them: open, stick or slip.
+
+An impact of the contacts that touch, with Newton's restitution and Coulomb's law between impulses L and velocities:
+
+    q'+ = q'- + g^-1 G^T L,    u_N+ = -e u_N-  where L_N > 0,    and the energy changes by 1/2 (q'+ + q'-) . G^T L
+
+What touches with a velocity of zero is then closed if accelerations and forces say so: 0 <= lambda_N compl. g_N'' >= 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import NDArray
+
+from substructures.analysis.motion.contacts.complementarity import Cones, coulomb
+from substructures.analysis.motion.contacts.contact_motion import (
+    EDGE,
+    FULL,
+    OPEN,
+    PASSING,
+    SLIP,
+    SLOW,
+    STICK,
+    TOUCHING,
+    ContactMotion,
+    Modes,
+)
+from substructures.analysis.motion.trajectory import Crossing
+from substructures.array import Array
+
+#: of the largest acceleration: what is none
+NONE = 1e-11
+#: of the largest impulse or force: what is none
+LIGHT = 1e-11
+
+
+class Impact(NamedTuple):
+    """When; the work of the impulses at the contacts [J], which is the change of T where nothing else moves; what is
+    missing in that change beside the impulses, T before [J]; how far complementarity conditions failed, relative.
+    """
+
+    t: float
+    work: float
+    missing: float
+    energy: float
+    violation: float
+
+
+class DecidedContacts(ContactMotion):
+    """Who touches, sticks and slips at the start of a piece; ``told``: what happened, ``impacts``: what they did."""
+
+    told: list[Crossing]
+    impacts: list[Impact]
+    begun: bool
+    #: the modes at a time of the last motion
+    at: Callable[[float], Modes]
+
+    def begin(self) -> None:
+        """All contacts are open, and nothing has happened."""
+        self.modes = np.zeros((len(self.contacts), 3))
+        self.told, self.impacts, self.begun = [], [], False
+
+    def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
+        """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
+        before = self.modes[:, 0].copy()
+        self.modes = self.modes.copy()
+        self.look(t, x)
+        approach = self.velocities(x)[:, 0]
+        touching = self._touching(approach)
+        if touching.any():
+            x = self.land(t, x, touching, None)
+            if (approach < -self.approach)[touching].any():
+                x = self._hit(t, x, np.flatnonzero(touching))
+            v = self.velocities(x)
+            closed = touching & (np.abs(v[:, 0]) <= self.approach)
+            still = closed & (np.linalg.norm(np.where(self.tangents, v[:, 1:], 0.0), axis=1) <= self.approach)
+            self.modes[touching] = OPEN
+            if closed.any():
+                x = self.land(t, x, closed, still)
+                self._hold(t, x, np.flatnonzero(closed), ~still[closed])
+        slow = (self.gap <= TOUCHING) & (self.velocities(x)[:, 0] <= self.rest)
+        self.slow = np.where(slow, SLOW, 0.0)
+        if self.begun:
+            self._tell(t, x, before)
+        self.begun = True
+        return self.modes, x
+
+    def _touching(self, approach: Array) -> NDArray[np.bool_]:
+        """Contacts at their planes that act (k,); others begin or end to pass there."""
+        mode, near = self.modes[:, 0], self.gap <= TOUCHING
+        mode[(mode == PASSING) & (self.gap >= -TOUCHING) & (approach > 0)] = OPEN
+        here = (mode == OPEN) & near & (approach <= self.rest)
+        passes = here & ~(self.acts > 0)
+        mode[passes] = PASSING
+        return np.asarray((mode >= STICK) | (here & ~passes))
+
+    def _hit(self, t: float, x: Array, some: NDArray[np.int64]) -> Array:
+        """The state after an impact of these contacts."""
+        n, qd, u = self.n, x[self.n : 2 * self.n], self.velocities(x)[some]
+        G = self.G[some]
+        rebound = np.array([self.contacts[i].restitution for i in some.tolist()])
+        rebound[-u[:, 0] <= self.rest_velocity[some]] = 0.0
+        b = u.copy()
+        b[:, 0] += rebound * np.minimum(u[:, 0], 0.0)
+        W = np.linalg.solve(self.g, G.reshape(-1, n).T).reshape(n, -1, 3)
+        cones = Cones(np.einsum("ian,njb->iajb", G, W), b, self.friction[some], self.tangents[some], self.yields(some))
+        L = coulomb(cones)
+        after = x.copy()
+        after[n : 2 * n] += np.einsum("njb,jb->n", W, L)
+        # 1/2 (q'+ + q'-) . G^T L of each, and T of the metric
+        changes = 0.5 * np.einsum("ia,ian,n->i", L, G, after[n : 2 * n] + qd)
+        T, T_after = (0.5 * float(v @ self.g @ v) for v in (qd, after[n : 2 * n]))
+        after[2 * n] += changes.sum()
+        work = 0.5 * float((L * (u + G @ after[n : 2 * n] + self.rate[some])).sum())
+        self.impacts.append(Impact(t, work, T_after - T - changes.sum(), T, cones.violation(L)))
+        for i, impulse, change in zip(some.tolist(), L, changes.tolist(), strict=True):
+            if impulse[0] > LIGHT * np.abs(L).max():
+                name, told = self.contacts[i].name, tuple(impulse.tolist())
+                state = x[:n].copy(), qd.copy()
+                ends = after[:n].copy(), after[n : 2 * n].copy()
+                self.told.append(Crossing(name, t, *state, ends, change, "impact", told))
+        self.look(t, after)
+        return after
+
+    def _hold(self, t: float, x: Array, some: NDArray[np.int64], slips: NDArray[np.bool_]) -> None:
+        """Which of these contacts stay closed, and who sticks of those that do not slip."""
+        free, v = self.free(t, x), self.velocities(x)
+        v_T = np.where(self.tangents, v[:, 1:], 0.0)[some]
+        d = np.where(slips[:, None], _unit(v_T), 0.0)
+        mu, G = self.friction[some], self.G[some]
+        F = G.copy()
+        F[:, 0] -= np.einsum("i,ia,ian->in", mu, d, G[:, 1:])
+        W = np.linalg.solve(self.g, F.reshape(-1, self.n).T).reshape(self.n, -1, 3)
+        b = np.einsum("ian,n->ia", G, free) + self.bias[some]
+        cones = Cones(np.einsum("ian,njb->iajb", G, W), b, mu, self.tangents[some] & ~slips[:, None], self.yields(some))
+        p = coulomb(cones)
+        w, size = cones.left(p), cones.size(p)
+        w_T = np.where(cones.tangents, w[:, 1:], 0.0)
+        begins = ~slips & (np.linalg.norm(w_T, axis=1) > NONE * size)
+        smooth = ~self.tangents[some].any(axis=1)
+        # what is not pressed has no force, also where it only touches
+        pressed = p[:, 0] > LIGHT * p[:, 0].max()
+        self.modes[some, 0] = np.where(pressed, np.where(slips | begins | smooth, SLIP, STICK), OPEN)
+        self.modes[some, 1:] = np.where(begins[:, None], _unit(w_T), d)
+        # what forces there are about
+        self.scale[some] = np.maximum(p[:, 0], np.abs(b).max() / cones.yields)
+        self._share(t, x, len(some))
+
+    def _share(self, t: float, x: Array, count: int) -> None:
+        """Of forces that are not unique: who would pull is open, who would drag more than it can drags what it can."""
+        for _ in range(2 * count):
+            self.evaluate(t, x)
+            most = self.friction * self.force[:, 0] + EDGE / 2 * self.scale
+            pulls = self.closed & (self.force[:, 0] < -EDGE / 2 * self.scale)
+            drags = (self.modes[:, 0] == STICK) & (np.linalg.norm(self.force[:, 1:], axis=1) > most) & ~pulls
+            if not (pulls | drags).any():
+                return
+            self.modes[pulls, 0], self.modes[drags, 0] = OPEN, FULL
+            self.modes[drags, 1:] = -_unit(self.force[drags, 1:])
+
+    def _tell(self, t: float, x: Array, before: Array) -> None:
+        """Contacts that lift off, and those that begin to stick or to slip."""
+        state = x[: self.n].copy(), x[self.n : 2 * self.n].copy()
+        for contact, was, now in zip(self.contacts, before.tolist(), self.modes[:, 0].tolist(), strict=True):
+            if was >= STICK > now:
+                self.told.append(Crossing(contact.name, t, *state, kind="lift_off"))
+            elif now >= STICK and (was < STICK or (now == SLIP) != (was == SLIP)):
+                kind = "slip" if now == SLIP else "stick"
+                self.told.append(Crossing(contact.name, t, *state, kind=kind))
+
+
+def _unit(v: Array) -> Array:
+    """Rows (k, 2) of length 1, or 0."""
+    return np.asarray(v / np.maximum(np.linalg.norm(v, axis=1), 1e-300)[:, None])

@@ -1,0 +1,79 @@
+"""Poincare sections: the states in which a motion crosses a surface of the state space in one direction.
+
+H. Poincare, Les methodes nouvelles de la mecanique celeste III, 1899, chapter 27; M. Henon and C. Heiles, The
+applicability of the third integral of motion, Astron. J. 69, 1964.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Literal
+
+import numpy as np
+
+from substructures.analysis.arguments import NumberOrExpression, positive, whole
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
+from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.trajectory import Trajectory
+from substructures.errors import InvalidInput
+from substructures.tree.model import Model
+
+MOST = 1_000_000
+#: of the only event
+PLACE = "/events/0"
+
+
+def poincare_section(
+    model: Model,
+    q: StateVector | None,
+    quantity: NumberOrExpression,
+    duration: float,
+    *,
+    level: float = 0.0,
+    direction: Literal["rising", "falling", "both"] = "rising",
+    count: int = 1000,
+    qd: StateVector | None = None,
+    inputs: Mapping[str, Signal] | None = None,
+    parameters: Mapping[str, float] | None = None,
+    integrator: Integrator | None = None,
+) -> Trajectory:
+    """The states ``q``, ``qd`` (K, n) at the times ``t`` (K,) [s] in which a motion of a tree without closures crosses
+    the surface ``quantity`` = ``level``, the first ``count`` in up to a ``duration`` [s].
+
+    ``quantity``: an expression in coordinates, velocities, parameters and t (of a forced motion ``sin(w*t)`` is met
+    once a period), its unit; ``direction``: which crossings count. The checks are those of the whole motion: its first
+    integrals, its balance of energy, some steps again. Raises InvalidInput (pointers start with names of arguments)
+    and MissingValue.
+    """
+    whole(count, "count", 1, MOST)
+    span = (0.0, positive(duration, "duration"))
+    event = Event("section", quantity, level, direction, count=count)
+    start = Start(q, qd, parameters or {}, inputs or {})
+    # nothing but the crossings is wanted
+    times, choice = OutputTimes(span, OutputGrid(count=2)), integrator or Integrator()
+    problem = TreeProblem(model=model, start=start, times=times, integrator=choice, events=(event,))
+    try:
+        motion = simulate_tree(problem)
+    except InvalidInput as error:
+        raise error.moved(lambda place: place.removeprefix(PLACE)) from None
+    return _met(motion, count, span[1])
+
+
+def _met(motion: Trajectory, count: int, duration: float) -> Trajectory:
+    """The states of its events, as they were looked for."""
+    met, n = motion.events, len(motion.coordinates)
+    if motion.status != "failed" and not motion.cancelled:
+        message = "" if len(met) == count else f"the section is met {len(met)} times in {duration:g} s"
+        motion = replace(motion, status="finished", message=message)
+    return replace(
+        motion,
+        t=np.array([one.t for one in met], dtype=np.float64),
+        q=np.array([one.q for one in met], dtype=np.float64).reshape(-1, n),
+        qd=np.array([one.qd for one in met], dtype=np.float64).reshape(-1, n),
+        series={},
+        events=(),
+    )

@@ -1,0 +1,137 @@
+"""What the axes of the outputs of a tree are called, from its document and the definitions of its parts."""
+
+from __future__ import annotations
+
+import heapq
+from collections.abc import Iterable, Mapping, Sequence
+from decimal import Decimal
+from typing import Any
+
+from substructures.certificate.bodies import CHAINS, coordinates_of, in_order, limits_of
+from substructures.certificate.closures import ROWS
+from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.relations import moved, mover
+
+
+def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits, and
+    whose motion is given; velocity constraints.
+    """
+    kinds, driven = coordinates_in(tree, definitions), tree.get("driven", ())
+    free = [q for q in kinds if q not in driven]
+    frames: list[str] = []
+    bound: set[str] = set()
+    for instance in hosts_first(tree):
+        name, definition = instance["name"], definitions[instance["name"]]
+        # of joints that move with a coordinate without moving it, none
+        bound |= {
+            f"{name}.{mover(definition, q)}"
+            for joint, step, q in _joints_of(definition)
+            if limits_of(joint, step) and not _is_still(definition, q)
+        }
+        ports = definition.get("ports", ())
+        frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*in_order(definition), *ports)))]
+    closures = [
+        {**{x: c[x] for x in ("name", "type", "from")}, "to": c.get("to", "world"), "rows": [*ROWS[c["type"]]]}
+        for c, _ in closures_of(tree, definitions)
+    ]
+    joints, limited = "".join(kinds[q] for q in free), [q for q in free if q in bound]
+    found = {"coordinates": free, "joints": joints, "frames": frames, "closures": closures, "limited": limited}
+    reduction = reduced(tree, definitions)
+    more: dict[str, Any] = {"driven": [q for q in kinds if q in driven], "velocity_constraints": constraints_in(tree)}
+    more["reduction"] = reduction if any(reduction.values()) else {}
+    return found | {name: x for name, x in more.items() if x}
+
+
+def constraints_in(tree: Plain) -> list[dict[str, Any]]:
+    """The velocity constraints as they are given, numbers as texts."""
+    return [
+        {name: [*map(_text, x)] if isinstance(x, (list, tuple)) else _text(x) for name, x in each.items()}
+        for each in tree.get("velocity_constraints", ())
+    ]
+
+
+def _text(given: object) -> str:
+    return format(given, "f") if isinstance(given, Decimal) else str(given)
+
+
+def coordinates_in(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
+    """All coordinates, driven ones among them, with the kinds of their joints."""
+    order = [(i["name"], definitions[i["name"]]) for i in hosts_first(tree)]
+    return {
+        f"{name}.{c}": "P" if CHAINS[joint["type"]][step][0] else "R"
+        for name, d in order
+        for joint, step, c in _joints_of(d)
+        if mover(d, c) == c
+    }
+
+
+def reduced(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """Independent coordinates of the tree, where its closed parts name all of theirs, their starts and ranges."""
+    order = [(i["name"], definitions[i["name"]]) for i in hosts_first(tree)]
+    closed = [definition for _, definition in order if definition.get("closures")]
+    independent: list[str] = []
+    start: dict[str, str] = {}
+    ranges: dict[str, list[str]] = {}
+    for name, d in order:
+        own = [
+            c
+            for _, _, c in _joints_of(d)
+            if mover(d, c) == c and (not d.get("closures") or c in d.get("independent", ()))
+        ]
+        independent += [f"{name}.{c}" for c in own]
+        start |= {f"{name}.{c}": str(x) for c, x in d.get("start", {}).items()}
+        ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in d.get("ranges", {}).items()}
+    if tree.get("driven"):
+        return {"independent": [], "start": {}, "ranges": {}}
+    is_said = closed and all(d.get("independent") for d in closed) and not tree.get("closures")
+    return {"independent": independent if is_said else [], "start": start, "ranges": ranges}
+
+
+def closures_of(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[tuple[Plain, str]]:
+    """The closures of the tree, then those of its parts with the names of the tree; the instance that has them."""
+    yield from ((closure, "") for closure in tree.get("closures", ()))
+    for instance in hosts_first(tree):
+        name = instance["name"]
+        for closure in definitions[name].get("closures", ()):
+            ends = {"name": closure["name"], "from": closure["from"], "to": closure.get("to", "base")}
+            yield {**closure, **{field: f"{name}.{x}" for field, x in ends.items()}}, name
+
+
+def closures_in(
+    tree: Plain, definitions: Mapping[str, Plain], numbers: Numbers, inside: Sequence[tuple[str, Numbers, range]]
+) -> list[tuple[Plain, Numbers]]:
+    """All closures with the numbers of the tree, or of the instance that has them."""
+    known = {"": numbers} | {name: own for name, own, _ in inside}
+    return [(closure, known[name]) for closure, name in closures_of(tree, definitions)]
+
+
+def _joints_of(definition: Plain) -> Iterable[tuple[Plain, int, str]]:
+    """The joint of every coordinate, its place in the joint, its name."""
+    for body in in_order(definition):
+        for step, name in enumerate(coordinates_of(body)):
+            yield body["joint"], step, name
+
+
+def _is_still(definition: Plain, name: str) -> bool:
+    """Whether a relation holds a joint at rest: its multiplier is the number 0."""
+    relations = moved(definition)
+    while name in relations:
+        if relations[name].get("multiplier", 1) == 0:
+            return True
+        name = relations[name]["of"]
+    return False
+
+
+def hosts_first(tree: Plain) -> list[Plain]:
+    """The instances in the order of the model: hosts first, otherwise as given."""
+    instances = list(tree.get("instances", ()))
+    ready = [i for i, instance in enumerate(instances) if instance.get("at", "world") == "world"]
+    order = []
+    while ready:
+        i = heapq.heappop(ready)
+        order.append(instances[i])
+        for k, other in enumerate(instances):
+            if other.get("at", "world").partition(".")[0] == instances[i]["name"]:
+                heapq.heappush(ready, k)
+    return order

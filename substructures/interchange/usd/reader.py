@@ -1,0 +1,173 @@
+"""A USD file as a robot: rigid bodies with masses on the tree of their joints, and joints that close loops.
+
+The tree begins at what stands still, then at the roots of articulations; joints with ``excludeFromArticulation`` are
+taken last. Those that are left close loops.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+
+import numpy as np
+
+from substructures.interchange.merge import judge, together, vector
+from substructures.interchange.numbers import ORIGIN, ZERO, Number, Triple, decimal_of, is_zero, value
+from substructures.interchange.report import Place, Report, refuse
+from substructures.interchange.robot import Inertial, Link, Motion, Robot, in_order
+from substructures.interchange.rotations import to_rpy, turned_inertia
+from substructures.interchange.usd.joints import Joint, joints_of, names_of
+from substructures.interchange.usd.scene import Pose, Prim, Scene, Units, given, place_of, rotation_of, written
+from substructures.interchange.usd.stage import MAIN, opened, package, refused
+
+EARTH = decimal_of(9.81)
+#: what other programs add to a stage and act by, by the last word of the attribute
+_ACTING = {
+    "armature", "jointFriction", "frictionloss", "linearDamping", "angularDamping", "disableGravity", "gravcomp",
+    "springref", "stiffness", "damping",
+}  # fmt: skip
+_OWN = ("physics", "drive", "limit", "xformOp")
+
+
+def read_usd(data: bytes, included: Mapping[str, bytes] | None = None) -> Robot:
+    """The robot of a USD file. ``included``: contents of the layers that it refers to, by their paths from it.
+
+    Raises InvalidDocument with the path of the prim.
+    """
+    report = Report()
+    stage = opened(data, {} if included is None else included)
+    with refused(MAIN):
+        scene = Scene(stage, Units.of(stage, report))
+        if not scene.bodies:
+            message = "there is no rigid body: prims with PhysicsRigidBodyAPI are links"
+            raise refuse(Place(0, "USD"), "no-links", message)
+        return _Reader(scene, report).robot()
+
+
+class _Reader:
+    """Goes through the joints from the bodies that are reached."""
+
+    def __init__(self, scene: Scene, report: Report) -> None:
+        self.scene, self.report = scene, report
+        self.names = names_of(list(scene.bodies))
+        self.links: list[Link] = []
+        self.reached: set[str | None] = {None}
+        self.left = sorted(joints_of(scene, report), key=lambda joint: joint.is_cut)
+
+    def robot(self) -> Robot:
+        """Everything together."""
+        self._grow()
+        while len(self.reached) <= len(self.scene.bodies):
+            self._root(self._next_root())
+            self._grow()
+        self._tell_of_others()
+        loops = tuple(joint.loop(self.names, self.report) for joint in self.left)
+        gravity, place = self._gravity()
+        layer = self.scene.stage.GetRootLayer()
+        name = layer.defaultPrim or self.scene.prims[0].GetName()
+        return Robot(str(name), in_order(self.links), self.report, loops=loops, gravity=gravity, gravity_place=place)
+
+    def _grow(self) -> None:
+        """By joints, as long as one leads to a body that is not reached."""
+        while (found := next(filter(self._leads_on, self.left), None)) is not None:
+            self.left.remove(found)
+            self._carried(found)
+
+    def _leads_on(self, joint: Joint) -> bool:
+        return (joint.ends[0] in self.reached) != (joint.ends[1] in self.reached)
+
+    def _carried(self, joint: Joint) -> None:
+        """The body behind a joint."""
+        child = 1 if joint.ends[0] in self.reached else 0
+        path, over = str(joint.ends[child]), joint.ends[1 - child]
+        placed = joint.placed(child)
+        motions = joint.motions(child, self.scene, self.report)
+        self._link(path, None if over is None else self.names[over], placed, motions, joint.name)
+
+    def _next_root(self) -> str:
+        """A root of an articulation, else a body that is no body1, else any."""
+        left = [path for path in self.scene.bodies if path not in self.reached]
+        api, carried = package("UsdPhysics").ArticulationRootAPI, {joint.ends[1] for joint in self.left}
+        roots = [path for path in left if self.scene.bodies[path].HasAPI(api)]
+        return next(iter([*roots, *(path for path in left if path not in carried), *left]))
+
+    def _root(self, path: str) -> None:
+        pose = self.scene.upright(self.scene.frame(self.scene.bodies[path])[0])
+        message = "no joint carries this body: it is fixed to the interface (base=floating: free)"
+        self.report.warning(place_of(self.scene.bodies[path]), message, "topology")
+        self._link(path, None, pose, (), "")
+
+    def _link(self, path: str, parent: str | None, pose: Pose, motions: tuple[Motion, ...], joint: str) -> None:
+        prim = self.scene.bodies[path]
+        self.reached.add(path)
+        shown = any(each.IsA(package("UsdGeom").Gprim) for each in self.scene.below(path))
+        place, inertial = vector(pose.r), self._inertial(path, shown)
+        link = Link(self.names[path], parent, place_of(prim), place, to_rpy(pose.R), motions, inertial, joint, shown)
+        self.links.append(link)
+
+    def _inertial(self, path: str, shown: bool) -> Inertial:
+        """Of the body, or the sum of what hangs on it."""
+        prim = self.scene.bodies[path]
+        found = [each for each in self.scene.below(path) if self._mass(each)]
+        own = found[:1] if found and str(found[0].GetPath()) == path else found
+        return together([self._weighed(each, shown) for each in own]) if own else self._unweighed(prim)
+
+    def _unweighed(self, prim: Prim) -> Inertial:
+        if any(each.GetAttribute("physics:density").Get() for each in self.scene.below(str(prim.GetPath()))):
+            message = "masses of shapes by a density are not computed: give the body physics:mass"
+            self.report.lost(place_of(prim), message, "physics")
+        return Inertial()
+
+    def _mass(self, prim: Prim) -> Number:
+        if not prim.HasAPI(package("UsdPhysics").MassAPI):
+            return ZERO
+        return written(given(prim, "physics:mass", "float"), place_of(prim)) * self.scene.units.mass
+
+    def _weighed(self, prim: Prim, shown: bool) -> Inertial:
+        """Mass, mass centre and R diag(I) R^T of a prim, in the frame of its body."""
+        com, moments = (given(prim, f"physics:{name}", "Vec3f") for name in ("centerOfMass", "diagonalInertia"))
+        axes = given(prim, "physics:principalAxes", "Quatf")
+        place, units = place_of(prim), self.scene.units
+        if not all(map(math.isfinite, com)):
+            com = (0.0, 0.0, 0.0)
+            if shown:
+                self.report.lost(place, "no centerOfMass: it is taken to be at the origin of the body", "physics")
+        R = rotation_of(axes, prim) if axes.GetReal() or any(axes.GetImaginary()) else np.eye(3)
+        pose = self.scene.inside(prim, com, R, place)
+        if not any(moments):
+            self.report.lost(place, "no diagonalInertia: the body is a point mass", "physics")
+        unit = units.mass * units.length**2
+        six = turned_inertia((*(written(x, place) * unit for x in moments), ZERO, ZERO, ZERO), pose.R)
+        found = Inertial(self._mass(prim), vector(pose.r), six)
+        judge(place, found.mass, found.com, six, self.report)
+        return found
+
+    def _gravity(self) -> tuple[Triple | None, Place | None]:
+        """Of the first scene of the file; down, and of the earth, where it does not say."""
+        for prim in self.scene.prims:
+            if prim.IsA(package("UsdPhysics").Scene):
+                size, place = given(prim, "physics:gravityMagnitude", "float"), place_of(prim)
+                along = [float(written(x, place)) for x in given(prim, "physics:gravityDirection", "Vec3f")]
+                g = EARTH if size < 0 else written(size, place) * self.scene.units.length
+                way = self.scene.units.up @ np.array(along) if any(along) else np.array([0, 0, -1.0])
+                return vector(value(g) * way / np.linalg.norm(way)) if not is_zero(g) else ORIGIN, place
+        return None, None
+
+    def _tell_of_others(self) -> None:
+        for prim, name in self._acting():
+            message = f"{name} is not read: what it says of the mechanics is left out"
+            self.report.lost(place_of(prim), message)
+
+    def _acting(self) -> Iterator[tuple[Prim, str]]:
+        """What other programs say of the mechanics, and bodies that are moved by hand."""
+        for prim in self.scene.prims:
+            for attribute in prim.GetAuthoredAttributes():
+                space, _, name = attribute.GetName().rpartition(":")
+                is_own = not space or space.split(":")[0] in _OWN
+                if (not is_own and name in _ACTING and attribute.Get()) or (
+                    name == "kinematicEnabled" and attribute.Get()
+                ):
+                    yield prim, attribute.GetName()
+            for schema in prim.GetAppliedSchemas():
+                if "Mimic" in schema or "Tendon" in schema:
+                    yield prim, schema

@@ -1,0 +1,191 @@
+"""How far a frame gets from another one, of many parameter sets at once.
+
+The square of the distance is a + b cos q + c sin q in the angle of one joint and a parabola in the travel of one, so
+that the largest over one coordinate is known from three values; coordinate by coordinate it grows up to a largest one.
+Where a coordinate moves more than one joint (relations, screws) values on a grid take the place of that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from substructures.array import Array
+from substructures.errors import InvalidArgument, among
+from substructures.quantities.numbers.states import known_values, read_states
+from substructures.sweeps.document import WORLD, ReachColumn
+from substructures.sweeps.grouped import alike, inside
+from substructures.sweeps.shapes import Shape
+from substructures.tree.driven import PRIMES
+from substructures.tree.model import Model, require_open
+
+#: starts, which are drawn between the limits; rounds over all coordinates; points of a grid
+STARTS, ROUNDS, POINTS = 6, 200, 65
+#: relative growth below which a round is the last; relative difference that is rounding
+LEAST, SAME = 1e-13, 1e-10
+PERIOD = 2 * np.pi
+#: times at which given motions are looked at [s]
+TIMES = (0.317, 1.229)
+
+
+def reach_columns(
+    shape: Shape, columns: Mapping[str, ReachColumn], parameters: Mapping[str, Any], rows: int
+) -> dict[str, Array]:
+    """The largest distances (rows,) [m] within the limits of joints. Raises InvalidInput (``no-limits`` for a sliding
+    joint without), MissingValue.
+    """
+    found = dict[str, Array]()
+    for same in alike({name: {"of": c.of, "about": c.about} for name, c in columns.items()}):
+        with inside(f"/columns/{same[0]}"):
+            largest = _Search(shape, columns[same[0]], parameters, rows).largest()
+        found |= dict.fromkeys(same, largest)
+    return found
+
+
+def _frame(model: Model, name: str, field: str) -> int | None:
+    if name == WORLD:
+        return None
+    if name not in model.frames:
+        message = f"there is no frame '{name[:80]}'{among(name, [*model.frames, WORLD])}"
+        raise InvalidArgument.at(f"/{field}", "unknown-name", message)
+    return model.frames.index(name)
+
+
+@dataclass
+class _Search:
+    shape: Shape
+    column: ReachColumn
+    parameters: Mapping[str, Any]
+    rows: int
+    t: float = 0.0  #: the time, and the values of driven inputs
+
+    def __post_init__(self) -> None:
+        model = self.shape.model
+        require_open(model.closures, "sweep other columns")
+        self.ends = _frame(model, self.column.of, "of"), _frame(model, self.column.about, "about")
+        self.matters, self.is_simple = np.ones((2, model.dof, self.rows), dtype=np.bool_)
+        judge = self.shape.sources.judge
+        limits = {} if judge is None else judge.limits(self.parameters)
+        self.low, self.high = np.zeros((2, model.dof, self.rows))
+        draw = np.random.default_rng(0)
+        self.starts = [np.full(model.dof, 0.5), *draw.uniform(0.05, 0.95, (STARTS - 1, model.dof))]
+        self._require_steady()
+        for a, (name, kind) in enumerate(zip(model.coordinates, model.joints, strict=True)):
+            self._look(a, np.tile(self.starts[-1], (self.rows, 1)))
+            if name in limits:
+                self.low[a], self.high[a] = limits[name][:2]
+            elif kind == "R":
+                self.low[a], self.high[a] = -np.pi, np.pi
+            elif self.matters[a].any():
+                message = f"'{name}' slides and has no limits: what it carries gets anywhere"
+                raise InvalidArgument.at("/of", "no-limits", message)
+
+    def _require_steady(self) -> None:
+        """Raises InvalidArgument (``not-steady``) where given motions change the distance."""
+        q = np.tile(self.starts[-1], (self.rows, 1))
+        here = self.square(q)
+        for t in TIMES if self.shape.model.driven else ():
+            self.t = t
+            near = self.square(q)
+            if (np.abs(near - here) > SAME * np.fmax(here, near)).any():
+                message = f"given motions ('driven') move '{self.column.of}' from '{self.column.about}'"
+                raise InvalidArgument.at("/of", "not-steady", f"{message}: give it from what they move, too")
+        self.t = 0.0
+
+    def _look(self, a: int, q: Array) -> None:
+        """Whether a coordinate changes the distance, and whether as one joint does; row by row."""
+        here, x = self.square(q), q[:, a]
+        near = self._with(q, a, x + 0.5)
+        size = np.fmax(here, near)
+        self.matters[a] = np.abs(near - here) > SAME * size
+        if self.shape.model.joints[a] == "R":
+            off = near - self._sinusoid(q, here, a)(x + 0.5)
+        else:  # the third difference of a parabola is 0
+            off = self._with(q, a, x + 1) - 3 * near + 3 * here - self._with(q, a, x - 0.5)
+        self.is_simple[a] = np.abs(off) <= SAME * size
+
+    def square(self, q: Array) -> Array:
+        """|r_of - r_about|^2 (rows,) [m^2] at coordinates (rows, n)."""
+        model = self.shape.model
+        states = read_states(model, {"q": q, "parameters": self.parameters}, None)
+        inputs = {f"{name}{primes}": self.t for name in model.driven for primes in PRIMES if name in model.inputs}
+        given = {"parameters": self.parameters, "t": self.t, "inputs": inputs}
+        values = known_values(model, given, states, model.parameters)
+        position = np.asarray(self.shape.evaluate(model.program, values, ["position"], self.rows)["position"])
+        of, about = (0.0 if k is None else position[:, k] for k in self.ends)
+        return np.broadcast_to(np.sum(np.square(np.zeros(3) + of - about), axis=-1), (self.rows,))
+
+    def _with(self, q: Array, a: int, x: Array) -> Array:
+        """The square with one coordinate at ``x`` (rows,)."""
+        moved = q.copy()
+        moved[:, a] = x
+        return self.square(moved)
+
+    def largest(self) -> Array:
+        """The largest distance (rows,) from any of the starts."""
+        best = np.full(self.rows, -np.inf)
+        for start in self.starts:
+            best = np.fmax(best, self._climbed((self.low + start[:, None] * (self.high - self.low)).T.copy()))
+        with np.errstate(invalid="ignore"):
+            return np.sqrt(best)
+
+    def _climbed(self, q: Array) -> Array:
+        here = self.square(q)
+        runs = np.isfinite(here)
+        for _ in range(ROUNDS):
+            before = here
+            for a in np.flatnonzero(self.matters.any(axis=1)).tolist():
+                there = q.copy()
+                there[:, a] = self._along(q, here, a)
+                found = self.square(there)
+                better = runs & self.matters[a] & (found > here)
+                q[better, a] = there[better, a]
+                here = np.where(better, found, here)
+            runs = runs & (here - before > LEAST * here)
+            if not runs.any():
+                break
+        return here
+
+    def _along(self, q: Array, here: Array, a: int) -> Array:
+        """The values of one coordinate (rows,) at which the distance is largest, the others as they are."""
+        low, high, simple = self.low[a], self.high[a], self.is_simple[a]
+        ends, points = np.stack([low, high]), np.linspace(low, high, POINTS)
+        if self.shape.model.joints[a] != "R":
+            return _best(lambda x: self._with(q, a, x), ends if simple.all() else points)
+        fit = self._sinusoid(q, here, a)
+        top = q[:, a] + fit.top
+        top = top - PERIOD * np.ceil((top - high) / PERIOD)  # the last one that is not above
+        found = _best(fit, np.stack([low, high, np.fmax(top, low)]))
+        return found if simple.all() else np.where(simple, found, _best(lambda x: self._with(q, a, x), points))
+
+    def _sinusoid(self, q: Array, here: Array, a: int) -> _Sinusoid:
+        x = q[:, a]
+        left, right = (self._with(q, a, x + turn * PERIOD / 3) for turn in (1, -1))
+        return _Sinusoid(x, (here + left + right) / 3, (2 * here - left - right) / 3, (left - right) / np.sqrt(3))
+
+
+@dataclass
+class _Sinusoid:
+    """a + b cos(x - x0) + c sin(x - x0), (rows,)."""
+
+    x0: Array
+    a: Array
+    b: Array
+    c: Array
+
+    def __call__(self, x: Array) -> Array:
+        return np.asarray(self.a + self.b * np.cos(x - self.x0) + self.c * np.sin(x - self.x0))
+
+    @property
+    def top(self) -> Array:
+        """x - x0 where it is largest."""
+        return np.asarray(np.arctan2(self.c, self.b))
+
+
+def _best(at: Callable[[Array], Array], candidates: Array) -> Array:
+    """Of some values (k, rows) those with the largest of ``at``, (rows,)."""
+    values = np.stack([at(x) for x in candidates])
+    return np.asarray(np.take_along_axis(candidates, values.argmax(axis=0)[None], axis=0)[0])

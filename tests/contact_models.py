@@ -1,0 +1,71 @@
+"""Bodies that touch: a ball, blocks in a plane, a box in space."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from substructures import Definition, Model, TreeSpec, couple, derive
+
+G = 9.81
+PLACED: dict[str, Any] = {"placement": {"position": [0, 0, 0]}}
+BALL = {
+    "name": "ball",
+    "bodies": [{"name": "body", "parent": "base", "joint": {"type": "prismatic", "coordinate": "z"}, "mass": 2}],
+}
+
+
+def of(name: str, definition: Any, gravity: list[Any], **more: Any) -> Model:
+    """A part on the ground."""
+    document = {"name": "tree", "gravity": gravity, "instances": [{"name": name, "substructure": "x"}], **more}
+    return couple(TreeSpec.read(document), {name: derive(Definition.read(definition))})
+
+
+def plane_body(points: dict[str, list[float]], mass: float, inertia: float) -> dict[str, Any]:
+    """A body that moves in the plane x, z and turns about y."""
+    slide, turn = {"type": "prismatic", **PLACED}, {"type": "revolute", **PLACED}
+    return {
+        "name": "block",
+        "bodies": [
+            {"name": "across", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
+            {"name": "up", "parent": "across", "joint": {**slide, "coordinate": "z", "axis": [0, 0, 1]}},
+            {"name": "body", "parent": "up", "joint": {**turn, "coordinate": "phi", "axis": [0, 1, 0]}, "mass": mass,
+             "inertia": {"xx": inertia, "yy": inertia, "zz": inertia}},
+        ],
+        "ports": [{"name": name, "body": "body", "position": place} for name, place in points.items()],
+    }  # fmt: skip
+
+
+def block(width: float, height: float, mass: float = 2.0) -> dict[str, Any]:
+    """A block of these half sizes with the lower corners l and r."""
+    points = {"l": [-width, 0.0, -height], "r": [width, 0.0, -height]}
+    return plane_body(points, mass, mass * (width**2 + height**2) / 3)
+
+
+def box() -> dict[str, Any]:
+    """A box of 0.2 m, 0.1 m and 0.2 m that is free in space, with four corners below."""
+    joint = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+    inertia = {"xx": 0.02, "yy": 0.03, "zz": 0.04}
+    places = {f"c{i}{j}": [0.2 * i - 0.1, 0.1 * j - 0.05, -0.1] for i in (0, 1) for j in (0, 1)}
+    return {
+        "name": "box",
+        "bodies": [{"name": "body", "parent": "base", "joint": joint, "mass": 2, "inertia": inertia}],
+        "ports": [{"name": name, "body": "body", "position": place} for name, place in places.items()],
+    }
+
+
+def walker(foot: str) -> dict[str, Any]:
+    """The simplest walking machine: a hip of 1 kg on two legs of 1 m with feet of this mass."""
+    slide, turn = {"type": "prismatic", **PLACED}, {"type": "revolute", **PLACED, "axis": [0, 1, 0]}
+    legs = [
+        {"name": leg, "parent": "hip", "joint": {**turn, "coordinate": leg}, "mass": foot, "com": [0, 0, -1]}
+        for leg in ("a", "b")
+    ]
+    return {
+        "name": "walker",
+        "bodies": [
+            {"name": "across", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
+            {"name": "hip", "parent": "across", "joint": {**slide, "coordinate": "z", "axis": [0, 0, 1]}, "mass": 1},
+            *legs,
+        ],
+        "ports": [{"name": f"f{leg}", "body": leg, "position": [0, 0, -1]} for leg in ("a", "b")],
+    }

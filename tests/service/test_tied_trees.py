@@ -1,0 +1,188 @@
+"""Trees with velocity constraints over HTTP: stored, shown, moved, and what refuses them."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import Any
+
+import pytest
+from fastapi.testclient import TestClient
+from rolling_bodies import sleigh_part
+
+from service.models.formulas import QUANTITIES, made
+from service.models.numbers import ANALYSES, analysis_of
+from service.models.source import Source
+from service.settings import Limits
+from substructures import Definition, TreeSpec, couple, derive
+from substructures.errors import InvalidInput
+from substructures.quantities.sources import Sources
+from substructures.tree.document import TAKES_CONSTRAINTS
+
+from .job_outcomes import outcomes
+from .jobs_library import MemoryLibrary
+
+EDGE: dict[str, Any] = {"name": "blade", "type": "knife_edge", "frame": "s.b"}
+TREE: dict[str, Any] = {
+    "name": "sleigh",
+    "gravity": [0, 0, 0],
+    "instances": [{"name": "s", "definition": sleigh_part()}],
+    "velocity_constraints": [EDGE],
+}
+START: dict[str, Any] = {"q": [0, 0, 0.4], "v": {"u": 2, "w": 1}}
+VELOCITIES = {"velocities": {"u": "cos(s.f)*s.x' + sin(s.f)*s.y'", "w": "s.f'"}}
+
+
+@pytest.fixture
+def tied(client: TestClient) -> TestClient:
+    made = client.post("/v1/trees", json=TREE)
+    assert made.status_code == 201, made.text
+    assert made.json()["velocity_constraints"] == [EDGE]
+    free = {name: x for name, x in TREE.items() if name != "velocity_constraints"} | {"name": "free"}
+    assert "velocity_constraints" not in client.post("/v1/trees", json=free).json()
+    return client
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("simulations", {**START, **VELOCITIES, "span": [0, 1], "count": 3}),
+        ("linearisations", {**START, **VELOCITIES}),
+        ("velocity-equations", VELOCITIES),
+    ],
+)
+def test_it_moves_as_with_the_same_beside_it(tied: TestClient, path: str, body: dict[str, Any]) -> None:
+    own = tied.post(f"/v1/trees/sleigh/{path}", json=body)
+    beside = tied.post(f"/v1/trees/free/{path}", json={**body, "constraints": [EDGE]})
+    assert own.status_code == beside.status_code == 200, own.text
+    left = ("digest", "tree", "seconds")
+    assert {k: x for k, x in own.json().items() if k not in left} == {
+        k: x for k, x in beside.json().items() if k not in left
+    }
+    twice = tied.post(f"/v1/trees/sleigh/{path}", json={**body, "constraints": [EDGE | {"name": "other"}]})
+    (fault,) = twice.json()["errors"]
+    assert (twice.status_code, fault["pointer"], fault["code"]) == (422, "/constraints", "has-velocity-constraints")
+
+
+def test_reactions_along_a_motion(tied: TestClient) -> None:
+    asked = {**START, **VELOCITIES, "span": [0, 1], "count": 3, "reactions": ["s.f"]}
+    own = tied.post("/v1/trees/sleigh/simulations", json=asked)
+    assert own.status_code == 200, own.text
+    # the blade alone turns the sleigh: its joints transmit nothing
+    assert max(abs(x) for row in own.json()["series"]["reaction_force"] for x in row[0]) < 1e-12
+    beside = tied.post("/v1/trees/free/simulations", json={**asked, "constraints": [EDGE]})
+    (fault,) = beside.json()["errors"]
+    assert (fault["pointer"], fault["code"]) == ("/reactions", "not-supported")
+    assert "part of the tree" in fault["message"]
+
+
+def test_steady_motions_and_integrals(tied: TestClient) -> None:
+    asked = {"rates": {"u": 2, "s.f": 0}, **VELOCITIES, "count": 0}
+    steady = tied.post("/v1/trees/sleigh/steady-motions", json=asked)
+    assert steady.status_code == 200, steady.text
+    assert [each["stability"]["verdict"] for each in steady.json()["found"]] == ["stable"]
+    assert tied.post("/v1/trees/sleigh/equilibria", json={"count": 0}).status_code == 200
+    integrals = tied.get("/v1/trees/sleigh/first_integrals").json()["integrals"]
+    assert [each["name"] for each in integrals] == ["energy"]
+
+
+REFUSED: list[tuple[str, dict[str, Any]]] = [
+    ("sensitivities", {"q": [0, 0, 0], "span": [0, 1]}),
+    ("ensembles", {"q": [0, 0, 0], "span": [0, 1]}),
+    ("frequency-responses", {"q": [0, 0, 0]}),
+    ("loop-states", {"q": [0, 0, 0]}),
+    ("evaluations", {"quantities": ["forward_dynamics"], "q": [0, 0, 0]}),
+    ("evaluations", {"quantities": ["reactions"], "q": [0, 0, 0], "qdd": [0, 0, 0]}),
+    ("publish", {}),
+]
+
+
+@pytest.mark.parametrize(("path", "body"), REFUSED)
+def test_what_would_ignore_them_says_so(tied: TestClient, path: str, body: dict[str, Any]) -> None:
+    answer = tied.post(f"/v1/trees/sleigh/{path}", json=body)
+    assert answer.status_code == 422, answer.text
+    (fault,) = answer.json()["errors"]
+    assert fault["code"] == "has-velocity-constraints"
+    assert "take simulations, linearisations, velocity-equations" in fault["message"]
+
+
+@pytest.mark.parametrize("path", ["perturbation", "routhian", "curvature", "report", "export?target=fmu"])
+def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
+    answer = tied.get(f"/v1/trees/sleigh/{path}")
+    assert answer.status_code == 422, answer.text[:300]
+    assert answer.json()["errors"][0]["code"] == "has-velocity-constraints"
+
+
+def test_formulas_of_the_tree_stay(tied: TestClient) -> None:
+    for path in ("metric", "christoffel", "forces", "export?target=c", "export?target=urdf&bind=defaults"):
+        answer = tied.get(f"/v1/trees/sleigh/{path}")
+        assert answer.status_code == 200, (path, answer.text[:300])
+    assert "velocity constraint 'blade'" in answer.text
+    for path in ("/trees/sleigh", "/trees/sleigh/motion", "/trees/sleigh/edit", "/v1/trees/sleigh/scene"):
+        assert tied.get(path).status_code == 200
+    assert "<td>blade</td><td>knife_edge</td><td>s.b</td>" in tied.get("/trees/sleigh").text
+    asked = {"quantities": ["metric", "inverse_dynamics"], "q": [0, 0, 0], "qdd": [0, 0, 0]}
+    assert tied.post("/v1/trees/sleigh/evaluations", json=asked).status_code == 200
+
+
+def test_faults_and_revisions(tied: TestClient) -> None:
+    wrong = tied.post("/v1/trees", json={**TREE, "velocity_constraints": [EDGE, {**EDGE, "name": "b", "frame": "s.c"}]})
+    assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/velocity_constraints/1/frame")
+    wrong = tied.post("/v1/trees", json={**TREE, "velocity_constraints": [{**EDGE, "type": "closure"}]})
+    assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/velocity_constraints/0/type")
+    # a change of the tree keeps them, and is checked against them
+    grown = tied.post("/v1/trees/sleigh/couplings", json={"name": "t", "definition": sleigh_part()})
+    assert (grown.status_code, grown.json()["velocity_constraints"]) == (201, [EDGE])
+    less = tied.delete("/v1/trees/sleigh/couplings/s")
+    assert (less.status_code, less.json()["errors"][0]["pointer"]) == (422, "/velocity_constraints/0/frame")
+    told = tied.get("/v1/trees/sleigh@1/difference?to=free").json()
+    assert [each["place"] for each in told["definition"]] == ["/velocity_constraints/blade"]
+
+
+def test_jobs_take_it() -> None:
+    stored = {**TREE, "instances": [{"name": "s", "substructure": "sleigh"}]}
+    library = MemoryLibrary([sleigh_part()], [stored])
+    simulation = {"analysis": "simulations", "request": {**START, **VELOCITIES, "span": [0, 1]}}
+    equations = {"quantity": "velocity-equations", "format": "text", "request": VELOCITIES}
+    for kind, request in (("verify", {}), ("analyse", simulation), ("export", {"target": "c"}), ("export", equations)):
+        for outcome in outcomes(library, kind, {"items": [{"tree": "sleigh", **request}]}):
+            assert outcome.problem is None, (kind, outcome.problem)
+    refused: list[tuple[str, dict[str, Any]]] = [
+        (
+            "analyse",
+            {
+                "items": [
+                    {
+                        "tree": "sleigh",
+                        "analysis": "root-loci",
+                        "request": {"parameter": "s.m", "values": [1], "q": [0, 0, 0]},
+                    }
+                ]
+            },
+        ),
+        ("sweep", {"template": stored, "choices": {"s": ["sleigh"]}, "columns": {"mass": "mass"}}),
+    ]
+    for kind, request in refused:
+        with pytest.raises(InvalidInput, match="velocity constraints 'blade'"):
+            outcomes(library, kind, request)
+    (fmu,) = outcomes(library, "export", {"items": [{"tree": "sleigh", "target": "fmu"}]})
+    assert fmu.problem is not None
+    assert fmu.problem["errors"][0]["code"] == "has-velocity-constraints"
+
+
+def test_every_analysis_and_quantity_takes_them_or_says_so() -> None:
+    """By one table of the science, which the page of trees names."""
+    spec = TreeSpec.read(TREE)
+    model = couple(spec, {"s": derive(Definition.read(sleigh_part()))})
+    source, taken = Source(Sources(model), "", Limits()), []
+    for name in (*ANALYSES, *QUANTITIES):
+        try:
+            _ = analysis_of(name, model) if name in ANALYSES else made(source, name, {})
+            taken.append(name)
+        except InvalidInput as error:
+            (fault,) = error.faults
+            assert (fault.code, f"'{name}'" in fault.message) == ("has-velocity-constraints", True)
+    assert {*taken, "velocity-equations"} == {*TAKES_CONSTRAINTS}
+    page = Path(__file__).parents[2] / "docs" / "reference" / "http" / "trees.md"
+    (told,) = (x for x in page.read_text().split("\n\n") if x.startswith("**Velocity constraints**"))
+    assert {*re.findall(r"`([a-z_-]+)`", told.partition("Its ")[2].partition(" have")[0])} == {*TAKES_CONSTRAINTS}
