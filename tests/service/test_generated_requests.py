@@ -19,7 +19,7 @@ from substructures.client import Client
 from .conftest import PENDULUM, SLIDER, TREE
 from .databases import fresh
 
-EXAMPLES = os.environ.get("GENERATED_EXAMPLES", "10")
+EXAMPLES = os.environ.get("GENERATED_EXAMPLES", "4")
 CONFIGURATION = Path(__file__).with_name("generated_requests.toml")
 
 
