@@ -19,6 +19,7 @@ from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
 from service.models.numbers import ANALYSES, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, written
+from substructures.formats.logs import log_of
 
 #: what is said of results that are not known to be right
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
@@ -49,9 +50,14 @@ Out = Annotated[
 ]
 
 
-def numbers(wanted: Wanted, name: str, given: Path | None) -> int:
-    """Compute, write and tell the result of an analysis; the exit code. Raises InvalidInput, ProblemError."""
+def numbers(wanted: Wanted, name: str, given: Path | None, log: Path | None = None) -> int:
+    """Compute, write and tell the result of an analysis; the exit code. ``log``: the file of a measured motion.
+
+    Raises InvalidInput, ProblemError, ValueError, OSError.
+    """
     request = {} if given is None else read_document(given)
+    if log is not None:
+        request = {**request, "log": log_of(log)}
     media = _media(wanted.out, name)
     source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
     with waiting(name), nullcontext() if given is None else named(given):

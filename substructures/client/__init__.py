@@ -18,6 +18,7 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: most commands 
     from substructures.client.numbers import Evaluation, Motion
     from substructures.client.trees import Tree
     from substructures.display import Formula, Picture
+    from substructures.formats.logs import log_of
     from substructures.formats.packing import unpack
 
 __all__ = [
@@ -33,6 +34,7 @@ __all__ = [
     "ServerLost",
     "Tree",
     "Version",
+    "log_of",
     "unpack",
 ]
 
@@ -59,6 +61,7 @@ __getattr__ = names_in(
             "Formula",
             "Picture",
         ),
+        "substructures.formats.logs": ("log_of",),
         "substructures.formats.packing": ("unpack",),
     },
 )

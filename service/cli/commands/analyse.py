@@ -38,6 +38,10 @@ def analyse(
     request: Annotated[
         Path | None, typer.Argument(metavar="REQUEST", help="Of numbers, JSON or YAML.", show_default=False)
     ] = None,
+    log: Annotated[
+        Path | None,
+        typer.Option(metavar="FILE", help="A measured motion: .csv, .npz, .arrow.", show_default=False),
+    ] = None,
     out: Out = None,
     format: Format = "text",  # noqa: A002 -- name of the option
     form: Form = FORMS[0],
@@ -49,8 +53,8 @@ def analyse(
     """Formulas and numbers that follow from the equations of motion."""
     wanted = Wanted(server, tree, out, json)
     if what in ANALYSES:
-        return numbers(wanted, what, request)
-    if request is not None:
+        return numbers(wanted, what, request, log)
+    if request is not None or log is not None:
         raise ValueError(f"'{what}' is a formula: it has options, but no request{meant(what, ANALYSES)}")
     chosen = {name: tuple(",".join(texts).split(",")) for name, texts in options.items() if texts}
     style = {"format": "json" if json else format, "form": form, "bind": bind, "name": name}

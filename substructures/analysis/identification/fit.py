@@ -15,7 +15,7 @@ parameters well when its singular value is not small beside the largest.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -32,7 +32,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import read_states, symbol_values
+from substructures.quantities.numbers.states import by_name, read_states, symbol_values
 from substructures.tree.model import Model
 
 #: relative size of a singular value that counts as zero
@@ -87,7 +87,7 @@ def identify(
     q: StateArray,
     qd: StateArray | None,
     qdd: StateArray,
-    tau: Sequence[Sequence[float]] | Array,
+    tau: StateArray,
     *,
     parameters: Mapping[str, Any] | None = None,
     model: Model | None = None,
@@ -96,19 +96,18 @@ def identify(
 ) -> Identification:
     """Base parameters beta from a measured motion: beta = argmin |D^-1 (W beta - tau + known)|^2 (see above).
 
-    ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N]; states also as columns by coordinate; ``qd`` None: at
-    rest. ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and
-    armature are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is
-    explained by the base parameters alone. ``held_out``: part of the samples, the last ones, that is predicted and not
-    fitted. Checks: the normal equations hold; the force that is not explained, and the
-    force that any one standard deviation of a parameter makes, are parts of the force of every joint (root mean
-    squares) that may reach ``error_limit``. A motion that does not excite all of them is a result with status
-    ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
-    IEEE ICRA 1997.
+    ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N], or columns by coordinate; ``qd`` None: at rest.
+    ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and armature
+    are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is explained
+    by the base parameters alone. ``held_out``: part of the samples, the last ones, that is predicted and not fitted.
+    Checks: the normal equations hold; the force that is not explained, and the force that any one standard deviation of
+    a parameter makes, are parts of the force of every joint (root mean squares) that may reach ``error_limit``. A
+    motion that does not excite all of them is a result with status ``failed``. Raises InvalidInput (``/q``, ``/tau``,
+    ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier, IEEE ICRA 1997.
     """
     motion = _Motion(q, qd, qdd, parameters or {})
     data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
-    force = _forces(tau, data)
+    force = _forces(base, tau, data)
     limit, share = positive(error_limit, "error_limit"), real(held_out, "/held_out")
     if not 0 <= share < 1:
         raise InvalidArgument.at("/held_out", "out-of-range", f"a part below 1 is needed, found {share:g}")
@@ -188,7 +187,7 @@ def _explained(W: Array, tau: Array, residual: Array, deviations: Array, limit: 
 
 def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
     """Outputs of the program along a motion."""
-    view = Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+    view = _view(base)
     require_moving(view)
     states = read_states(view, vars(motion), None)
     if states.qdd is None:
@@ -200,9 +199,15 @@ def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (RE
     return _Data(q, qd, qdd, interpret_in_blocks(base.program, values, names, states.count))
 
 
-def _forces(given: Any, data: _Data) -> Array:
+def _view(base: BaseParameters) -> Model:
+    return Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+
+
+def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
     if given is None:
         raise InvalidArgument.at("/tau", "missing", "actuator forces 'tau' are needed")
+    if isinstance(given, Mapping):
+        given = by_name(_view(base), given, "tau")
     tau = np.atleast_2d(numeric(given, "/tau"))
     if tau.shape != data.q.shape:
         message = f"shape {tau.shape} found, {data.q.shape} expected"

@@ -121,7 +121,7 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
         return None
     given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
-        given = _by_name(model, given, name)
+        given = by_name(model, given, name)
     values = numeric(given, f"/{name}")
     if model.dof == 1 and (values.ndim == 0 or (values.ndim == 1 and len(values) != 1)):
         # one number for one coordinate, or one for each state, as MATLAB writes lists of one
@@ -152,7 +152,10 @@ def _count_of(coordinates: Sequence[str]) -> str:
     return f"there {'is' if count == 1 else 'are'} {count} coordinate{'' if count == 1 else 's'}{named}"
 
 
-def _by_name(model: Model, given: Mapping[str, Any], name: str) -> Any:
+def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
+    """(N, n) of columns by coordinate, in the order of the model; (n,) of numbers. Raises InvalidArgument below
+    ``/name``.
+    """
     unknown = [str(key) for key in given if key not in model.coordinates]
     faults = [
         Fault(
