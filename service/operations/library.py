@@ -18,6 +18,7 @@ from service.operations.sharing.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
 from service.queries.owners import Kind, ownership
+from service.queries.owners import private_parts as hidden_parts
 from service.queries.searching import part_search
 from service.queries.searching.part_search import CatalogueSearch
 from service.queries.searching.words import words_of
@@ -47,6 +48,7 @@ class StoreLibrary:
         self.private: set[str] = set()
         self.version = lru_cache(maxsize=None)(self._version)
         self.tree = lru_cache(maxsize=1000)(self._tree)
+        self._hidden = lru_cache(maxsize=1000)(lambda digests: hidden_parts(connection, digests))
 
     def _version(self, reference: str) -> StoredVersion | None:
         ref = parse_reference(reference)
@@ -125,7 +127,8 @@ class StoreLibrary:
             self.private.add(what["name"])
         instances = what.get("instances", ()) if kind == "assemble" else ()
         digests = {each["name"]: each.get("substructure", "").partition("@")[2] for each in instances}
-        faults = list(private_parts(self._connection, whose, instances, digests)) if instances else []
+        hidden = self._hidden(frozenset(digests.values())) if instances else {}
+        faults = list(private_parts(whose, instances, digests, hidden))
         if faults:
             raise InvalidDocument(faults)
         return {} if self._viewer.owner == OPEN else {"owner": self._viewer.owner}

@@ -120,13 +120,16 @@ def set_visibility(connection: Connection, viewer: Viewer, kind: Kind, name: str
 
 
 def private_parts(
-    connection: Connection, tree: Ownership, instances: Collection[Mapping[str, Any]], digests: Mapping[str, str]
+    tree: Ownership,
+    instances: Collection[Mapping[str, Any]],
+    digests: Mapping[str, str],
+    hidden: Mapping[str, tuple[str, str]],
 ) -> Iterator[Fault]:
     """Faults of parts that a tree may not have: others' private ones, and private ones where others see the tree.
 
-    ``instances``: documents; ``digests``: of their parts, by instance.
+    ``instances``: documents; ``digests``: of their parts, by instance; ``hidden``: name and owner of those of the parts
+    that are private, by digest.
     """
-    hidden = owners.private_parts(connection, digests.values())
     for k, instance in enumerate(instances):
         part, owner = hidden.get(digests[instance["name"]], ("", tree.owner))
         is_reference, place = bool(instance.get("substructure")), f"instance '{instance['name']}'"

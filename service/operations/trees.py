@@ -22,6 +22,7 @@ from service.operations import catalogue, owners
 from service.operations.library import StoreLibrary
 from service.queries import audit, content, trees, uses
 from service.queries.common import now
+from service.queries.owners import private_parts
 from service.queries.uses import Withdrawn
 from service.schemas.entries import PLAIN, Entry
 from service.store.store import Store
@@ -228,7 +229,8 @@ def _coupled(
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
         item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer))
         digests = {each.name: each.digest for each in TreeSpec.stored(item["tree"]).instances}
-        faults = list(owners.private_parts(connection, whose, item["tree"].get("instances", ()), digests))
+        hidden = private_parts(connection, digests.values())
+        faults = list(owners.private_parts(whose, item["tree"].get("instances", ()), digests, hidden))
     if faults:
         raise InvalidDocument(faults)
     given = {**item, **store.work_limits, **members, SHARE: f"owner {viewer.owner}"}

@@ -87,7 +87,7 @@ class ExcitationRequest(DocumentPart):
         needed = [name for name in MEASURED if name in type(self).model_fields and name != "qd"]
         missing = [name for name in needed if getattr(self, name) is None]
         if missing:
-            raise refused("no-motion", f"'{missing[0]}' is needed, here or as columns of 'log'")
+            raise refused("no-motion", f"'{missing[0]}' is needed, here or as columns of 'log'", f"/{missing[0]}")
         return self
 
 

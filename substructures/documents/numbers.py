@@ -6,6 +6,7 @@ import re
 from decimal import Decimal
 
 MAX_DIGITS = 400
+_TOO_LARGE = 10**MAX_DIGITS
 TOO_LONG = f"a number of more than {MAX_DIGITS} digits"
 
 INTEGER = re.compile(r"[-+]?(?:0|[1-9][0-9]*)")
@@ -55,7 +56,7 @@ def plain_text(value: int | Decimal | float) -> str:
     A float stands for its shortest decimal text. Raises :class:`RefusedNumberError`.
     """
     if isinstance(value, int):
-        if abs(value) >= 10**MAX_DIGITS:
+        if abs(value) >= _TOO_LARGE:
             raise RefusedNumberError(TOO_LONG)
         return str(value)
     # not repr(value), which numpy.float64 writes as np.float64(1.0)

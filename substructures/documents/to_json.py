@@ -6,13 +6,15 @@ import json
 from collections.abc import Callable, Iterable, Sequence
 from decimal import Decimal
 from functools import cached_property
-from typing import Any
+from typing import Any, Self
 
+from substructures.documents.from_json import read_json
 from substructures.documents.numbers import RefusedNumberError, plain_text
 from substructures.documents.text import MAX_DEPTH, SURROGATE, TOO_DEEP, pointer_step
 from substructures.errors import InvalidDocument
 
-_text = json.JSONEncoder(ensure_ascii=False).encode
+_text: Callable[[str], str] = json.encoder.encode_basestring
+_WORDS = {None: "null", True: "true", False: "false"}
 
 
 def write_json(data: Any, keys: Callable[[dict[Any, Any]], Iterable[Any]] = sorted) -> bytes:
@@ -34,6 +36,13 @@ def write_json(data: Any, keys: Callable[[dict[Any, Any]], Iterable[Any]] = sort
 class Written(dict[str, Any]):
     """Plain data that stands in many documents and is not changed: its text is written once."""
 
+    @classmethod
+    def read(cls, text: bytes) -> Self:
+        """The data of a canonical text."""
+        found = cls(read_json(text))
+        found.text = text.decode()
+        return found
+
     @cached_property
     def text(self) -> str:
         """Canonical JSON."""
@@ -48,15 +57,17 @@ class _Writing:
 
     def value(self, value: Any, path: list[str | int]) -> None:
         """Of any kind."""
-        if value is None or isinstance(value, str | bool):
+        if isinstance(value, str):
             self._out.append(_text(value))
-        elif isinstance(value, int | Decimal | float):
+        elif value is None or isinstance(value, bool):
+            self._out.append(_WORDS[value])
+        elif isinstance(value, (int, Decimal, float)):
             self._out.append(_number(value, path))
         elif len(path) >= MAX_DEPTH:
             raise InvalidDocument.at(_pointer(path), "nesting", TOO_DEEP)
         elif isinstance(value, Written) and self._keys is sorted:
             self._out.append(value.text)
-        elif isinstance(value, list | tuple):
+        elif isinstance(value, (list, tuple)):
             self._list(value, path)
         elif isinstance(value, dict):
             self._mapping(value, path)

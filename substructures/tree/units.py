@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
 from substructures.documents import escape
-from substructures.documents.units import NUMBER, Dimension, read_unit
+from substructures.documents.units import NUMBER, read_unit
 from substructures.expr.program import Program
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimension_of
@@ -41,22 +41,32 @@ def check_tree_units(
 
     Names are ``g`` of the tree and ``arm.l1`` of instances.
     """
-    units = {name: each.unit for name, each in spec.parameters.items()}
-    for instance, described in parameters.items():
-        units |= {f"{instance}.{name}": str(each["unit"]) for name, each in described.items()}
-    known = {name: dimension_of(unit) for name, unit in units.items()}
-    check = UnitCheck(lambda name: known.get(name, "unknown"))
+
+    def unit(name: str) -> str | None:
+        """Of a parameter of the tree or of an instance; None of what is none."""
+        if name in spec.parameters:
+            return spec.parameters[name].unit
+        instance, _, of_part = name.partition(".")
+        found = parameters.get(instance, {}).get(of_part)
+        return None if found is None else str(found["unit"])
+
+    def dimension(name: str) -> Inferred | None:
+        """Of a parameter; None of what is none."""
+        given = unit(name)
+        return None if given is None else dimension_of(given)
+
+    check = UnitCheck(lambda name: dimension(name) or "unknown")
     check.check(parameter_places(spec.parameters), True)
     check.check(input_places(spec.inputs), True)
-    check.check(_places(spec), True)
-    dimensions = {name: x.dimension for name, x in known.items() if isinstance(x, Dimensioned)}
-    check.check(_bindings(spec, dimensions), True)
-    radians = {name: NUMBER for name, unit in units.items() if unit == RAD}
-    check.warnings += angle_warnings([*_places(spec), *_bindings(spec, radians)], spec.parameters)
+    places = list(_places(spec))
+    check.check(places, True)
+    check.check(_bindings(spec, dimension), True)
+    radians = _bindings(spec, lambda name: Dimensioned(NUMBER) if unit(name) == RAD else None)
+    check.warnings += angle_warnings([*places, *radians], spec.parameters)
     if spec.loads or spec.driven:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)
-        check.names = lambda name: known[name] if name in known else moving.get(name) or dimension_of_measure(name)
+        check.names = lambda name: dimension(name) or moving.get(name) or dimension_of_measure(name)
         check.check(_loads(spec, kinds), False)
         check.check(_driven(spec, kinds), False)
     return check
@@ -106,11 +116,13 @@ def _places(spec: TreeSpec) -> Iterator[Place]:
             yield f"/velocity_constraints/{i}/radius", each.radius, LENGTH
 
 
-def _bindings(spec: TreeSpec, dimensions: Mapping[str, Dimension]) -> Iterator[Place]:
+def _bindings(spec: TreeSpec, dimension: Callable[[str], Inferred | None]) -> Iterator[Place]:
     """What parameters of instances are bound to has the dimension of the parameter."""
     for i, instance in enumerate(spec.instances):
         for name, value in instance.parameters.items():
-            yield f"/instances/{i}/parameters/{name}", value, dimensions.get(f"{instance.name}.{name}")
+            found = dimension(f"{instance.name}.{name}")
+            known = found.dimension if isinstance(found, Dimensioned) else None
+            yield f"/instances/{i}/parameters/{name}", value, known
 
 
 def tree_warnings(spec: TreeSpec, parts: Mapping[str, Part], program: Program, names: Sequence[str]) -> list[Notice]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from functools import partial
 
 from service.content.cache import Cache
 from service.content.derivation import software
@@ -17,7 +18,7 @@ from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints
-from substructures.documents import read_json
+from substructures.documents.to_json import Written
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
@@ -25,12 +26,13 @@ from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.model import couple_shape
-from substructures.tree.units import check_tree_units
+from substructures.tree.units import DescribedParameters, check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name
 DEFINITIONS = 1000  # kept decoded
 PACKED = 10_000_000  # bytes
 _definitions: Cache[Definition] = Cache(DEFINITIONS, lambda _: 1)
+_described: Cache[DescribedParameters] = Cache(DEFINITIONS, lambda _: 1)  # parameters of definitions, likewise
 _packed: Cache[bytes] = Cache(PACKED, len)  # programs of shapes
 
 
@@ -67,13 +69,12 @@ def pinned_spec(
     if not is_stored:
         definitions = {each.name: _definition(each, found, library) for each in spec.instances}
         known = {name: each for name, each in definitions.items() if each is not None}
-        parameters = {name: described(each.parameters) for name, each in known.items()}
-        faults += check_tree_units(spec, parameters, known).faults
+        faults += check_tree_units(spec, _parameters(known, found), known).faults
     if faults:
         raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
-    tree = read_json(spec.model_copy(update={"instances": pinned}).canonical())
+    tree = Written.read(spec.model_copy(update={"instances": pinned}).canonical())
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
@@ -114,6 +115,17 @@ def _definition(instance: Instance, versions: Mapping[str, StoredVersion], libra
     if found is None:
         found = stored_definition(version.digest, library)
         _definitions.put(version.digest, found)
+    return found
+
+
+def _parameters(
+    definitions: Mapping[str, Definition], versions: Mapping[str, StoredVersion]
+) -> dict[str, DescribedParameters]:
+    """Of every instance, by their names."""
+    found: dict[str, DescribedParameters] = {}
+    for name, each in definitions.items():
+        make = partial(described, each.parameters)
+        found[name] = _described.once(versions[name].digest, make) if name in versions else make()
     return found
 
 
