@@ -14,7 +14,7 @@ sys.path.insert(0, str(Path(__file__).parent))
 
 import checked_graph
 
-#: tests that took 0.7 s of CPU or more when they were last measured (``python -m benchmarks.tests_by_folder``), a line
+#: tests that took 0.3 s or more when they were last measured (``python -m benchmarks.tests_by_folder``), a line
 #: each, but for one of every file: they run with the deep ones, so that the others take minutes
 LONG = Path(__file__).with_name("long.txt")
 

@@ -15,7 +15,7 @@ from substructures.client import Client
 from .conftest import PENDULUM
 from .farm import Server, finished, running
 
-WRITERS, READERS, SECONDS = 8, 32, 60.0
+WRITERS, READERS, SECONDS = 8, 32, 20.0
 
 
 def tree(writer: int, i: int) -> dict[str, Any]:

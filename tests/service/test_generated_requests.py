@@ -1,6 +1,7 @@
 """Requests generated from the OpenAPI document: every answer is one that the document has, none is a 5xx.
 
-GENERATED_EXAMPLES: so many for every operation, valid ones and others, on every database.
+GENERATED_EXAMPLES: so many for every operation, valid ones and others, on every database; what covers each place of
+the document in turn is about how bodies are read, and goes to one of them.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from substructures.client import Client
 from .conftest import PENDULUM, SLIDER, TREE
 from .databases import fresh
 
-EXAMPLES = os.environ.get("GENERATED_EXAMPLES", "4")
+EXAMPLES = os.environ.get("GENERATED_EXAMPLES", "3")
 CONFIGURATION = Path(__file__).with_name("generated_requests.toml")
 
 
@@ -36,6 +37,7 @@ def test_every_answer_keeps_the_contract(kind: str, tmp_path: Path) -> None:
             command = [sys.executable, "-m", "schemathesis.cli", "--config-file", str(CONFIGURATION), "run"]
             command += [f"{address}/openapi.json", "--max-examples", EXAMPLES, "--request-timeout", "30"]
             command += ["--generation-deterministic", "--no-color"]
+            command += ["--phases", "fuzzing,stateful"] if kind == "postgresql" else []
             hooks = {"SCHEMATHESIS_HOOKS": "generated_hooks", "PYTHONPATH": str(CONFIGURATION.parent)}
             named = {**os.environ, **hooks}
             found = subprocess.run(command, cwd=tmp_path, env=named, capture_output=True, text=True, check=False)

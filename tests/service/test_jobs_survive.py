@@ -20,8 +20,8 @@ from substructures.client import Client
 from .databases import fresh
 from .farm import Assassin, Server, Submitter, finished, running, submit
 
-BATCH = 500
-KILLS = 14  # of servers, and of workers, in the batch; of thousands: python -m benchmarks.kills
+BATCH = 300
+KILLS = 8  # of servers, and of workers, in the batch; of thousands: python -m benchmarks.kills
 SERVER_LIFE = 1.5  # seconds between the start and the end of a server, at most
 #: Seconds between the ends of workers, at most. An item fails whose worker dies three times: that has to be unlikely.
 WORKER_LIFE = 3.5
@@ -118,7 +118,7 @@ def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str
             assert finished(client, batch, 600)["state"] == "succeeded"
             found = results(client, batch)
             unlucky = sorted(undisturbed.keys() - found.keys())
-            assert len(unlucky) <= 5
+            assert len(unlucky) <= 3
             if unlucky:  # by chance killed three times, which nobody can tell from an item that kills its worker
                 again = submit(farm, {"kind": "assemble", "items": [tree(i) for i in unlucky]}, "unlucky")
                 submitter.acknowledged["unlucky"] = again
