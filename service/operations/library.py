@@ -13,11 +13,11 @@ from service.jobs.kinds.library import StoredTree, StoredVersion
 from service.messages.references import parse_reference
 from service.messages.refusals import Refused
 from service.messages.viewer import OPEN, PUBLIC, Viewer
-from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, private_parts, wanted
+from service.operations.owners import EITHER, absent_either, absent_part, absent_tree, may_have, private_parts
 from service.operations.sharing.provenance import derived_from
 from service.queries import catalogue, content, trees
 from service.queries.catalogue import Version
-from service.queries.owners import Kind, ownership
+from service.queries.owners import Kind, Ownership, ownership, ownerships
 from service.queries.owners import private_parts as hidden_parts
 from service.queries.searching import part_search
 from service.queries.searching.part_search import CatalogueSearch
@@ -46,6 +46,7 @@ class StoreLibrary:
         self._connection, self._viewer = connection, viewer
         self._sources, self.file = sources, file
         self.private: set[str] = set()
+        self._whose: dict[str, dict[str, Ownership | None]] = {}
         self.version = lru_cache(maxsize=None)(self._version)
         self.tree = lru_cache(maxsize=1000)(self._tree)
         self._hidden = lru_cache(maxsize=1000)(lambda digests: hidden_parts(connection, digests))
@@ -110,16 +111,26 @@ class StoreLibrary:
         found = ownership(self._connection, "tree" if kind == "tree" else "substructure", name)
         return found is not None and self._viewer.may_change(found.owner)
 
+    def foresee(self, kind: str, items: Sequence[Mapping[str, Any]]) -> None:
+        """Look up at once whose the names are that :meth:`owned` is going to be asked about."""
+        named, _ = _names(kind)
+        names = [item[named].get("name") for item in items if isinstance(item.get(named), Mapping)]
+        texts = {name for name in names if isinstance(name, str)}
+        self._whose[kind] = {**dict.fromkeys(texts), **ownerships(self._connection, _names(kind)[1], texts)}
+
     def owned(self, kind: str, item: ItemDocument) -> ItemDocument:
         """The members of an item of kind ``assemble`` or ``derive`` that say for whom it stores what; equal items of
         others are others. Raises InvalidDocument for a name or a part that may not be used.
         """
         if kind == "upgrade":
             return {}
-        entry, what = PartEntry(**item.get(ENTRY, {})), item["definition" if kind == "derive" else "tree"]
-        named: Kind = "substructure" if kind == "derive" else "tree"
+        member, named = _names(kind)
+        entry, what = PartEntry(**item.get(ENTRY, {})), item[member]
+        name = what["name"]
+        known = self._whose.get(kind, {})
         try:
-            whose = wanted(self._connection, self._viewer, named, what["name"], entry)
+            found = known[name] if name in known else ownership(self._connection, named, name)
+            whose = may_have(self._viewer, named, name, found, entry)
             derived_from(self._connection, self._viewer, entry)
         except Refused as error:
             raise InvalidDocument.at("/name", error.code, error.detail) from None
@@ -140,3 +151,8 @@ class StoreLibrary:
     def sources(self) -> Sequence[str]:
         """Addresses of the instances that may be mirrored, without keys."""
         return [read_source(text).address for text in self._sources]
+
+
+def _names(kind: str) -> tuple[str, Kind]:
+    """The member of an item that has the name of what it stores, and of what this is a name."""
+    return ("definition", "substructure") if kind == "derive" else ("tree", "tree")

@@ -20,7 +20,11 @@ EITHER = "substructure or tree"
 
 def wanted(connection: Connection, viewer: Viewer, kind: Kind, name: str, entry: Entry) -> Ownership:
     """Whose a name is or would be. Raises Refused 403 for one of others, 409 for one of another visibility."""
-    found = owners.ownership(connection, kind, name)
+    return may_have(viewer, kind, name, owners.ownership(connection, kind, name), entry)
+
+
+def may_have(viewer: Viewer, kind: Kind, name: str, found: Ownership | None, entry: Entry) -> Ownership:
+    """As :func:`wanted`, of a name whose owner, if it has one, was ``found``."""
     return _checked(viewer, kind, name, found or _new(viewer, entry), entry)
 
 

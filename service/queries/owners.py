@@ -63,6 +63,17 @@ def ownership(connection: Connection, kind: Kind, name: str) -> Ownership | None
     return None if row is None else Ownership(*row)
 
 
+def ownerships(connection: Connection, kind: Kind, names: Iterable[str]) -> dict[str, Ownership]:
+    """Whose names are, of those that are taken."""
+    table, wanted = _TABLES[kind], list(set(names))
+    query = select(table.c.name, table.c.owner, table.c.visibility)
+    found: dict[str, Ownership] = {}
+    for start in range(0, len(wanted), AT_A_TIME):
+        rows = connection.execute(query.where(table.c.name.in_(wanted[start : start + AT_A_TIME])))
+        found |= {name: Ownership(owner, visibility) for name, owner, visibility in rows}
+    return found
+
+
 def names_like(connection: Connection, viewer: Viewer, kind: Kind, name: str) -> list[str]:
     """Names that a viewer sees and that begin like one that is not there, or, of few, all."""
     table = _TABLES[kind]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import sleep
 from typing import Any
@@ -153,7 +153,7 @@ def _places(body: Mapping[str, Any], count: int) -> Iterator[tuple[str, str]]:
 
 def _resolved(
     kind: str,
-    items: Iterable[Mapping[str, Any]],
+    items: Sequence[Mapping[str, Any]],
     library: StoreLibrary,
     places: Iterator[tuple[str, str]],
     members: Mapping[str, Any],
@@ -161,6 +161,8 @@ def _resolved(
     resolved: list[NewItem] = []
     faults: list[Fault] = []
     bad = 0
+    if kind in NAMING and kind != "upgrade":
+        library.foresee(kind, items)
     for k, (item, (place, note)) in enumerate(zip(items, places, strict=True)):
         if k % YIELD == 0:
             sleep(0)  # other requests need not wait until all items are done
