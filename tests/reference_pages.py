@@ -1,4 +1,4 @@
-"""The reference pages that are made of the program: the command line and the settings.
+"""The reference pages that are made of the program: the command line, the settings, what goes together.
 
 ``python tests/reference_pages.py`` writes them; a test compares them with what is there.
 """
@@ -10,6 +10,7 @@ from pathlib import Path
 from textwrap import wrap
 from typing import Any
 
+import tied_combinations
 from pydantic import BaseModel
 
 from service.cli.main import COMMANDS, loaded
@@ -94,7 +95,7 @@ def _table(model: type[BaseModel], prefix: str) -> Iterator[str]:
             yield f"| `{prefix}{name.upper()}` | {f'`{text}`' if text else ''} | {field.description} |"
 
 
-PAGES = {"command-line.md": command_line, "settings.md": settings}
+PAGES = {"command-line.md": command_line, "settings.md": settings, "combinations.md": tied_combinations.page}
 
 if __name__ == "__main__":
     for page, made in PAGES.items():

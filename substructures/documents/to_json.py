@@ -8,7 +8,6 @@ from decimal import Decimal
 from functools import cached_property
 from typing import Any, Self
 
-from substructures.documents.from_json import read_json
 from substructures.documents.numbers import RefusedNumberError, plain_text
 from substructures.documents.text import MAX_DEPTH, SURROGATE, TOO_DEEP, pointer_step
 from substructures.errors import InvalidDocument
@@ -37,9 +36,9 @@ class Written(dict[str, Any]):
     """Plain data that stands in many documents and is not changed: its text is written once."""
 
     @classmethod
-    def read(cls, text: bytes) -> Self:
+    def of(cls, data: dict[str, Any], text: bytes) -> Self:
         """The data of a canonical text."""
-        found = cls(read_json(text))
+        found = cls(data)
         found.text = text.decode()
         return found
 

@@ -18,6 +18,7 @@ from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints
+from substructures.documents import read_json
 from substructures.documents.to_json import Written
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
@@ -74,7 +75,8 @@ def pinned_spec(
         raise InvalidDocument(faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
-    tree = Written.read(spec.model_copy(update={"instances": pinned}).canonical())
+    text = spec.model_copy(update={"instances": pinned}).canonical()
+    tree = Written.of(read_json(text), text)
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 

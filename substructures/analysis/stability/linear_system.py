@@ -17,7 +17,7 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument
 from substructures.tree.document import require_unconstrained
-from substructures.tree.model import Model
+from substructures.tree.model import Model, require_open
 
 #: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
 LOST, SURE = 1e-10, 1e-7
@@ -38,9 +38,7 @@ def linear_system(
 ) -> Linearisation:
     """A, B, C, D about one state, with inputs that act. Raises as :func:`linearise`, and InvalidArgument."""
     require_unconstrained(model.constraint_names, "linear systems")
-    if model.closures:
-        message = "closures are not taken: linearise gives A, B, C, D in independent coordinates"
-        raise InvalidArgument.at("/q", "closures", message)
+    require_open(model.closures, "linearise gives A, B, C, D in independent coordinates")
     if why := unsteady(model, point.get("inputs") or {}):
         raise InvalidArgument.at("/q", "not-steady", f"{why}: linearise gives A, B, C, D at any time")
     found = linearise(model, q, outputs=outputs, **point)
