@@ -12,7 +12,6 @@ import base64
 import binascii
 import csv
 import io
-import re
 from collections.abc import Callable, Mapping
 from itertools import chain
 from pathlib import Path
@@ -28,7 +27,6 @@ from substructures.formats.arrays import read_npz
 
 MEASURED = ("q", "qd", "qdd", "tau")
 TIMES = ("t", "time")
-_NAMED = re.compile(r"\s*(?P<name>.*?)\s*(?:\[(?P<unit>[^\[\]]*)\])?\s*", re.DOTALL)
 _PRIMED = {"": "q", "'": "qd", "''": "qdd"}
 
 
@@ -74,8 +72,9 @@ def motion_of(form: str, text: str, columns: Mapping[str, str], limit: int) -> d
 
 def _meaning(text: str) -> tuple[str, str, str | None]:
     """What was measured (``q``, ..., ``t``), of which coordinate (empty: of all, or none), in which unit."""
-    matched = _NAMED.fullmatch(text)
-    name, unit = (text, None) if matched is None else (matched["name"], matched["unit"])
+    name, bracket, rest = text.strip().partition("[")
+    unit = rest[:-1] if bracket and rest.endswith("]") else None
+    name = name.rstrip() if bracket == "" or unit is not None else text
     if name in (*MEASURED, *TIMES):
         return name, "", unit
     head, _, rest = name.partition(".")
