@@ -89,11 +89,12 @@ def _csv(text: str, _limit: int) -> dict[str, Array]:
     lines = text.removeprefix("\ufeff").splitlines()
     head = lines[0] if lines else ""
     separator = max(",;\t", key=head.count)
-    reader = csv.reader(lines, delimiter=separator)
-    names = [name.strip() for name in next(reader, [])]
-    if len(set(names)) < len(names) or not any(names):
+    try:
+        names, *rows = ([cell.strip() for cell in row] for row in csv.reader(lines, delimiter=separator) if any(row))
+    except (csv.Error, ValueError) as error:
+        raise InvalidDocument.at("", "csv", f"not a table: {error}") from None
+    if len(set(names)) < len(names):
         raise InvalidDocument.at("", "csv", "the first line of a log has the names of its columns, each once")
-    rows = [row for row in reader if any(cell.strip() for cell in row)]
     for k, row in enumerate(rows):
         if len(row) != len(names):
             raise InvalidDocument.at("", "csv", f"row {k + 1} has {len(row)} values, the first line {len(names)} names")
