@@ -26,6 +26,10 @@ function answer = request (path, body, method, headers)
   if (~ isempty (key))
     headers(end + 1, :) = {'Authorization', ['Bearer ' char(key)]};
   end
+  if (strcmpi (char (method), 'patch') && exist ('OCTAVE_VERSION', 'builtin'))
+    error ('substructures:request', ['Octave sends no PATCH: take curl, or take the instance away and couple ' ...
+      'another one (remove_coupling, add_coupling of substructures.api)']);
+  end
   options = weboptions ('Timeout', 60, 'RequestMethod', char (method));
   if (~ isempty (headers))
     options.HeaderFields = headers;
