@@ -8,8 +8,8 @@ from typing import Any
 from pydantic import BaseModel
 
 from service.schemas.analyses.motions import AnySimulationRequest, ClosedRequest, RollingRequest, SimulationRequest
+from service.schemas.logs import Logged
 from service.schemas.measured import read_measured
-from service.schemas.measurements import ExcitationRequest, without_log
 from service.schemas.parts import RequestPart
 from substructures.documents import escape, require_object
 from substructures.errors import Fault, InvalidArgument
@@ -22,8 +22,8 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
     Raises InvalidInput with pointers.
     """
     require_object(body)
-    if issubclass(schema, ExcitationRequest):
-        body = without_log(schema, body)
+    if issubclass(schema, Logged):
+        body = schema.unfolded(body)
     if schema is not AnySimulationRequest:
         return read_measured(schema, body, model)
     chosen = _motion(body, model)
