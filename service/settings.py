@@ -96,7 +96,12 @@ class Settings(BaseModel):
     allowed_hosts: tuple[str, ...] = Field(LOOPBACK, description="values accepted in the Host header; * accepts all")
     catalogue: bool = Field(True, description="import the shipped catalogue when the server starts")
     folder: str = Field("", description="folder of definitions, JSON and YAML, that the server reads; empty: none")
-    cache_nodes: int = Field(2_000_000, ge=0, le=2**62, description="operations of decoded programs kept in memory")
+    cache_nodes: int = Field(
+        2_000_000,
+        ge=0,
+        le=2**62,
+        description="operations of decoded programs kept in memory, and 56 bytes of files and answers for each",
+    )
     engine: Literal["local", "dask", "none"] = Field("local", description="what computes jobs; none: another process")
     engine_address: str = Field("", description="address of the Dask scheduler, tcp://...")
     processes: int = Field(1, ge=1, le=PROCESSES, description="processes that answer requests")

@@ -15,10 +15,9 @@ from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
 TREES = 1000  # with what judges their values
-PICTURES = 16 * 2**20  # characters
-BLOBS = 64 * 2**20  # bytes of definitions, programs and uploads
 FACETS = 20_000  # values of facets
-PRINTED = 32 * 2**20  # bytes of formulas as they were sent
+# bytes for each operation that is kept: of pictures, of stored bytes and uploads, of formulas as they were sent
+PICTURES, BLOBS, PRINTED = 8, 32, 16
 
 
 @dataclass(frozen=True)
@@ -44,7 +43,7 @@ class Caches:
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
-        """Caches that together hold programs of about so many operations."""
+        """Caches that together hold programs of about so many operations, and what was made of these."""
         return cls(
             parts=Cache(nodes // 4, lambda part: len(part.program)),
             models=Cache(nodes // 4, lambda model: len(model.program)),
@@ -53,8 +52,8 @@ class Caches:
             numeric_trees=Cache(nodes // 8, NumericTree.weight),
             plausibilities=Cache(TREES, lambda _: 1),
             evaluations=Cache(nodes // 8, lambda found: found.weight()),
-            pictures=Cache(PICTURES, len),
-            blobs=Cache(BLOBS, len),
-            printed=Cache(PRINTED, lambda answer: len(answer.body)),
+            pictures=Cache(PICTURES * nodes, len),
+            blobs=Cache(BLOBS * nodes, len),
+            printed=Cache(PRINTED * nodes, lambda answer: len(answer.body)),
             facets=Cache(FACETS, lambda found: sum(map(len, found.values())) + 1),
         )

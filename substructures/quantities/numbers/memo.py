@@ -12,7 +12,7 @@ from substructures.expr.program import Program
 from substructures.tree.model import Model
 
 #: operations of the programs that are kept in a process
-CAPACITY = 2_000_000
+CAPACITY = 300_000
 
 
 @dataclass(frozen=True)

@@ -275,7 +275,7 @@ def _per_state(values: Array, count: int, pointer: str) -> Array:
     return values
 
 
-@lru_cache(maxsize=100_000)
+@lru_cache(maxsize=10_000)
 def default_number(value: Any) -> float:
     """A default as a double, in SI: a number, or a constant expression in the grammar."""
     value = in_si(value)
