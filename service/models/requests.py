@@ -23,7 +23,9 @@ def read_request(schema: type[BaseModel], body: Any, model: Model | None = None)
     """
     require_object(body)
     if issubclass(schema, Logged):
-        body = schema.unfolded(body)
+        read = read_measured(schema, schema.unfolded(body), model)
+        read.require_motion()
+        return read
     if schema is not AnySimulationRequest:
         return read_measured(schema, body, model)
     chosen = _motion(body, model)

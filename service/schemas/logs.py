@@ -10,7 +10,7 @@ from pydantic import Field, model_validator
 from service.schemas.shapes import refused
 from substructures.documents import DocumentPart
 from substructures.documents.schema import read_model
-from substructures.errors import InvalidDocument, InvalidInput
+from substructures.errors import Fault, InvalidDocument, InvalidInput
 from substructures.formats.logs import MEASURED, motion_of
 
 UNPACKED = 2**26  # bytes of a log
@@ -47,14 +47,6 @@ class Logged(DocumentPart):
 
     log: Log | None = Field(None, description="the motion as a file, in place of ``q, qd, qdd, tau``")
 
-    @model_validator(mode="after")
-    def _complete(self) -> Self:
-        needed = [name for name in MEASURED if name in type(self).model_fields and name != "qd"]
-        missing = [name for name in needed if getattr(self, name) is None]
-        if missing:
-            raise refused("no-motion", f"'{missing[0]}' is needed, here or as columns of 'log'", f"/{missing[0]}")
-        return self
-
     @classmethod
     def unfolded(cls, body: Mapping[str, Any]) -> Mapping[str, Any]:
         """The body of a request, whose members are what stands in its log, if it has one; a log may tell more.
@@ -62,13 +54,26 @@ class Logged(DocumentPart):
         Raises InvalidDocument, TooLarge.
         """
         if body.get("log") is None:
-            return body
-        twice = [name for name in MEASURED if body.get(name) is not None]
-        if twice:
-            raise InvalidDocument.at(f"/{twice[0]}", "given-twice", f"'{twice[0]}' is given, and a log, too")
-        try:
-            found = read_model(Log, body["log"]).motion()
-        except InvalidInput as error:
-            raise error.below("/log") from None
-        members = {name: x for name, x in found.items() if name in cls.model_fields}
-        return {**{name: x for name, x in body.items() if name != "log"}, **members}
+            found, rest = {}, dict(body)
+        else:
+            found, rest = _motion(body), {name: x for name, x in body.items() if name != "log"}
+        return rest | {name: x for name, x in found.items() if name in cls.model_fields}
+
+    def require_motion(self) -> None:
+        """Raises InvalidDocument where a member that is needed stood nowhere."""
+        needed = [name for name in MEASURED if name in type(self).model_fields and name != "qd"]
+        missing = [name for name in needed if getattr(self, name) is None]
+        message = "is needed, here or as columns of 'log'"
+        if missing:
+            raise InvalidDocument(Fault(f"/{name}", "missing", f"'{name}' {message}") for name in missing)
+
+
+def _motion(body: Mapping[str, Any]) -> dict[str, Any]:
+    """The members in the log of a request. Raises InvalidDocument, TooLarge."""
+    twice = [name for name in MEASURED if body.get(name) is not None]
+    if twice:
+        raise InvalidDocument.at(f"/{twice[0]}", "given-twice", f"'{twice[0]}' is given, and a log, too")
+    try:
+        return read_model(Log, body["log"]).motion()
+    except InvalidInput as error:
+        raise error.below("/log") from None

@@ -36,8 +36,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {
     "excitations": (excitation, {"base"}),
     "identifications": (identify, {"base", "model"}),
 }
-#: fields that say what base parameters are found from, and what is known of the model
-OF_BASE = {"drives", "known", "consistent", "prior_deviation"}
+#: fields that say what base parameters are found from, what is known of the model, and where the motion stands
+OF_BASE = {"log", "drives", "known", "consistent", "prior_deviation"}
 CONTROL = {"controls": ["u"], "horizon": 1, "intervals": 2, "q": [0]}
 
 

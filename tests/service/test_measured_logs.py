@@ -107,7 +107,7 @@ HEAD = "p.q1,p.q1',p.q1'',tau.p.q1"
         ({"log": {"csv": f"{HEAD},qd.p.q1\n1,2,3,4,5\n"}}, "/log/qd.p.q1", "given-twice", "twice"),
         ({"log": {"csv": f"{HEAD.replace('q1,', 'q1 [kg],', 1)}\n1,2,3,4\n"}}, "/q/p.q1", "unit-mismatch", "kg"),
         ({"log": {"csv": f"{HEAD},p.q7\n1,2,3,4,5\n"}}, "/q/p.q7", "unknown-coordinate", "p.q7"),
-        ({"log": {"csv": "p.q1,tau.p.q1\n1,2\n"}}, "/qdd", "no-motion", "'qdd'"),
+        ({"log": {"csv": "p.q1,tau.p.q1\n1,2\n"}}, "/qdd", "missing", "'qdd'"),
         ({"log": {"csv": HEAD, "columns": {"a": "p.q1"}}}, "/log/columns/a", "unknown-column", "no column 'a'"),
         ({"log": {"csv": ""}}, "/log", "csv", "not a table"),
         ({"log": {"csv": "x" * 200_000}}, "/log", "csv", "not a table"),
@@ -115,7 +115,7 @@ HEAD = "p.q1,p.q1',p.q1'',tau.p.q1"
         ({"log": {"npz": "!"}}, "/log", "base64", "base64"),
         ({"log": {"npz": "AAAA"}}, "/log", "npz", "not an npz"),
         ({"log": {"arrow": "AAAA"}}, "/log", "arrow", "not an Arrow"),
-        ({}, "/q", "no-motion", "'q' is needed"),
+        ({}, "/q", "missing", "'q' is needed"),
     ],
 )
 def test_what_is_wrong_with_a_log_is_told(
