@@ -23,7 +23,9 @@ ALSO_COMPUTED = ("/v1/trees/{ref}/evaluations", "/v1/equivalences")
 CHOSEN = {"quantity": "metric", "target": "c", "format": "text"}
 NEEDED = re.compile(r"\{\w+\}|=(?:&|$)")
 #: of which one of several members is needed, or a tree with loops
-OF_A_CHOICE = ("/v1/trees/{ref}/steady-motions", "/v1/trees/{ref}/reduced-equations")
+OF_A_CHOICE = tuple(
+    f"/v1/trees/{{ref}}/{name}" for name in ("steady-motions", "reduced-equations", "excitations", "identifications")
+)
 #: an answer without an end
 STREAMS = "/events"
 #: how the documents write requests that are tried: method, path, headers, body
