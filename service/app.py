@@ -143,10 +143,13 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
         responses=openapi.PROBLEM,
         generate_unique_id_function=openapi.operation_id,
     )
-    routers = [models.evaluations, *(module.router for module in ROUTES)]  # what is asked for most is looked for first
+    app.router.routes += models.evaluations.routes  # what is asked for most is looked for first, and without a router
+    routers = [module.router for module in ROUTES]
     for router in routers:
         app.include_router(router)
-    known = [route for router in routers for route in router.routes if isinstance(route, APIRoute)]
+    known = [
+        route for router in [models.evaluations, *routers] for route in router.routes if isinstance(route, APIRoute)
+    ]
     problems.install(app, known, error_page)
     app.add_middleware(Compression)
     app.add_middleware(DerivesFirst)

@@ -6,11 +6,11 @@ numbers, is handled as on every route.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Coroutine
-from typing import Any
+from collections.abc import Iterator
 
 from fastapi import Request, Response
 from fastapi.routing import APIRoute
+from starlette.types import Message, Receive, Scope, Send
 
 from service.http.requests import authenticated, credentials, store_of
 from service.http.responses import response_of
@@ -23,16 +23,23 @@ from service.operations.exchange import choose_media_type
 class OneStateRoute(APIRoute):
     """A route ``/{ref}/evaluations``."""
 
-    def get_route_handler(self) -> Callable[[Request], Coroutine[Any, Any, Response]]:
-        """Answer what is at hand, and let all else be handled as ever."""
-        handle = super().get_route_handler()
+    async def handle(self, scope: Scope, receive: Receive, send: Send) -> None:
+        """Answer what is at hand, and let all else be handled as ever, with its body as it came."""
+        request = Request(scope, receive)
+        if not _is_short(request):
+            await super().handle(scope, receive, send)
+            return
+        found = await _at_hand(request)
+        if found is not None:
+            await found(scope, receive, send)
+            return
+        kept: Iterator[Message] = iter([{"type": "http.request", "body": await request.body()}])
 
-        async def handled(request: Request) -> Response:
-            """The answer of one or the other."""
-            found = await _at_hand(request) if _is_short(request) else None
-            return await handle(request) if found is None else found
+        async def again() -> Message:
+            """The body, then what is received."""
+            return next(kept, None) or await receive()
 
-        return handled
+        await super().handle(scope, again, send)
 
 
 def _is_short(request: Request) -> bool:
@@ -40,7 +47,8 @@ def _is_short(request: Request) -> bool:
     headers = request.headers
     length = headers.get("content-length", "")
     return (
-        is_pinned(request.path_params["ref"])
+        request.method == "POST"
+        and is_pinned(request.path_params["ref"])
         and headers.get("content-type") == JSON
         and length.isascii()
         and length.isdigit()

@@ -154,7 +154,7 @@ class Plausibility:
         """Coordinates beyond their limits in states ``q`` (N, n); ``first``: what states are counted from."""
         limits = self.limits(given) if given else self.limits_at_defaults
         ends = _ends(limits, coordinates) if given else self._ends_at_defaults(coordinates)
-        if ((q >= ends[0]) & (q <= ends[1])).all():
+        if np.logical_and.reduce((q >= ends[0]) & (q <= ends[1]), axis=None):
             return []
         notices = []
         for a, name in enumerate(coordinates):

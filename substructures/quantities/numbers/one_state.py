@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import partial
-from math import prod
+from math import isfinite, prod
 from typing import Any
 
 import numpy as np
@@ -69,7 +69,7 @@ class OneState:
         for run in self._runs:
             run()
         with np.errstate(invalid="ignore", over="ignore"):
-            if not np.isfinite(self._numbers.sum()):
+            if not isfinite(np.add.reduce(self._numbers)):
                 return None
         return self._evaluation({name: without_axis(value) for name, value in self._results.items()})
 
@@ -87,7 +87,7 @@ class OneState:
                 array[:] = rows
             except (TypeError, ValueError, OverflowError):
                 return False
-            if not np.isfinite(array).all():
+            if not isfinite(np.add.reduce(array)):
                 return False
         names, q, judge = self._model.coordinates, self._state["q"][None], self._judge
         return judge is None or not (judge.left(names, q, {}) or judge.apart(names, q))
