@@ -21,6 +21,7 @@ from substructures.export import (
     interface_of_part,
 )
 from substructures.export.exported import check_name
+from substructures.export.rounding import read_ranges
 from substructures.export.stages import staged
 from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
 from substructures.expr.program import Program
@@ -51,9 +52,9 @@ FMU, FMU2 = "fmu", "fmu2"
 MOVING = (FMU, "simulink")  # targets that need accelerations
 #: versions of FMUs, precisions, standards of C; the first ones are the defaults
 FMI, PRECISIONS, STANDARDS = ("3.0", "2.0"), ("double", "single"), ("c99", "c89")
-DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "stages": False, "standard": STANDARDS[0]}
+DEFAULT_OPTIONS = {"fmi": FMI[0], "precision": PRECISIONS[0], "ranges": "", "stages": False, "standard": STANDARDS[0]}
 #: options of some targets by name
-OF_TARGETS = {"fmi": ("fmu",), "precision": ("c",), "stages": ("c",), "standard": ("c",)}
+OF_TARGETS = {"fmi": ("fmu",), **dict.fromkeys(("precision", "ranges", "stages", "standard"), ("c",))}
 OF_FMUS = ("metric", "forces", "kinetic_energy", "potential_energy", "position", "rotation")
 #: formulas to be read, which have the independent elements anyway
 WRITTEN = ("text", "latex", "mathml")
@@ -71,7 +72,8 @@ Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
 @dataclass(frozen=True, slots=True)
 class ExportRequest:
     """``together``: also a function with all quantities; ``packed``: independent elements alone; ``fmi``: the version
-    of an FMU; of the functions in C ``precision``, ``stages``: what depends on parameters alone apart, ``standard``."""
+    of an FMU; of the functions in C ``precision``, the ``ranges`` of arguments that the bound of its rounding is for,
+    ``stages``: what depends on parameters alone apart, ``standard``."""
 
     target: str
     quantities: tuple[str, ...] = ()
@@ -81,14 +83,16 @@ class ExportRequest:
     packed: bool = False
     fmi: str = FMI[0]
     precision: str = PRECISIONS[0]
+    ranges: str = ""
     stages: bool = False
     standard: str = STANDARDS[0]
 
     @property
     def identity(self) -> tuple[str, ...]:
         """What an ETag depends on beside the content."""
-        flags = str(self.together), str(self.packed), self.fmi, self.precision, str(self.stages), self.standard
-        return "export", self.target, ",".join(self.quantities), self.name, self.bind, *flags
+        flags = str(self.together), str(self.packed), str(self.stages)
+        texts = self.fmi, self.precision, self.ranges, self.standard
+        return "export", self.target, ",".join(self.quantities), self.name, self.bind, *flags, *texts
 
 
 @dataclass(frozen=True, slots=True)
@@ -170,6 +174,9 @@ def _check(request: ExportRequest) -> None:
     field = misplaced(request.target, given)
     if field is not None:
         raise InvalidArgument.at(f"/{field}", "not-of-target", f"target={request.target} does not take '{field}'")
+    if request.ranges and request.precision != "single":
+        message = "'ranges' is what the bound of single precision is for: take it with precision=single"
+        raise InvalidArgument.at("/ranges", "not-of-target", message)
     if request.standard == "c89" and request.precision == "single":
         message = "C89 has no functions of single precision, such as sinf: take precision=double, or standard=c99"
         raise InvalidArgument.at("/standard", "not-of-target", message)
@@ -199,7 +206,9 @@ def _left(interface: Interface, request: ExportRequest) -> Interface:
 def _package(exported: Exported, request: ExportRequest, limit: int) -> Package:
     target = FMU2 if request.target == FMU and request.fmi == "2.0" else request.target
     exported = staged(exported) if request.stages else exported
-    made = files(replace(exported, precision=request.precision, standard=request.standard), target, limit)
+    ranges = read_ranges(request.ranges, exported.interface)
+    kind = replace(exported, precision=request.precision, ranges=ranges, standard=request.standard)
+    made = files(kind, target, limit)
     if len(made) > 1:
         return Package(f"{exported.name}_{request.target}.zip", ZIP, archive(made))
     ((name, data),) = made.items()

@@ -32,6 +32,7 @@ class ExchangeCaller(JobCaller):
         packed: bool = False,
         fmi: str = "3.0",
         precision: str = "double",
+        ranges: str = "",
         stages: bool = False,
         standard: str = "c99",
     ) -> httpx2.Response:
@@ -45,6 +46,7 @@ class ExchangeCaller(JobCaller):
             "packed": packed,
             "fmi": fmi,
             "precision": precision,
+            "ranges": ranges,
             "stages": stages,
             "standard": standard,
         }

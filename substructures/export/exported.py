@@ -135,8 +135,9 @@ class Function:
 
 @dataclass(frozen=True)
 class Exported:
-    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``standard``: of
-    C, c99 or c89; ``warnings`` (pointer, code, message): what those who use them must know.
+    """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``ranges``:
+    lowest and highest values that the bound of its rounding is for; ``standard``: of C, c99 or c89; ``warnings``
+    (pointer, code, message): what those who use them must know.
     """
 
     name: str
@@ -145,6 +146,7 @@ class Exported:
     form: str = "compact"
     precision: str = "double"
     standard: str = "c99"
+    ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     warnings: tuple[Mapping[str, str], ...] = ()
 
     @property

@@ -7,18 +7,21 @@ of the error with which it is computed. With the unit roundoff u and operands x,
     f(x)    e = sup |f'| ex + 2 u |f(x)|                x / y e = (ex + |x / y| ey) / (|y| - ey), and u (|x / y| + e)
 
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3). Functions of the library are taken
-to be within one unit in the last place. Arguments count as given; default values of parameters are rounded.
+to be within one unit in the last place. Arguments count as given; default values of parameters are rounded. Where a
+divisor could vanish, as far as its ball tells, what it depends on is halved again and again: so accelerations have a
+bound where the ranges are no wider than that takes.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from fractions import Fraction
 from math import inf, isfinite
 
 import flint
 
+from substructures.errors import InvalidArgument, among
 from substructures.export.exported import Function
 from substructures.export.interface import Interface
 from substructures.expr.program import Program
@@ -26,6 +29,11 @@ from substructures.expr.program import Program
 #: of single precision: unit roundoff, smallest normal number
 UNIT, SMALLEST = 2.0**-24, 2.0**-126
 STATED = "angles up to pi, all else but parameters up to 1 in SI units, parameters at their defaults"
+#: operations on balls that a bound may take
+WORK = 400_000
+#: lowest and highest value by the name of an element, or of a vector for all elements of it that are not named
+Ranges = Mapping[str, tuple[float, float]]
+_Box = Mapping[str, "_Rounded"]
 
 
 @dataclass(frozen=True)
@@ -36,45 +44,123 @@ class _Rounded:
     error: float
 
     @property
+    def width(self) -> float:
+        """Half of the range of the exact values; zero where there is none."""
+        found = float(self.exact.rad())
+        return found if isfinite(found) else 0.0
+
+    @property
     def size(self) -> float:
         """Of the exact values at most."""
         return float(abs(self.exact).upper())
 
 
-def bounds(function: Function) -> dict[str, tuple[float, float]]:
-    """Of every output the bound of the error of its elements, and the most that their exact values are; infinite where
-    nothing can be said: quotients whose divisor may vanish, parameters without value.
+def read_ranges(text: str, interface: Interface) -> Ranges:
+    """``arm.q1:-1:1,qd:-2:2``: of elements of arguments, and of all others of an argument, by the names of both.
+
+    Raises InvalidArgument naming what is none.
     """
-    results = _operations(function.program, _ranges(function.interface))
+    vectors = [each for each in interface.vectors.values() if each.names]
+    known = [*(each.symbol for each in vectors), *(name for each in vectors for name in each.names)]
     found = {}
-    for name, output in function.program.outputs.items():
-        some = [results[entry] for entry in output.entries]
-        found[name] = max((x.error for x in some), default=0.0), max((x.size for x in some), default=0.0)
+    for item in filter(None, (item.strip() for item in text.split(","))):
+        name, *ends = item.split(":")
+        if name not in known:
+            message = f"'{name[:80]}' is no argument and no element of one{among(name, known)}"
+            raise InvalidArgument.at("/ranges", "unknown-name", message)
+        try:
+            low, high = map(float, ends)
+        except ValueError:
+            low, high = inf, -inf
+        if not (isfinite(low) and isfinite(high) and low <= high):
+            message = f"'{item[:80]}' is no range: name:lowest:highest, numbers in SI units"
+            raise InvalidArgument.at("/ranges", "bad-range", message)
+        found[name] = low, high
     return found
 
 
-def _ranges(interface: Interface) -> Callable[[str], _Rounded]:
+def bounds(function: Function, ranges: Ranges) -> dict[str, tuple[float, float]]:
+    """Of every output the bound of the error of its elements, and the most that their exact values are; infinite where
+    nothing can be said: quotients whose divisor may vanish, parameters without value.
+    """
+    program, whole = function.program, _box(function.interface, ranges)
+    cut = [name for name in _in_divisors(program) if name in whole and whole[name].width > 0]
+    boxes, left, found = [whole], WORK // max(1, len(program)), dict.fromkeys(program.outputs, (0.0, 0.0))
+    while boxes:
+        box = boxes.pop()
+        results = _operations(program, box)
+        some = {
+            name: (max((results[e].error for e in output.entries), default=0.0), _largest(results, output.entries))
+            for name, output in program.outputs.items()
+        }
+        if left > 0 and cut and not all(isfinite(error) for error, _ in some.values()):
+            boxes += _halves(box, max(cut, key=lambda name: box[name].width))
+            left -= 2
+        else:
+            found = {name: (max(found[name][0], e), max(found[name][1], s)) for name, (e, s) in some.items()}
+            if left <= 0 and not any(isfinite(error) for error, _ in found.values()):
+                break
+    return found
+
+
+def _largest(results: Mapping[int, _Rounded], entries: Iterable[int]) -> float:
+    return max((results[entry].size for entry in entries), default=0.0)
+
+
+def _in_divisors(program: Program) -> list[str]:
+    """The names that divisors depend on."""
+    depends: dict[int, frozenset[str]] = {}
+    found = set[str]()
+    for i in program.reachable():
+        op, *rest = program.operations[i]
+        if op == "sym":
+            depends[i] = frozenset((program.symbols[rest[0]].name,))
+        elif op in ("int", "rat", "pi"):
+            depends[i] = frozenset()
+        else:
+            operands = rest[:1] if op == "powi" else rest
+            depends[i] = frozenset().union(*(depends[k] for k in operands))
+            if op == "div":
+                found |= depends[rest[1]]
+            elif op == "sqrt" or (op == "powi" and int(rest[1]) < 0):
+                found |= depends[rest[0]]
+    return sorted(found)
+
+
+def _halves(box: _Box, name: str) -> list[_Box]:
+    """The box cut in two where ``name`` is in the middle of its range."""
+    whole = box[name].exact
+    quarter = flint.arb(whole.rad()) / 2
+    parts = [flint.arb(whole.mid() + sign * quarter, quarter) for sign in (-1, 1)]
+    return [{**box, name: _Rounded(part, box[name].error)} for part in parts]
+
+
+def _box(interface: Interface, ranges: Ranges) -> _Box:
+    """Every argument in its range."""
     known: dict[str, _Rounded] = {}
     for vector in interface.vectors.values():
         for i, (name, unit) in enumerate(zip(vector.names, vector.units, strict=True)):
-            if vector.symbol == "p":
+            given = ranges.get(name, ranges.get(vector.symbol))
+            if given is not None:
+                known[name] = _Rounded(flint.arb(given[0]).union(flint.arb(given[1])), 0.0)
+            elif vector.symbol == "p":
                 x = vector.defaults[i] if vector.defaults else inf
                 known[name] = _Rounded(flint.arb(x), abs(x) * UNIT) if isfinite(x) else _UNKNOWN
             else:
                 largest = flint.arb.pi() if unit == "rad" else flint.arb(1)
                 known[name] = _Rounded(flint.arb(0, largest), 0.0)
-    return lambda name: known.get(name, _UNKNOWN)
+    return known
 
 
 _UNKNOWN = _Rounded(flint.arb("nan"), inf)
 
 
-def _operations(program: Program, value: Callable[[str], _Rounded]) -> dict[int, _Rounded]:
+def _operations(program: Program, box: _Box) -> dict[int, _Rounded]:
     results: dict[int, _Rounded] = {}
     for i in program.reachable():
         op, *rest = program.operations[i]
         if op == "sym":
-            results[i] = value(program.symbols[rest[0]].name)
+            results[i] = box.get(program.symbols[rest[0]].name, _UNKNOWN)
         elif op in ("int", "rat", "pi"):
             results[i] = _constant(op, rest)
         elif op == "powi":

@@ -16,20 +16,22 @@ from exported_models import exported_of, tree_of, write
 from mixed_program import mixed_program
 from run_code import STRICT, alone, shared, tool
 
+from substructures.errors import InvalidArgument
 from substructures.export import Exported, Function
-from substructures.export.rounding import bounds
+from substructures.export.rounding import Ranges, bounds, read_ranges
 from substructures.expr.interpret import interpret
 
 FLAGS = [*STRICT, "-Wdouble-promotion", "-ffp-contract=off"]
 
 
-def states(function: Function, rng: np.random.Generator) -> dict[str, np.ndarray[Any, Any]]:
+def states(function: Function, rng: np.random.Generator, ranges: Ranges) -> dict[str, np.ndarray[Any, Any]]:
     """Arguments in the stated ranges that are numbers of single precision; parameters at their defaults."""
     found = {}
     for symbol in function.arguments:
         vector = function.vector(symbol)
         most = np.array([np.pi if unit == "rad" else 1.0 for unit in vector.units])
-        values = np.array(vector.defaults) if symbol == "p" else rng.uniform(-most, most)
+        ends = [ranges.get(n, ranges.get(symbol, (-x, x))) for n, x in zip(vector.names, most, strict=True)]
+        values = np.array(vector.defaults) if symbol == "p" else rng.uniform(*np.array(ends).T)
         found[symbol] = values.astype(np.float32)
     return found
 
@@ -44,16 +46,28 @@ def call(library: ctypes.CDLL, exported: Exported, function: Function, given: An
     return outputs
 
 
-@pytest.mark.parametrize("parts", [("acrobot",), ("scara", "camera"), ("puma560",)])
-def test_rounding_is_within_its_bound(parts: tuple[str, ...], tmp_path: Path) -> None:
-    exported = replace(exported_of(tree_of(*parts)), precision="single")
+@pytest.mark.parametrize(
+    ("parts", "ranges"),
+    [
+        (("acrobot",), ""),
+        (("scara", "camera"), ""),
+        (("puma560",), ""),
+        (("puma560",), "q:-0.1:0.1,i0.q3:-0.75:-0.5,qd:-0.5:0.5,tau.i0.q2:30:40"),
+    ],
+)
+def test_rounding_is_within_its_bound(parts: tuple[str, ...], ranges: str, tmp_path: Path) -> None:
+    """Accelerations have a bound where the ranges are narrow enough, or the mechanism is small."""
+    exported = exported_of(tree_of(*parts))
+    exported = replace(exported, precision="single", ranges=read_ranges(ranges, exported.interface))
     write(exported, "c", tmp_path)
     library, rng = shared([tmp_path / "demo.c"], FLAGS), np.random.default_rng(3)
     finite = 0
     for function in exported.functions:
-        bound = bounds(function)
+        bound = bounds(function, exported.ranges)
+        if function.quantity == "forward_dynamics":
+            assert np.isfinite(bound["forward_dynamics"][0]) == (ranges != "" or parts != ("puma560",))
         for _ in range(40):
-            given = states(function, rng)
+            given = states(function, rng, exported.ranges)
             # exactly what was given; but parameters are the defaults, whose rounding belongs to the bound
             values = {
                 n: float(x) for s in given if s != "p" for n, x in zip(function.vector(s).names, given[s], strict=True)
@@ -73,7 +87,7 @@ def test_the_bound_says_something() -> None:
     """Not only true: within a few thousand roundings of the size of the metric."""
     exported = exported_of(tree_of("scara", "camera"))
     metric = next(f for f in exported.functions if f.quantity == "metric")
-    (error, size) = bounds(metric)["metric"]
+    (error, size) = bounds(metric, {})["metric"]
     assert 2.0**-24 * size < error < 2000 * 2.0**-24 * size
 
 
@@ -84,12 +98,38 @@ def test_a_wrong_bound_would_be_seen(tmp_path: Path) -> None:
     function = next(f for f in exported.functions if f.quantity == "christoffel")
     worst = 0.0
     for _ in range(200):
-        given = states(function, rng)
+        given = states(function, rng, {})
         p = function.interface.vectors["p"]
         values = dict(zip(function.vector("q").names, map(float, given["q"]), strict=True))
         exact = interpret(function.program, values | dict(zip(p.names, p.defaults, strict=True)))["christoffel"]
         worst = max(worst, float(np.abs(call(library, exported, function, given)[0] - np.ravel(exact)).max()))
-    assert bounds(function)["christoffel"][0] / 5000 < worst
+    assert bounds(function, {})["christoffel"][0] / 5000 < worst
+
+
+def test_narrower_ranges_have_a_lower_bound() -> None:
+    exported = exported_of(tree_of("acrobot"))
+    function = next(f for f in exported.functions if f.quantity == "forward_dynamics")
+    errors = [
+        bounds(function, read_ranges(text, exported.interface))["forward_dynamics"][0]
+        for text in ("", "qd:-0.5:0.5", "qd:-0.5:0.5,i0.q2:-0.1:0.1", "qd:0:0,q:0:0,u:0:0")
+    ]
+    assert errors == sorted(errors, reverse=True)
+    assert 0 < errors[-1] < errors[0] / 5
+
+
+@pytest.mark.parametrize(
+    ("text", "told"),
+    [
+        ("i0.q9:0:1", "'i0.q9' is no argument and no element of one"),
+        ("i0.q1:1:0", "no range: name:lowest:highest"),
+        ("i0.q1:0", "no range"),
+        ("i0.q1:0:nan", "no range"),
+        ("q:a:b", "no range"),
+    ],
+)
+def test_what_is_no_range_is_told(text: str, told: str) -> None:
+    with pytest.raises(InvalidArgument, match=told):
+        read_ranges(text, exported_of(tree_of("acrobot")).interface)
 
 
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])

@@ -56,6 +56,9 @@ def export(
     ] = False,
     fmi: Annotated[str, one_of(FMI, help="Of fmu: version of the interface.")] = FMI[0],
     precision: Annotated[str, one_of(PRECISIONS, help="Of c: of the numbers.")] = PRECISIONS[0],
+    ranges: Annotated[
+        str, typer.Option(help="Of single precision: name:lowest:highest,... that the bound of rounding is for.")
+    ] = "",
     stages: Annotated[
         bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
     ] = False,
@@ -71,7 +74,7 @@ def export(
     names = tuple(text for text in quantities.split(",") if text)
     if out is not None and out.is_dir():
         raise IsADirectoryError(EISDIR, "a folder", str(out))
-    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages, standard)
+    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
     path, ending = out or Path(package.name), Path(package.name).suffix
@@ -111,6 +114,7 @@ def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) ->
         "packed": request.packed,
         "fmi": request.fmi,
         "precision": request.precision,
+        "ranges": request.ranges,
         "stages": request.stages,
         "standard": request.standard,
     }

@@ -121,6 +121,7 @@ class Packed(DocumentPart):
     packed: StrictBool = False
     fmi: Annotated[str, one_of("value", lambda: FMI)] = FMI[0]
     precision: Annotated[str, one_of("value", lambda: PRECISIONS)] = PRECISIONS[0]
+    ranges: str = ""
     stages: StrictBool = False
     standard: Annotated[str, one_of("value", lambda: STANDARDS)] = STANDARDS[0]
 

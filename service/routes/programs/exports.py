@@ -24,6 +24,7 @@ from substructures.errors import InvalidInput
 
 router = APIRouter(prefix="/v1/substructures/{ref}", tags=["formulas"])
 READ = [needs("read")]
+RANGES = "of precision=single: name:lowest:highest,... of elements of arguments, or q, qd, u, ..., in SI units"
 ADVICE = "name fewer quantities, or ask with a key that may submit jobs"
 EXPORTED: dict[int | str, dict[str, Any]] = {
     200: {
@@ -48,12 +49,13 @@ async def export_of(
     packed: Annotated[bool, Query(description="of metric and christoffel the independent elements alone")] = False,
     fmi: Annotated[Literal["3.0", "2.0"], Query(description="of target=fmu: version of the interface")] = "3.0",
     precision: Annotated[Literal["double", "single"], Query(description="of target=c")] = "double",
+    ranges: Annotated[str, Query(max_length=50_000, description=RANGES)] = "",
     stages: Annotated[bool, Query(description="of target=c: NAME_prepare(p, w), once per set of parameters")] = False,
     standard: Annotated[Literal["c99", "c89"], Query(description="of target=c")] = "c99",
 ) -> ExportRequest:
     """The export that a request asks for."""
     names = tuple(text.strip() for text in quantities.split(",") if text.strip())
-    return ExportRequest(target, names, name, bind, together, packed, fmi, precision, stages, standard)
+    return ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard)
 
 
 ExportOf = Annotated[ExportRequest, Depends(export_of)]

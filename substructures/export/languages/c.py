@@ -223,7 +223,7 @@ def declarations(exported: Exported, functions: Iterable[list[str]]) -> list[str
     for each, defined in zip(exported.functions, functions, strict=True):
         code = C(each, exported)
         lines.append(defined[0])
-        lines += _errors(each) if code.f else []
+        lines += _errors(exported, each) if code.f else []
         lines.append(f"{signature(each, code.called, code.variables, exported.real)};")
     inputs = "&t, q, qd, qdd, u, x, p" + (f", {WORK}" if WORK in exported.interface.vectors else "")
     lines += [f"// any of them by its number from 0: in = {{{inputs}}}, out: its outputs; 0, or 1 for no such"]
@@ -231,13 +231,18 @@ def declarations(exported: Exported, functions: Iterable[list[str]]) -> list[str
     return [*lines, f"int {name}_call(int function, const {real} *const *in, {real} *const *out);"]
 
 
-def _errors(function: Function) -> list[str]:
+def _errors(exported: Exported, function: Function) -> list[str]:
     """What the rounding of single precision may make of the outputs."""
     lines = []
-    for name, (error, size) in bounds(function).items():
-        told = f"at most {error:.2g}, elements at most {size:.3g}" if isfinite(error) else "without a bound"
+    for name, (error, size) in bounds(function, exported.ranges).items():
+        told = (
+            f"at most {error:.2g}, elements at most {size:.3g}"
+            if isfinite(error)
+            else "without a bound here: take narrower ranges"
+        )
         lines.append(f"// rounding of {comment(name)}: {told}")
-    return [*lines, f"// for {STATED}"]
+    given = ", ".join(f"{comment(name)} {low:g} to {high:g}" for name, (low, high) in exported.ranges.items())
+    return [*lines, f"// for {given + '; else ' if given else ''}{STATED}"]
 
 
 def source(exported: Exported, functions: Iterable[list[str]]) -> list[str]:

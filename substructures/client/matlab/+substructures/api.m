@@ -145,8 +145,8 @@ classdef api
 
     function answer = export_substructure (ref, varargin)
       % GET /v1/substructures/{ref}/export: Functions of the part as it stands alone for a target, on one
-      % calling convention. Query: target, quantities, name, bind, together, packed, fmi, precision, stages,
-      % standard.
+      % calling convention. Query: target, quantities, name, bind, together, packed, fmi, precision, ranges,
+      % stages, standard.
       answer = substructures.call ('get', '/v1/substructures/{ref}/export', ...
         {ref}, {}, varargin);
     end
@@ -481,7 +481,7 @@ classdef api
     function answer = export_tree (ref, varargin)
       % GET /v1/trees/{ref}/export: Functions of the tree for a target: C, MATLAB, Fortran, computer
       % algebra, ..., on one calling convention. Query: target, quantities, name, bind, together, packed,
-      % fmi, precision, stages, standard.
+      % fmi, precision, ranges, stages, standard.
       answer = substructures.call ('get', '/v1/trees/{ref}/export', ...
         {ref}, {}, varargin);
     end
