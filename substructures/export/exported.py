@@ -99,6 +99,7 @@ class Function:
         """Symbols of the arguments: those of the quantity, ``x`` where it has further symbols."""
         found = {*signature(self.quantity), *self.interface.always, *(["x"] if self.further.names else [])}
         found |= {WORK} if WORK in self.interface.vectors and self.quantity != PREPARE else set()
+        found -= set() if self.interface.has_time else {"t"}
         return tuple(symbol for symbol in (*ORDER, WORK) if symbol in found)
 
     @cached_property

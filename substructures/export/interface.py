@@ -1,8 +1,8 @@
 """The calling convention: which arguments the function of a quantity has, and what stands where in them.
 
-The signature depends on the quantity alone, never on which symbols happen to occur; of a tree with given motions all
-functions have the time and the inputs, too. Vectors are complete, in the order
-of the tree; what was bound to a number is left out of ``p``.
+The signature depends on the quantity and on whether the mechanism has a time, never on which symbols happen to occur
+in a formula; of a tree with given motions all functions have the time and the inputs, too. Vectors are complete, in the
+order of the tree; what was bound to a number is left out of ``p``.
 """
 
 from __future__ import annotations
@@ -84,13 +84,15 @@ class Vector:
 @dataclass(frozen=True)
 class Interface:
     """All vectors of a tree or part by their symbols (``t`` has the length 1), and what it is that is exported:
-    ``reference`` and ``digest``; ``frames``: names along the axes of frames; ``always``: arguments of all functions."""
+    ``reference`` and ``digest``; ``frames``: names along the axes of frames; ``always``: arguments of all functions;
+    ``has_time``: whether anything of it depends on the time, which no function has an argument for otherwise."""
 
     vectors: Mapping[str, Vector]
     reference: str = ""
     digest: str = ""
     frames: tuple[str, ...] = ()
     always: tuple[str, ...] = ()
+    has_time: bool = True
 
     @classmethod
     def of_symbols(cls, symbols: Sequence[Symbol]) -> Interface:
@@ -104,7 +106,8 @@ class Interface:
             for symbol, some in found.items()
         }
         p = vectors["p"]
-        return cls(vectors | {"t": TIME, "p": Vector("p", p.names, p.units, (float("nan"),) * len(p))})
+        vectors |= {"t": TIME, "p": Vector("p", p.names, p.units, (float("nan"),) * len(p))}
+        return cls(vectors, has_time=has_time(symbols))
 
     def bound(self, names: Iterable[str]) -> Interface:
         """The interface without parameters that were bound to numbers."""
@@ -114,6 +117,11 @@ class Interface:
     def places(self) -> Mapping[str, tuple[str, int]]:
         """(vector, position) by name of symbols."""
         return {name: (v.symbol, i) for v in self.vectors.values() for name, i in v.place.items()}
+
+
+def has_time(symbols: Iterable[Symbol]) -> bool:
+    """Whether the time is among them."""
+    return any(each.kind == "time" for each in symbols)
 
 
 TIME = Vector("t", ("t",), ("s",))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from substructures.export.interface import TIME, Interface, Vector
+from substructures.export.interface import TIME, Interface, Vector, has_time
 from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
 from substructures.quantities.numbers.states import default_number, input_defaults
@@ -26,7 +26,9 @@ def interface_of_model(model: Model, reference: str = "", digest: str = "") -> I
         model.parameters, inputs, model.units, input_defaults(model)
     )
     always = ("t", "u") if model.driven else ()
-    return Interface(vectors, reference, digest or model.program.digest, model.frames, always)
+    return Interface(
+        vectors, reference, digest or model.program.digest, model.frames, always, has_time(model.program.symbols)
+    )
 
 
 def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Interface:
@@ -38,7 +40,8 @@ def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Inte
     inputs = {name: str(given[name].unit or "") for name in sorted(given)} | efforts
     units = {name: str(given.get("unit", "")) for name, given in part.parameters.items()} | inputs
     vectors = _states(part.coordinates, part.joints) | _others(part.parameters, list(inputs), units, defaults)
-    return Interface(vectors, reference, digest or part.definition.digest, part.frames)
+    digest = digest or part.definition.digest
+    return Interface(vectors, reference, digest, part.frames, has_time=has_time(part.program.symbols))
 
 
 def _states(coordinates: Sequence[str], joints: str) -> dict[str, Vector]:

@@ -9,8 +9,9 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from catalogue_entries import all_entries, shipped_part
+from catalogue_entries import all_entries, open_entry, shipped_part
 from exported_models import LIMIT, derived_anew, exported_of, tree_of, write
+from made_once import coupled_once
 from run_code import STRICT, agree, by_output, call_c, load_python, octave, octave_call, shared, state, tool
 
 from substructures import Model, evaluate
@@ -21,14 +22,14 @@ from substructures.expr.program import Program
 from substructures.part.outputs import with_own_inertia
 from substructures.quantities.numbers.evaluation import Sources
 
-#: the contract, section 8
+#: the contract, section 8, of what has no time
 CONTRACT = {
     **dict.fromkeys(("metric", "christoffel", "gravity", "kinematics", "momentum"), "q p"),
-    "potential_energy": "t q p",
+    "potential_energy": "q p",
     **dict.fromkeys(("coriolis", "bias", "kinetic_energy", "total_momentum"), "q qd p"),
-    "forces": "t q qd u p",
-    "inverse_dynamics": "t q qd qdd u p",
-    "forward_dynamics": "t q qd u p",
+    "forces": "q qd u p",
+    "inverse_dynamics": "q qd qdd u p",
+    "forward_dynamics": "q qd u p",
 }
 
 
@@ -51,6 +52,17 @@ def test_signatures_are_those_of_the_contract(acrobot: Model) -> None:
     ]
     for f, text in zip(exported.functions, bound, strict=True):
         assert f"model_{f.quantity}({', '.join(f.arguments)})" in text
+
+
+def test_there_is_a_time_where_something_depends_on_it() -> None:
+    """Whether or not that which does occurs in a formula: forces of a part that rocks, not the metric."""
+    load = {"name": "rock", "type": "torque", "to": "i0.link1", "vector": [0, 0, "M*sin(t)"]}
+    one = {"name": "i0", "substructure": "acrobot"}
+    tree = {"name": "demo", "gravity": [0, 0, "-9.81"], "instances": [one], "parameters": {"M": {"unit": "N*m"}}}
+    exported = exported_of(coupled_once({**tree, "loads": [load]}, {"acrobot": open_entry("acrobot")}))
+    found = {f.quantity: " ".join(f.arguments) for f in exported.functions}
+    timed = {"potential_energy", "forces", "inverse_dynamics", "forward_dynamics"}
+    assert found == {name: f"t {given}" if name in timed else given for name, given in CONTRACT.items()}
 
 
 @pytest.mark.parametrize("name", all_entries())

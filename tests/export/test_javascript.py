@@ -98,7 +98,7 @@ def test_wrong_calls_are_refused(acrobot: Model, tmp_path: Path) -> None:
         ("demo_metric", []),
         ("demo_metric", [[1.0, "2"]]),
         ("demo_metric", [[1.0, 2.0], None, 3.0]),
-        ("demo_forces", [[0.0], [1.0, 2.0], [0.0, 0.0], [0.0, 0.0]]),
+        ("demo_forces", [0.0, [1.0, 2.0], [0.0, 0.0], [0.0, 0.0], None]),
     ]
     errors = run(exported, calls, tmp_path)
     assert errors == [
@@ -108,7 +108,7 @@ def test_wrong_calls_are_refused(acrobot: Model, tmp_path: Path) -> None:
         "TypeError: demo_metric: q is missing (without default: i0.q1, i0.q2)",
         "TypeError: demo_metric: q[1] (i0.q2) is no number",
         "TypeError: demo_metric(q, p) takes 2 arguments, not 3",
-        "TypeError: demo_forces: t is a number, not 0",
+        "TypeError: demo_forces(q, qd, u, p) takes 4 arguments, not 5",
     ]
 
 
@@ -148,13 +148,13 @@ def test_names_of_users_stay_inert(tmp_path: Path) -> None:
     exported = Exported("model", interface, (Function("any", program, interface),))
     text = files(exported, "javascript", LIMIT)["model.mjs"].decode()
     assert "</script" not in text
-    (printed,) = run(exported, [("model_any", [0.0, [], [], [], [], [1.0, 2.0, 3.0, 4.0]])], tmp_path)
+    (printed,) = run(exported, [("model_any", [[], [], [], [], [1.0, 2.0, 3.0, 4.0]])], tmp_path)
     assert printed == [["10"]]
 
 
 def test_types_name_every_function(acrobot: Model) -> None:
     text = files(exported_of(acrobot), "javascript", LIMIT)["demo.d.mts"].decode()
     assert "demo_metric(q: ArrayLike<number> | Coordinates, p?: ArrayLike<number> | Parameters): Float64Array;" in text
-    assert "demo_forces(t: number, q: ArrayLike<number> | Coordinates, qd: ArrayLike<number> | Velocities, u: " in text
+    assert "demo_forces(q: ArrayLike<number> | Coordinates, qd: ArrayLike<number> | Velocities, u: " in text
     assert '    /** i0.m2 [kg], default 1.0 */\n    "i0.m2"?: number;\n' in text
     assert '"rotation": Float64Array' in text

@@ -35,7 +35,7 @@ def test_every_operation(form: str, tmp_path: Path) -> None:
     module = load_python(files(exported, "jax", 10**5)["two_links_jax.py"].decode(), tmp_path)
     agree(by_output(function, jax.jit(module.two_links_any)(**arguments(function, POINT))), function, POINT)
     with pytest.raises(ValueError, match=r"p has the shape \(1,\), \(5,\) is needed"):
-        module.two_links_any(0.0, [], [], [], [], [1.0])
+        module.two_links_any([], [], [], [], [1.0])
 
 
 def test_values_and_maps_over_states(loaded: tuple[Exported, Any, Path]) -> None:
@@ -57,7 +57,7 @@ def test_derivatives_are_differences(loaded: tuple[Exported, Any, Path]) -> None
     metric, dynamics = module.demo_metric, module.demo_forward_dynamics
     q = np.linspace(0.2, 0.9, len(exported.interface.vectors["q"]))
     nothing = np.zeros(len(exported.interface.vectors["u"]))
-    for f in (metric, lambda x: dynamics(0.0, x, 0 * x, nothing)):
+    for f in (metric, lambda x: dynamics(x, 0 * x, nothing)):
         found = np.asarray(jax.jacfwd(f)(q))
         for k in range(len(q)):
             h = np.eye(len(q))[k] * 1e-6

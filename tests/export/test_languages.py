@@ -25,13 +25,13 @@ def test_python(form: str, tmp_path: Path) -> None:
     agree(by_output(function, module.two_links_any(**arguments(function, POINT))), function, POINT)
     p = np.array([POINT[name] for name in module.P_NAMES])
     batch = np.stack([p, 2 * p, p / 2])[:, None]
-    found = module.two_links_any(0.0, [], [], [], [], batch)
+    found = module.two_links_any([], [], [], [], batch)
     assert found["metric"].shape == (3, 1, 2, 2)
     for k, scale in enumerate((1, 2, 0.5)):
         some = {name: scale * x for name, x in POINT.items()}
         agree({name: x[k, 0] for name, x in found.items()}, function, some)
     with pytest.raises(ValueError, match=r"p has the shape \(1,\), \(..., 5\) is needed"):
-        module.two_links_any(0.0, [], [], [], [], [1.0])
+        module.two_links_any([], [], [], [], [1.0])
 
 
 @FORMS

@@ -33,7 +33,7 @@ def test_functions_pass_their_self_tests(target: str, tmp_path: Path) -> None:
     sources = Sources(model, of_parts=lambda _: transmitted)
     exported = exported_model(sources, interface_of_model(model, "loop@1", "sha256:1"), ["reactions"], "crank")
     (function,) = exported.functions
-    assert function.arguments == ("t", "q", "qd", "qdd", "u", "x", "p")
+    assert function.arguments == ("q", "qd", "qdd", "u", "x", "p")
     assert function.further.names == tuple(f"lambda.wrist.{row}" for row in ("rx", "ry", "x", "y", "z"))
     for name, data in files(exported, target, LIMIT).items():
         (tmp_path / name).write_bytes(data)

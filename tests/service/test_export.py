@@ -220,7 +220,7 @@ def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: py
     assert main(["export", "swing.yaml", "--target", "python", "--quantities", "metric,forces"]) == 0
     assert "swing_python.zip" in capsys.readouterr().out
     files = members(Path("swing_python.zip").read_bytes())
-    assert "def swing_forces(t, q, qd, u, p=P):" in files["swing.py"]
+    assert "def swing_forces(q, qd, u, p=P):" in files["swing.py"]
     assert main(["export", "swing.yaml", "--target", "interface", "--packed"]) == 0
     assert '"packed"' in Path("swing_interface.json").read_text()
     assert main(["export", "swing.yaml", "--target", "maxima", "--out", "model.mac"]) == 0
