@@ -19,6 +19,7 @@ from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, C
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
 from substructures.analysis.motion.integrators.steppers import scipy_stepper, within
 from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.signals import Interpolation
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.simulate import Table
@@ -111,9 +112,64 @@ def test_fixed_steps() -> None:
     assert not np.isfinite(step(f, 0.0, np.full(len(x), 1e200), 1.0)).all()
 
 
+@pytest.mark.parametrize("how", ["hold", "linear"])
+@pytest.mark.parametrize("name", ["acrobot", "four-bar"])
+def test_tables_between_breaks(name: str, how: Interpolation, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Values that hold and lines, beside an expression, on an open tree and on closures: the steps are SciPy's."""
+    times, rng = np.linspace(-0.1, 0.9, 11).tolist(), np.random.default_rng(4)
+    tables = [Table(times, rng.normal(0, 0.3, 11).tolist(), how) for _ in range(2)]
+    if name == "acrobot":
+        model = catalogue_model(name)
+        inputs = {model.input_names[0]: tables[0], model.input_names[1]: tables[1]}
+        request: Plain = {"q": [1.2, 0.4], "span": [0, 0.85]}
+    else:
+        model = four_bar((0, -9.81, 0))
+        inputs = {"tau.x.crank": tables[0], "tau.x.rocker": "0.1*sin(20*t)"}
+        request = {"q": at(model, crank=0.7, coupler=0.2, rocker=1.2), "qd": at(model, crank=9), "span": [0, 0.3]}
+        request |= {"fixed": ["x.crank"]}
+    request |= {"inputs": inputs, "count": 12, "relative_tolerance": 1e-8, "absolute_tolerance": 1e-9}
+    owner = RightHandSide if name == "acrobot" else Projected
+    made, compiled = list[bool](), owner.compiled
+
+    def noted(f: Any) -> Any:
+        """As ever, and that there is machine code."""
+        made.append((found := compiled(f)) is not None)
+        return found
+
+    monkeypatch.setattr(owner, "compiled", noted)
+    ours = simulated(model, **request)
+    assert len(made) > 2
+    assert all(made)
+    monkeypatch.setattr(owner, "compiled", lambda _: None)
+    plain = simulated(model, **request)
+    assert (ours.status, ours.is_right, ours.steps) == ("finished", True, plain.steps)
+    for one, two in ((ours.q, plain.q), (ours.qd, plain.qd)):
+        np.testing.assert_allclose(one, two, rtol=0, atol=1e-9 * np.abs(two).max())
+
+
+def test_tables_are_taken_piece_by_piece() -> None:
+    """The kernel is that of the piece that was entered, up to both of its ends; there is none of any time."""
+    model = catalogue_model("acrobot")
+    f, x = function(model, {model.input_names[0]: Table([0, 1, 2], [0, 2, -2], "hold")}, (0, 2))
+    assert f.compiled() is None
+    states = []
+    for piece in ((0.0, 1.0), (1.0, 2.0)):
+        f.enter(*piece)
+        rates = f.compiled()
+        assert rates is not None
+        step = compiled_rk4(rates)
+        states.append(step(f, piece[0], x, 1e-3))
+        np.testing.assert_allclose(states[-1], rk4(f, piece[0], x, 1e-3), rtol=1e-12)
+    assert np.abs(states[1] - states[0]).max() > 1e-4
+    f.leave()
+    assert f.compiled() is None
+    assert not np.isfinite(step(f, 0.5, x, 1e-3)).all()
+
+
 def test_what_is_more_than_kernels_is_left_to_scipy() -> None:
     model = catalogue_model("acrobot")
-    f, x = function(model, {model.input_names[0]: Table([0, 1], [0, 1])}, (0, 1))
+    f, x = function(model, {model.input_names[0]: Table([0, 0.5, 1], [0, 1, 0], "cubic")}, (0, 1))
+    f.enter(0.0, 1.0)
     assert f.compiled() is None
     assert not isinstance(compiled_stepper("DOP853", 1e-8, 1e-8)(f, 0.0, x, 1.0), CompiledStepper)
 

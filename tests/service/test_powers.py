@@ -69,10 +69,10 @@ def test_formulas_equal_numbers(double: TestClient) -> None:
 
 def test_code_has_one_signature(double: TestClient) -> None:
     head = " ".join(double.get("/v1/trees/cell/powers?format=c&name=cell").text.split())
-    assert "cell_powers(double t, const double *q, const double *qd, const double *u, const double *p" in head
+    assert "cell_powers(const double *q, const double *qd, const double *u, const double *p" in head
     answer = double.get("/v1/trees/cell/export?target=interface&quantities=powers&name=cell")
     (function,) = answer.json()["functions"]
-    assert function["arguments"] == ["t", "q", "qd", "u", "p"]
+    assert function["arguments"] == ["q", "qd", "u", "p"]
 
 
 def test_jobs_compute_them_too(double: TestClient, store: Store) -> None:

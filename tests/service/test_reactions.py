@@ -91,10 +91,10 @@ def test_formulas_equal_numbers(double: TestClient) -> None:
 def test_code_has_one_signature(double: TestClient) -> None:
     text = double.get("/v1/trees/cell/reactions?format=c&name=cell&joints=hand.q").text
     head = " ".join(text.split())
-    assert "cell_reactions(double t, const double *q, const double *qd, const double *qdd, const double *u," in head
+    assert "cell_reactions(const double *q, const double *qd, const double *qdd, const double *u," in head
     answer = double.get("/v1/trees/cell/export?target=interface&quantities=reactions&name=cell")
     (function,) = answer.json()["functions"]
-    assert function["arguments"] == ["t", "q", "qd", "qdd", "u", "p"]
+    assert function["arguments"] == ["q", "qd", "qdd", "u", "p"]
 
 
 def test_jobs_compute_them_too(double: TestClient, store: Store) -> None:

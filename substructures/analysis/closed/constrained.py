@@ -197,9 +197,10 @@ class Constrained:
         """(q', q'', power) of (t, q, q') with these rows, which may change, in machine code; None where more than
         kernels is called, or closures move.
         """
-        runs = [laws.run for laws in (*self.inputs.laws, self._laws)]
+        given = self.inputs.runs()
+        runs = [*(given or ()), self._laws.run]
         calls = tuple(run for run in runs if isinstance(run, BoundCall))
-        if len(calls) < len(runs) or self.inputs.has_tables or not self.is_still:
+        if given is None or len(calls) < len(runs) or not self.is_still:
             return None
         out = self._out
         saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], rows)

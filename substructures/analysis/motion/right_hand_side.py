@@ -123,11 +123,10 @@ class RightHandSide:
 
     def compiled(self) -> CompiledRates | None:
         """The function as calls of kernels, as its force laws are taken now; None where it is more than these."""
-        if self.inputs is not None and self.inputs.has_tables:
-            return None
-        runs = [*(() if self.inputs is None else (laws.run for laws in self.inputs.laws)), self._laws.run]
+        given = [] if self.inputs is None else self.inputs.runs()
+        runs = [*(given or ()), self._laws.run]
         calls = tuple(run for run in runs if isinstance(run, BoundCall))
-        if len(calls) < len(runs):
+        if given is None or len(calls) < len(runs):
             return None
         second, _, power = self._out
         return CompiledRates(calls, self._t, self._x, second, power if self.has_power else None, self._folder)

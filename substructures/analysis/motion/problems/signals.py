@@ -69,6 +69,8 @@ class Curve:
         self.times, self.pieces = curve.x.tolist(), curve.c.T.tolist()
         self.breaks = [] if table.interpolation in ("cubic", "quintic") else self.times[1:-1]
         self._piece: int | None = None
+        #: whether between two breaks there is one polynomial
+        self.is_cut = bool(self.breaks) or len(self.pieces) == 1
 
     def enter(self, start: float, end: float) -> None:
         """Until the next call times lie between two breaks: at both the value is the limit from inside."""
@@ -83,12 +85,17 @@ class Curve:
 
     def __call__(self, t: float) -> float:
         """The value at t, in the table's range."""
-        k = self._at(t) if self._piece is None else self._piece
+        begin, piece = self.piece(t)
         # Horner: s(t) = (... (c_0 x + c_1) x + ...) x + c_d with x = t - t_k
-        x, value = t - self.times[k], 0.0
-        for c in self.pieces[k]:
+        x, value = t - begin, 0.0
+        for c in piece:
             value = value * x + c
         return value
+
+    def piece(self, t: float) -> tuple[float, list[float]]:
+        """The polynomial at t, highest power first, in the time from its beginning on."""
+        k = self._at(t) if self._piece is None else self._piece
+        return self.times[k], self.pieces[k]
 
 
 def polynomials(table: Table, default: Interpolation) -> Any:
