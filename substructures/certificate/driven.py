@@ -53,8 +53,12 @@ def _text(motion: Any) -> Any:
     """What the document says, of a table as an expression."""
     if not isinstance(motion, Mapping):
         return motion
-    knots = [f"{Decimal(t):f}:{Decimal(x):f}" for t, x in zip(motion["times"], motion["values"], strict=True)]
-    return f"table(t; {', '.join(knots)}; {motion.get('interpolation', 'smooth')})"
+    points = [(Decimal(t), Decimal(x)) for t, x in zip(motion["times"], motion["values"], strict=True)]
+    kind = motion.get("interpolation", "smooth")
+    if kind == "monotone":  # at rest before and after: two equal values make a slope of zero
+        (first, x), (last, y) = points[0], points[-1]
+        points = [(first - 1, x), *points, (last + 1, y)]
+    return f"table(t; {', '.join(f'{t:f}:{x:f}' for t, x in points)}; {kind})"
 
 
 def with_driven(tree: Plain, values: Mapping[str, Ball]) -> Mapping[str, Ball]:

@@ -94,7 +94,8 @@ class DrivenInput(DocumentPart):
 
 class DrivenTable(DocumentPart):
     """A motion through points by cubics without kinks, at rest before and after: ``smooth`` ones have one curvature at
-    each point, ``monotone`` ones rise and fall where the values do. Whatever else there is jumps, or is no formula.
+    each point, ``monotone`` ones rise and fall where the values do, and begin and end flat as beside a point of rest.
+    Whatever else there is jumps, or is no formula.
     """
 
     times: tuple[PlainNumber, ...] = Field(min_length=2, max_length=1000, description="rising, s")
@@ -106,11 +107,19 @@ class DrivenTable(DocumentPart):
         if len(self.times) != len(self.values):
             message = f"{len(self.values)} values for {len(self.times)} times"
             raise PydanticCustomError("wrong-length", "{message}", {"message": message})
+        for x in (*self.times, *self.values):
+            if isinstance(x, str) and not re.fullmatch(r"-?\d+(\.\d+)?", x, re.ASCII):
+                message = f"the points of a table are numbers, and '{x[:40]}' is none"
+                raise PydanticCustomError("number-expected", "{message}", {"message": message})
         return self
 
     def __str__(self) -> str:
         """As an expression."""
-        knots = ", ".join(f"{_plain(t)}:{_plain(x)}" for t, x in zip(self.times, self.values, strict=True))
+        times, values = list(map(_plain, self.times)), list(map(_plain, self.values))
+        if self.interpolation == "monotone":
+            rest = [_plain(Decimal(times[0]) - 1), _plain(Decimal(times[-1]) + 1)]
+            times, values = [rest[0], *times, rest[1]], [values[0], *values, values[-1]]
+        knots = ", ".join(f"{t}:{x}" for t, x in zip(times, values, strict=True))
         return f"table(t; {knots}; {self.interpolation})"
 
 

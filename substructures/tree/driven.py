@@ -35,6 +35,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import among
 from substructures.expr.calculus.corners import corners, rates
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.laws import SLOPES
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, array
 from substructures.expr.syntax import Knots
@@ -105,7 +106,8 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
             s = scope.read(motion, pointer, lambda word: time if word == "t" else reading.parameter(word))  # noqa: B023
             if _has_kink(motion, s):
                 message = (
-                    "the velocity of a driven coordinate must not jump, as with |x|, sign, min, max, linear tables"
+                    "the velocity of a driven coordinate must not jump, as with |x|, sign, min, max, linear tables, "
+                    "and at the ends of monotone ones that do not end flat"
                 )
                 scope.fault(pointer, "kink", f"{message}: take step, tanh or smooth tables, or give {{'input': true}}")
             else:
@@ -118,10 +120,16 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
 def _has_kink(motion: Any, s: Expr) -> bool:
     """Whether a motion may have one: by the functions in its text, and corners beside those that are smooth there."""
     steps = [step for step in steps_of(str(in_si(motion))) if step.op in ("call", "table")]
-    if any(step.value in JUMPING or (isinstance(step.value, Knots) and step.value.kind == "linear") for step in steps):
+    if any(step.value in JUMPING or (isinstance(step.value, Knots) and not _ends_flat(step.value)) for step in steps):
         return True
     is_smooth = any(step.value in SMOOTH or isinstance(step.value, Knots) for step in steps)
     return not is_smooth and bool(corners([s]))
+
+
+def _ends_flat(knots: Knots) -> bool:
+    """Whether a table has a slope everywhere, zero at its ends, before and after which it rests."""
+    slopes = SLOPES[knots.kind](knots) if knots.kind in SLOPES else None
+    return slopes is not None and slopes[0] == slopes[-1] == 0
 
 
 def put_in(

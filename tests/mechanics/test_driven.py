@@ -7,16 +7,21 @@ d/dt dT/dq' - dT/dq by differences shares nothing with the formulas, nor with th
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import open_entry
 from damaged import damages, found_in_tree, has_effect
 from in_depth import seeds
 from random_trees import GRAVITY, Kind, random_definition, random_states
 from related import joints_of, with_relations
+from scipy.integrate import solve_ivp
+from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
 from substructures import Definition, InvalidDocument, Model, TreeSpec, couple, derive, evaluate
+from substructures.analysis.simulate import Integrator, simulate
 from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
 from substructures.quantities.sources import Sources, of_parts
@@ -193,7 +198,7 @@ LAWS: list[Any] = [
     {"times": [0, 1, 2], "values": [0.1, 0.3, 0.25], "interpolation": each} for each in ("smooth", "monotone")
 ]
 LAWS += ["step(t, 1, a)", "a*tanh(w*t)", "atan2(t, 3)", "exp(-t)*(t + 2)^a", "asin(t/4)*log(t + 3)"]
-LAWS += ["table(t; 0:0, 1:0.3, 2:0.5; smooth)", "table(2*t; 0:0, 1:1, 2:0.5; monotone)"]
+LAWS += ["table(t; 0:0, 1:0.3, 2:0.5; smooth)", "table(2*t; -1:0, 0:0, 1:1, 2:0.5, 3:0.5; monotone)"]
 
 
 @pytest.mark.parametrize("text", LAWS)
@@ -210,6 +215,39 @@ def test_laws_have_two_derivatives(text: Any) -> None:
         assert found["g_00"] == pytest.approx(((s[2] - s[0]) / (2 * h)) ** 2, abs=1e-6)
         weight = float(found["drive_forces"][0]) - (s[2] - 2 * s[1] + s[0]) / h**2
         assert weight == pytest.approx(-GRAVITY[2], abs=1e-5)
+
+
+TABLES: list[Any] = [
+    {"times": [0, 0.5, 1.2, 2], "values": [0.1, 0.4, 0.4, -0.3], "interpolation": each}
+    for each in ("smooth", "monotone")
+]
+
+
+@pytest.mark.parametrize("table", TABLES)
+def test_motions_along_tables_are_right(table: Any) -> None:
+    """From the first place of a table to behind the last one: the energy is balanced, also where pieces meet, and the
+    motion is that by SciPy's splines as inputs, integrated from place to place.
+    """
+    definition = open_entry("cart-pendulum")
+    integrator = Integrator(relative_tolerance=1e-10, absolute_tolerance=1e-12)
+    found = simulate(model(definition, {"x.q0": table}), q=[0.3], span=(0, 2.5), integrator=integrator)
+    assert (found.status, found.is_right) == ("finished", True)
+    t, s = [-1.0, *table["times"], 3.0], [table["values"][0], *table["values"], table["values"][-1]]
+    curve: Any = PchipInterpolator(t, s)
+    if table["interpolation"] == "smooth":
+        inner = CubicSpline(table["times"], table["values"], bc_type="clamped")
+        curve = PPoly(np.hstack([np.eye(4)[:, 3:] * s[0], inner.c, np.eye(4)[:, 3:] * s[-1]]), t)
+    free = model(definition, {"x.q0": {"input": True}})
+
+    def rate(time: float, x: Any) -> Any:
+        inputs = {f"x.q0{primes}": float(curve(time, k)) for k, primes in enumerate(("", "'", "''"))}
+        return x[1], evaluate(free, "forward_dynamics", q=[x[0]], qd=[x[1]], inputs=inputs)["forward_dynamics"][0]
+
+    x = np.array([0.3, 0.0])
+    for start, end in pairwise([*table["times"], 2.5]):
+        inside = (start + 1e-12, end - 1e-12)
+        x = solve_ivp(rate, inside, x, "DOP853", rtol=1e-10, atol=1e-12).y[:, -1]
+    np.testing.assert_allclose([found.q[-1, 0], found.qd[-1, 0]], x, atol=1e-7)
 
 
 def test_inputs_may_drive() -> None:
@@ -235,6 +273,13 @@ def test_inputs_may_drive() -> None:
         ({"a": "t"}, "/driven/a", "string-pattern-mismatch", "a name with its instance"),
         ({"x.a": "abs(t)"}, "/driven/x.a", "kink", "must not jump, .* take step"),
         ({"x.a": "table(t; 0:0, 1:1)"}, "/driven/x.a", "kink", "linear tables"),
+        ({"x.a": "table(t; 0:0, 1:1, 2:0.5; monotone)"}, "/driven/x.a", "kink", "monotone ones that do not end flat"),
+        (
+            {"x.a": {"times": [0, "1/2"], "values": [0, 1]}},
+            "/driven/x.a",
+            "number-expected",
+            "the points of a table are numbers, and '1/2' is none",
+        ),
         (
             {"x.a": {"times": [0, 1], "values": [0, 1], "interpolation": "linear"}},
             "/driven/x.a/interpolation",

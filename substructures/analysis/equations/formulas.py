@@ -10,6 +10,7 @@ import numpy as np
 
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.errors import InvalidDocument
+from substructures.expr.calculus.corners import between_corners
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
@@ -139,11 +140,18 @@ class ModelFormulas(Workspace):
         motions H' = Q_a q'^a + V' - d_t T.
         """
         work = self.graph.sum(f * v for f, v in zip(self.vector("forces"), self.rates, strict=True))
-        result = work + self.along_motion([self.scalar("potential_energy")])[0]
+        potential = self.scalar("potential_energy")
         if not self.model.driven:
-            return result
+            return work + self.along_motion([potential])[0]
         kinetic = self.graph.sum(self.scalar(name) for name in ("T_2", "T_1", "T_0"))
-        return result - directional([kinetic], self.time)[0]
+
+        def rates(smooth: list[Expr]) -> list[Expr]:
+            """V' and d_t T."""
+            return [*self.along_motion(smooth[:1]), *directional(smooth[1:], self.time)]
+
+        # where pieces of tables meet, their derivatives as formulas are 0/0
+        change, explicit = between_corners([potential, kinetic], rates)
+        return work + change - explicit
 
     def along_motion(self, exprs: Sequence[Expr]) -> list[Expr]:
         """Derivatives with respect to time where q'' does not occur: seeds q' for q, 1 for t."""

@@ -14,7 +14,7 @@ at most d of them are -1, d its degree.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import combinations
 from math import isqrt
@@ -79,13 +79,24 @@ def rates(expr: Expr, name: str) -> tuple[Expr, Expr]:
     """First and second derivative by a symbol, with |x| = x sign x, so that no quotient is 0/0 where x = 0; of what is
     an absolute value with no derivative there, half of those of both sides.
     """
-    found, graph = corners([expr]), expr.graph
-    sides = [graph.symbol(f"side {k}") for k in range(len(found))]
-    (smooth,) = on_side([expr], dict(zip(found, sides, strict=True)))
-    rate = derivative(smooth, name)
-    signs = {str(s.value): graph.function("sign", inner(node)) for s, node in zip(sides, found, strict=True)}
-    first, second = transfer([rate, derivative(rate, name)], graph, signs)
+    first, second = between_corners(
+        [expr], lambda smooth: [rate := derivative(smooth[0], name), derivative(rate, name)]
+    )
     return first, second
+
+
+def between_corners(exprs: Sequence[Expr], work: Callable[[list[Expr]], list[Expr]]) -> list[Expr]:
+    """What ``work`` makes of formulas with |x| = x sign x and constant signs: so derivatives have no quotient that is
+    0/0 where x = 0.
+    """
+    found = corners(exprs)
+    if not found:
+        return work(list(exprs))
+    graph = found[0].graph
+    sides = [graph.symbol(f"side {k}") for k in range(len(found))]
+    smooth = on_side(exprs, dict(zip(found, sides, strict=True)))
+    signs = {str(s.value): graph.function("sign", inner(node)) for s, node in zip(sides, found, strict=True)}
+    return transfer(work(smooth), graph, signs)
 
 
 class VanishingOnAllSides:
