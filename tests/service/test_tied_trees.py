@@ -6,6 +6,7 @@ import re
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 from rolling_bodies import sleigh_part
@@ -62,6 +63,23 @@ def test_it_moves_as_with_the_same_beside_it(tied: TestClient, path: str, body: 
     twice = tied.post(f"/v1/trees/sleigh/{path}", json={**body, "constraints": [EDGE | {"name": "other"}]})
     (fault,) = twice.json()["errors"]
     assert (twice.status_code, fault["pointer"], fault["code"]) == (422, "/constraints", "has-velocity-constraints")
+
+
+def test_velocities_are_given_either_way(tied: TestClient) -> None:
+    """Linearised about the same motion by quasi-velocities, and by velocities in a list, by name and in other units."""
+    path = "/v1/trees/sleigh/linearisations"
+    expected = tied.post(path, json={"q": [0, 0, 0.0], "v": {"u": 2.5, "w": 1.25}, **VELOCITIES})
+    for qd in (
+        [2.5, 0.0, 1.25],
+        {"s.x": 2.5, "s.y": 0, "s.f": 1.25},
+        {"s.x": {"value": 2500, "unit": "mm/s"}, "s.y": 0, "s.f": 1.25},
+    ):
+        found = tied.post(path, json={"q": [0, 0, 0.0], "qd": qd, **VELOCITIES})
+        assert found.status_code == 200, found.text
+        assert found.json()["v"] == pytest.approx([2.5, 1.25], abs=1e-12)
+        assert np.allclose(found.json()["A"], expected.json()["A"], atol=1e-12)
+    wrong = tied.post(path, json={"q": [0, 0, 0], "qd": [0.5, 0.5, 1], **VELOCITIES})
+    assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "violated")
 
 
 def test_reactions_along_a_motion(tied: TestClient) -> None:

@@ -56,7 +56,8 @@ def linearise_constrained(point: OperatingPoint, kind: ConstrainedMotion) -> Con
     values, chosen = values_at(point), point.chosen_inputs()
     place = {name: values[name] for name in model.coordinates}
     equations, matrices = linearised(model, tuple(kind.constraints), choice_of(kind, place))
-    v = start_velocities(equations, values, point.qd, kind.v)
+    qd = None if point.qd is None else read_states(model, {"q": point.q, "qd": point.qd}, 1).qd[0]
+    v = start_velocities(equations, values, qd, kind.v)
     values |= dict(zip(equations.velocities, v.tolist(), strict=True))
     found = interpret(equations.program, values, ["metric", "bias", "forces", "rates"])
     vd = _solved(found["metric"], found["forces"] - found["bias"])
