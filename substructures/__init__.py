@@ -25,7 +25,8 @@ g_ab           metric, d^2 T / dq'^a dq'^b: mechanics.evaluation_frames (metric)
                mechanics.parallel_axes
 Gamma_abc      = 1/2 (d_b g_ac + d_c g_ab - d_a g_bc), without differentiating: the same modules (christoffel)
 N_ai           dq^a / dq^i of joints that relations move (gears, mimic joints): mechanics.ratios, part.relations
-g_a0, ...      what given motions of coordinates make of these (Gamma_ab0, Gamma_a00, T_0, ...): tree.driven
+g_a0, ...      what given motions of coordinates make of these (Gamma_ab0, Gamma_a00, T_0, ...): tree.given.driven
+ignored_rates  velocities that given momenta of cyclic coordinates make (Routh's reduced system): tree.given.ignored
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
                (loads.kinds), summed in part.applied_forces (own forces of a part), tree.coupling (gravity, and
                wrenches on what others carry) and tree.loads (between parts)

@@ -98,7 +98,7 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
         *_loads(summary.get("loads", ())),
         *_closures(model),
-        *_driven(model, read_json(tree.spec.encode()).get("driven", {})),
+        *_given(model, read_json(tree.spec.encode())),
         *_constraints(model),
         *_sections(
             words.coordinates(model.coordinates, model.joints),
@@ -165,10 +165,12 @@ def _closures(model: Model) -> list[Html]:
     return [tag("h2", "Closures"), table(("name", "type", "from", "to", "rows"), rows)] if rows else []
 
 
-def _driven(model: Model, given: Mapping[str, Any]) -> list[Html]:
-    """The coordinates of a tree that move as is given."""
-    rows = [(name, _motion(given[name])) for name in model.driven]
-    return [tag("h2", "Given motions"), table(("coordinate", "motion"), rows)] if rows else []
+def _given(model: Model, spec: Mapping[str, Any]) -> list[Html]:
+    """The coordinates of a tree that move as is given, and those whose momentum is."""
+    motions = [(name, _motion(spec["driven"][name])) for name in model.driven]
+    momenta = [(name, _number(spec["ignored"][name])) for name in model.ignored]
+    found = [tag("h2", "Given motions"), table(("coordinate", "motion"), motions)] if motions else []
+    return found + ([tag("h2", "Given momenta"), table(("coordinate", "momentum"), momenta)] if momenta else [])
 
 
 def _constraints(model: Model) -> list[Html]:

@@ -201,6 +201,7 @@ class TreeView(Shape):
     )
     loads: list[dict[str, Any]] = Field([], description="of the tree, as they were given; left out if none")
     driven: list[str] = Field([], description="coordinates whose motion is given; left out if none is")
+    ignored: list[str] = Field([], description="cyclic coordinates whose momentum is given; left out if none is")
     velocity_constraints: list[dict[str, Any]] = Field(
         [], description="of motions of the tree, numbers in SI as texts; left out if none"
     )

@@ -35,7 +35,7 @@ from substructures.analysis.motion.rolling import RollingProblem, simulate_rolli
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.errors import Fault, InvalidArgument
-from substructures.tree.document import require_unconstrained, require_undriven
+from substructures.tree.document import require_unconstrained, require_undriven, require_unignored
 from substructures.tree.model import Model
 
 __all__ = [
@@ -104,6 +104,7 @@ def simulate(
         _refuse("no forces", inputs=inputs, reactions=outputs.reactions, powers=outputs.powers)
         model = without_forces(model)
     if isinstance(kind, TreeMotion) and kind.contacts:
+        require_unignored(model.ignored)
         _refuse("contacts", reactions=outputs.reactions, powers=outputs.powers)
     given: dict[str, Any] = {
         "model": model,
@@ -149,6 +150,7 @@ def _require_kind(model: Model, kind: MotionKind) -> None:
         require_unconstrained(model.constraint_names, found)
     if isinstance(kind, (ConstrainedMotion, Geodesic)):
         require_undriven(model.driven, f"take the tree without 'driven' for a {found}")
+        require_unignored(model.ignored)
     if isinstance(kind, ClosedMotion):
         if not model.closures and not kind.prescribed:
             message = f"a tree without closures and 'prescribed' coordinates moves as TreeMotion, found {found}"

@@ -12,13 +12,17 @@ from substructures.certificate.closures import ROWS
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.relations import moved, mover
 
+#: fields of a tree that take coordinates out of its equations
+GIVEN = ("driven", "ignored")
+
 
 def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits, and
-    whose motion is given; velocity constraints.
+    whose motion or momentum is given; velocity constraints.
     """
-    kinds, driven = coordinates_in(tree, definitions), tree.get("driven", ())
-    free = [q for q in kinds if q not in driven]
+    kinds = coordinates_in(tree, definitions)
+    given = {name: [q for q in kinds if q in tree.get(name, ())] for name in GIVEN}
+    free = [q for q in kinds if not any(q in some for some in given.values())]
     frames: list[str] = []
     bound: set[str] = set()
     for instance in hosts_first(tree):
@@ -31,16 +35,18 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         }
         ports = definition.get("ports", ())
         frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*in_order(definition), *ports)))]
-    closures = [
-        {**{x: c[x] for x in ("name", "type", "from")}, "to": c.get("to", "world"), "rows": [*ROWS[c["type"]]]}
-        for c, _ in closures_of(tree, definitions)
-    ]
+    closures = [_rows_of(closure) for closure, _ in closures_of(tree, definitions)]
     joints, limited = "".join(kinds[q] for q in free), [q for q in free if q in bound]
     found = {"coordinates": free, "joints": joints, "frames": frames, "closures": closures, "limited": limited}
     reduction = reduced(tree, definitions)
-    more: dict[str, Any] = {"driven": [q for q in kinds if q in driven], "velocity_constraints": constraints_in(tree)}
-    more["reduction"] = reduction if any(reduction.values()) else {}
-    return found | {name: x for name, x in more.items() if x}
+    more = {"velocity_constraints": constraints_in(tree), "reduction": reduction if any(reduction.values()) else {}}
+    return found | {name: x for name, x in (given | more).items() if x}
+
+
+def _rows_of(closure: Plain) -> dict[str, Any]:
+    """What the rows of a closure are."""
+    ends = {name: closure[name] for name in ("name", "type", "from")}
+    return {**ends, "to": closure.get("to", "world"), "rows": [*ROWS[closure["type"]]]}
 
 
 def constraints_in(tree: Plain) -> list[dict[str, Any]]:
@@ -82,7 +88,7 @@ def reduced(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
         independent += [f"{name}.{c}" for c in own]
         start |= {f"{name}.{c}": str(x) for c, x in d.get("start", {}).items()}
         ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in d.get("ranges", {}).items()}
-    if tree.get("driven"):
+    if tree.get("driven") or tree.get("ignored"):
         return {"independent": [], "start": {}, "ranges": {}}
     is_said = closed and all(d.get("independent") for d in closed) and not tree.get("closures")
     return {"independent": independent if is_said else [], "start": start, "ranges": ranges}

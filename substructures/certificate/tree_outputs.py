@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from functools import partial
 
 from flint import arb
 
@@ -17,8 +18,9 @@ from substructures.certificate.bodies import (
 from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.closures import closure_outputs
 from substructures.certificate.described import closures_in, coordinates_in, hosts_first
-from substructures.certificate.driven import driven_outputs, driven_symbols, of_free, with_driven
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
+from substructures.certificate.given.driven import driven_outputs, driven_symbols, of_free, with_driven
+from substructures.certificate.given.ignored import ignored_outputs, ignored_symbols
 from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import Forces, forces
@@ -45,7 +47,7 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
             for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
                 q = f"{name}.{c}"
                 kinds |= {q: "coordinate", f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
-    return driven_symbols(tree, kinds)
+    return ignored_symbols(tree, driven_symbols(tree, kinds))
 
 
 def tree_outputs(
@@ -53,6 +55,16 @@ def tree_outputs(
 ) -> Outputs:
     """All outputs of the model; ``values``: of all symbols; ``stored``: see
     :func:`substructures.certificate.part_outputs.part_outputs`."""
+    if tree.get("ignored"):
+        every, outputs = list(coordinates_in(tree, definitions)), partial(_outputs, tree, definitions, stored)
+        return ignored_outputs(tree, every, values, outputs)
+    return _outputs(tree, definitions, stored, values)
+
+
+def _outputs(
+    tree: Plain, definitions: Mapping[str, Plain], stored: Mapping[str, Output], values: Mapping[str, Ball]
+) -> Outputs:
+    """The outputs of all coordinates that are not driven."""
     result, given, driven = Outputs(), values, tree.get("driven", ())
     values = with_driven(tree, given)
     numbers, bodies, loads, acting = built(tree, definitions, values)

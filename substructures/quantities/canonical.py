@@ -6,7 +6,8 @@ With the momenta p_a = dL/dq'^a = g_ab q'^b as symbols ``p.<coordinate>`` [kg m^
     p'_a = -dH/dq^a + F_a = Q_a + Gamma_bac q'^b q'^c       where F_a are the forces without a potential
 
 since d_a g_bc = Gamma_bac + Gamma_cab, and all velocities, those in forces too, are taken at q' = g^-1 p. Where motions
-are given, q'^a = g^ab (p_b - g_b0), H = T_2 - T_0 + V, and p'_a has d_a (g_b0 q'^b + 1/2 g_00) besides.
+are given, q'^a = g^ab (p_b - g_b0), H = T_2 - T_0 + V, and p'_a has d_a (g_b0 q'^b + 1/2 g_00) besides;
+the same with Routh's function where momenta are given.
 (W. R. Hamilton, 1835; E. J. Routh, Advanced Rigid Dynamics, 1892; notation.md, section 7.)
 """
 
@@ -72,7 +73,7 @@ def hamiltonian(model: Model, max_nodes: int) -> Program:
     r = Workspace(model)
     p, rates, told = _rates(r, max_nodes)
     energy = r.graph.sum(x * y for x, y in zip(p, rates, strict=True)) / 2 + r.scalar("potential_energy")
-    energy = energy - r.scalar("g_00") / 2 if model.driven else energy
+    energy = energy - r.scalar("g_00") / 2 if model.given else energy
     return r.program({"hamiltonian": Formulas((), {(): energy}), PIVOTS: told})
 
 
@@ -89,7 +90,7 @@ def canonical_equations(model: Model, max_nodes: int) -> Program:
     found = [forces.get((a,), r.graph.zero) for a in range(r.n)]
     for (b, a, c), gamma in r.elements("christoffel").items():
         found[a] = found[a] + gamma * rates[b] * rates[c]
-    if model.driven:
+    if model.given:
         # d_a of T_1 + T_0, T_1 at these velocities
         drives = [*(r.elements("g_a0").get((a,), r.graph.zero) for a in range(r.n)), r.scalar("g_00") / 2]
         slopes = [
@@ -106,6 +107,6 @@ def _rates(r: Workspace, max_nodes: int) -> tuple[Sequence[Expr], Sequence[Expr]
     names = [momentum(name) for name in r.model.coordinates]
     for name, joint in zip(names, r.model.joints, strict=True):
         r.symbols[name] = Symbol(name, "parameter", UNITS[joint])
-    mixed = r.elements("g_a0") if r.model.driven else {}
+    mixed = r.elements("g_a0") if r.model.given else {}
     p = [r.graph.symbol(name) - mixed.get((a,), 0) for a, name in enumerate(names)]
     return p, factors.solve(p), told[PIVOTS]

@@ -39,7 +39,7 @@ from substructures.part.topology import MOST_CHRISTOFFEL, entries_of
 from substructures.quantities.of_parts import OfParts, formed
 from substructures.tree.assembly import Assembly, assemble, joint_parents
 from substructures.tree.coupling import couple_parts
-from substructures.tree.document import Instance, TreeSpec, require_undriven
+from substructures.tree.document import Instance, TreeSpec, require_ungiven
 from substructures.tree.model_outputs import model_outputs
 
 #: the rates of the base, and the place of each among the joints of the host: x, y, z, yaw, pitch, roll
@@ -74,7 +74,7 @@ def floating_christoffel(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: i
 def _outputs(
     spec: TreeSpec, parts: Mapping[str, Part], christoffel: bool, assembly: Assembly
 ) -> tuple[dict[str, Formulas], tuple[str, ...]]:
-    require_undriven(tuple(spec.driven), "give what moves as a part of its own")
+    require_ungiven(spec, "give what moves as a part of its own")
     host = _free_name(spec)
     hosted = assemble(_hosted(spec, host), {**parts, host: _host_part()})
     entries = entries_of(joint_parents(hosted.mounted))

@@ -52,9 +52,9 @@ def generalised_momenta(model: Model, _: int) -> Program:
 
 
 def lagrangian(model: Model, _: int) -> Program:
-    """L = T - V."""
+    """L = T - V; with ignored coordinates Routh's R."""
     r = Workspace(model)
-    return r.program({"lagrangian": Formulas((), {(): r.kinetic_energy - r.scalar("potential_energy")})})
+    return r.program({"lagrangian": Formulas((), {(): r.lagrangian})})
 
 
 def power(model: Model, _: int) -> Program:
@@ -67,7 +67,7 @@ def total_momentum(model: Model, _: int) -> Program:
     """p_a q'^a for the momenta p_a of unit velocities, and the momentum of given motions."""
     r, outputs = Workspace(model), dict[str, Formulas]()
     for kind in ("linear", "angular"):
-        entries = Entries(r.elements(f"{kind}_momentum_0") if model.driven else {})
+        entries = Entries(r.elements(f"{kind}_momentum_0") if model.given else {})
         for (a, i), p in r.elements(f"{kind}_momentum").items():
             # p_i = p_ai q'^a: momenta are linear in the velocities
             entries[(i,)] = entries.get((i,), r.graph.zero) + p * r.velocity_symbol(a)
@@ -82,8 +82,8 @@ def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 
     coriolis (n, n): C_ab = Gamma_abc q'^c, g' - 2 C is skew; kinetic_energy (): [J];
-    lagrangian (): T - V [J], of the forces that have a potential; generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a,
-    with g_a0 of given motions;
+    lagrangian (): T - V [J], of the forces that have a potential, with ignored coordinates Routh's function;
+    generalised_momenta (n,): p_a = g_ab q'^b = dL/dq'^a, with g_a0 of given motions and momenta;
     inverse_dynamics (n,): g_ab q''^b + Gamma_abc q'^b q'^c - Q_a [N m, N], by recursion;
     forward_dynamics (n,): q'' [rad/s^2, m/s^2] and ``pivots``, see :mod:`.derivatives`;
     power (n,): Q_a q'^a of every coordinate [W], whose sum is dT/dt;

@@ -12,8 +12,8 @@ from substructures.part.part import Part
 from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
-from substructures.tree.document import TreeSpec
-from substructures.tree.driven import put_in
+from substructures.tree.document import TreeSpec, require_unignored
+from substructures.tree.given.driven import put_in
 
 #: outputs, and the names of their rows
 Rows = tuple[Mapping[str, Formulas], Sequence[str]]
@@ -52,6 +52,7 @@ def formed(
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
     VerificationFailed unless every element is what ``expected`` makes of the documents.
     """
+    require_unignored(spec.ignored)
     assembly = assemble(spec, parts)
     try:
         outputs, rows = make(assembly)

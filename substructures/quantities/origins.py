@@ -14,7 +14,7 @@ from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.assembly import assemble, joint_parents, tree_name
 from substructures.tree.document import TreeSpec
-from substructures.tree.driven import all_coordinates
+from substructures.tree.given.driven import all_coordinates
 
 
 @dataclass(frozen=True)
@@ -53,7 +53,8 @@ def movers_of_tree(spec: TreeSpec, parts: Mapping[str, Part]) -> Movers:
         of += [first + i for i in m.part.topology.moved_by]
         first += m.part.dof
     found, names = _movers([parent for parent, _ in parents], carriers, of), all_coordinates(assembly)
-    free = [moved for name, moved in zip(names, found.moved, strict=True) if name not in spec.driven]
+    given = {**spec.driven, **spec.ignored}
+    free = [moved for name, moved in zip(names, found.moved, strict=True) if name not in given]
     return replace(found, moved=tuple(free))
 
 

@@ -6,7 +6,8 @@ and lists of names all come from here. Nothing is imported: clients and printers
 
 Axes are named by the member of an answer that lists their places: ``coordinates``, ``frames`` (bodies and ports),
 ``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures), ``driven`` (coordinates
-whose motion is given); those of FIXED have the same names everywhere, and digits are a length.
+whose motion is given), ``ignored`` (whose momentum is); those of FIXED have the same names everywhere, and digits are
+a length.
 """
 
 from __future__ import annotations
@@ -22,7 +23,7 @@ MODEL, CONDITION, FORWARD = "model", "condition", "forward_dynamics"
 REGRESSOR, REACTIONS, POWERS = "regressor", "reactions", "powers"
 #: formulas that follow from a model by an analysis, and outputs of a part: not numbers of a tree
 ANALYSIS, PART = "analysis", "part"
-COORDINATES, FRAMES, DRIVEN = "coordinates", "frames", "driven"
+COORDINATES, FRAMES, DRIVEN, IGNORED = "coordinates", "frames", "driven", "ignored"
 #: axes whose places have the same names in every tree
 FIXED = {"axes": ("x", "y", "z"), "momenta": ("px", "py", "pz", "Lx", "Ly", "Lz")}
 #: of what is not in the table: all but further symbols
@@ -135,13 +136,14 @@ def _row(
 
 _stored = partial(_row, source=MODEL)
 _loops = partial(_row, source=MODEL, only="the tree has no closures")
-_given = partial(_row, source=MODEL, only="no coordinate is driven")
+_driven = partial(_row, source=MODEL, only="no coordinate is driven")
+_given = partial(_row, source=MODEL, only="no coordinate is driven or ignored")
 _moving = partial(_row, source=MODEL, only="no coordinate of a tree with closures is driven")
 _made = partial(_row, source=ANALYSIS, is_number=False)
 _formula = partial(_row, module="formulas")
 _derivative = partial(_row, module="derivatives")
 _canonical = partial(_row, module="canonical", pivots=("pivots",))
-#: what given motions add to the metric
+#: what given motions and momenta add to the metric
 _DRIVES = "g_a0 g_00"
 _H, _CANONICAL = f"metric potential_energy {_DRIVES}", f"metric bias forces {_DRIVES}"
 _SECOND, _SYMMETRIC = "christoffel_second_kind", "Gamma^a_bc = Gamma^a_cb"
@@ -175,7 +177,7 @@ _ROWS = (
     _loops("closure.acceleration", "q qd p", "rows"),
     _loops("closure.direction", "q p", "rows axes"),
     _loops("closure.alignment", "q p", "rows"),
-    # of given motions (substructures.tree.driven)
+    # of given motions and momenta (substructures.tree.given.driven, substructures.tree.given.ignored)
     _given("g_a0", "t q u p", "coordinates"),
     _given("g_00", "t q u p"),
     _given("Gamma_ab0", "t q u p", "coordinates coordinates"),
@@ -183,8 +185,9 @@ _ROWS = (
     _given("T_2", "t q qd u p", unit="J"),
     _given("T_1", "t q qd u p", unit="J"),
     _given("T_0", "t q u p", unit="J"),
-    _given("drive_forces", "t q qd qdd u p", DRIVEN, requires=("qdd",)),
-    _given("drive_powers", "t q qd qdd u p", DRIVEN, "W", requires=("qdd",)),
+    _driven("drive_forces", "t q qd qdd u p", DRIVEN, requires=("qdd",)),
+    _driven("drive_powers", "t q qd qdd u p", DRIVEN, "W", requires=("qdd",)),
+    _row("ignored_rates", "q qd p", IGNORED, source=MODEL, only="no coordinate is ignored"),
     _moving("closure.rate", "t q u p", "rows"),
     _moving("closure.drives", "t q u p", f"rows {DRIVEN}"),
     _given("linear_momentum_0", "t q u p", "axes", "kg m/s"),
@@ -208,7 +211,7 @@ _ROWS = (
     _derivative("inverse_dynamics_derivative", "t q qd qdd u p", "coordinates", requires=("qdd", "along")),
     _derivative(FORWARD, "t q qd u p", "coordinates", symbol=r"\ddot{q}", pivots=_PIVOTS),
     _derivative("forward_dynamics_derivative", "t q qd u p", "coordinates", requires=("along",), pivots=_PIVOTS),
-    _formula("kinetic_energy", "q qd p", unit="J", symbol="T", needs=f"metric {_DRIVES}"),
+    _formula("kinetic_energy", "q qd p", unit="J", symbol="T", needs=f"metric {_DRIVES} ignored_rates"),
     _formula("lagrangian", "t q qd p", unit="J", symbol="L", needs=f"metric potential_energy {_DRIVES}"),
     _formula("generalised_momenta", "q qd p", "coordinates", needs=f"metric {_DRIVES}"),
     _formula("power", "t q qd u p", "coordinates", "W", "P", needs="forces"),

@@ -41,7 +41,7 @@ from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.driven import all_coordinates, driven_names
+from substructures.tree.given.driven import all_coordinates, driven_names
 from substructures.tree.inverse_dynamics import body_motions
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import rate_symbols

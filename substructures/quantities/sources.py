@@ -22,6 +22,7 @@ from substructures.quantities.quantity import (
     DRIVEN,
     FORWARD,
     FRAMES,
+    IGNORED,
     MODEL,
     OF_PARTS,
     PROGRAMS,
@@ -142,8 +143,8 @@ class Sources:
             return self.of(source).labels[axis]
         if axis == FRAMES:
             return self.model.frames
-        if axis == DRIVEN:
-            return self.model.driven
+        if axis in (DRIVEN, IGNORED):
+            return self.model.driven if axis == DRIVEN else self.model.ignored
         return tuple(f"{closure.name}.{row}" for closure in self.model.closures for row in closure.rows)
 
 
@@ -191,7 +192,8 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     # ten parameters a link; rows of joints and seats; powers of gravity, joints, actuators, and of loads, of which a
     # tree may have a thousand beside those of its parts; rows of closures, six at most between two frames
     sizes = {"coordinates": n, "frames": frames, "axes": 3, "links": frames, "columns": 10 * frames}
-    sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames), DRIVEN: frames, "rates": 6 + n}
+    sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames), "rates": 6 + n}
+    sizes |= dict.fromkeys((DRIVEN, IGNORED), frames)
     return sum(TABLE[name].size(sizes) for name in quantities)
 
 

@@ -19,7 +19,7 @@ from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import WORLD, ReachColumn
 from substructures.sweeps.grouped import alike, inside
 from substructures.sweeps.shapes import Shape
-from substructures.tree.driven import PRIMES
+from substructures.tree.given.driven import PRIMES
 from substructures.tree.model import Model, require_open
 
 #: starts, which are drawn between the limits; rounds over all coordinates; points of a grid

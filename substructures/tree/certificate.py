@@ -8,7 +8,7 @@ from typing import Any
 
 from substructures.certificate.compare import Compared, Expected, compare
 from substructures.certificate.described import coordinates_in, described
-from substructures.certificate.driven import of_free, with_driven
+from substructures.certificate.given.driven import of_free, with_driven
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.states import states_needed

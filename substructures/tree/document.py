@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Iterable, Mapping
 from decimal import Decimal
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Protocol
 
 from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
@@ -191,8 +191,8 @@ ConstraintOfTree = Annotated[
 
 class TreeSpec(WithTables):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree, and
-    ``loads`` act between its frames, with ``inputs`` of their own. ``driven`` coordinates move as is given;
-    ``velocity_constraints`` hold along motions.
+    ``loads`` act between its frames, with ``inputs`` of their own. ``driven`` coordinates move as is given,
+    those that are ``ignored`` at constant momenta; ``velocity_constraints`` hold along motions.
     """
 
     name: LibraryName
@@ -204,6 +204,9 @@ class TreeSpec(WithTables):
     loads: tuple[LoadOfTree, ...] = Field((), max_length=1000)
     driven: dict[Annotated[str, Field(pattern=FRAME)], Driven] = Field(
         {}, max_length=5000, description="motions of coordinates: expressions in t and parameters (rad or m), or others"
+    )
+    ignored: dict[Annotated[str, Field(pattern=FRAME)], Number] = Field(
+        {}, max_length=5000, description="constant momenta of cyclic coordinates (kg m^2/s or kg m/s), by Routh"
     )
     velocity_constraints: tuple[ConstraintOfTree, ...] = Field(
         (), max_length=100, description="of motions of the tree; formulas are those of the tree without them"
@@ -229,6 +232,7 @@ class TreeSpec(WithTables):
         loops = f"; closures {', '.join(c.name for c in self.closures)}" if self.closures else ""
         loops += f"; loads {', '.join(load.name for load in self.loads)}" if self.loads else ""
         loops += f"; driven {', '.join(self.driven)}" if self.driven else ""
+        loops += f"; ignored {', '.join(self.ignored)}" if self.ignored else ""
         tied = ", ".join(c.name for c in self.velocity_constraints)
         loops += f"; velocity constraints {tied}" if tied else ""
         hosts = ", ".join(f"{i.name} at {i.at}" for i in self.instances)
@@ -237,12 +241,38 @@ class TreeSpec(WithTables):
     __str__ = __repr__
 
 
-def require_undriven(driven: Sequence[str], instead: str) -> None:
-    """Raises InvalidDocument (``has-driven``) where given motions would be ignored; ``instead``: what takes them."""
+class Given(Protocol):
+    """A tree or its model: some of its coordinates are given."""
+
+    @property
+    def driven(self) -> Collection[str]:
+        """Those whose motion is given."""
+
+    @property
+    def ignored(self) -> Collection[str]:
+        """Those whose momentum is given."""
+
+
+def require_undriven(driven: Collection[str], instead: str) -> None:
+    """Raises InvalidDocument (``has-driven``) where given motions would be left out; ``instead``: what takes them."""
     if driven:
         names = ", ".join(f"'{name}'" for name in driven)
         message = f"the motion of {names} is given ('driven'), which is not taken into account here: {instead}"
         raise InvalidDocument.at("", "has-driven", message)
+
+
+def require_unignored(ignored: Collection[str]) -> None:
+    """Raises InvalidDocument (``has-ignored``) for what does not take Routh's reduced systems."""
+    if ignored:
+        names = ", ".join(f"'{name}'" for name in ignored)
+        given = f"the momentum of {names} is given ('ignored'), which is not taken into account here"
+        raise InvalidDocument.at("", "has-ignored", f"{given}: take the tree without 'ignored'")
+
+
+def require_ungiven(given: Given, instead: str) -> None:
+    """Raises InvalidDocument as :func:`require_undriven` and :func:`require_unignored`."""
+    require_undriven(given.driven, instead)
+    require_unignored(given.ignored)
 
 
 #: what takes the velocity constraints of a tree

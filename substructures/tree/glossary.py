@@ -34,7 +34,8 @@ from substructures.part.part import Part
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.driven import all_coordinates, put_in
+from substructures.tree.given.driven import all_coordinates, put_in
+from substructures.tree.given.ignored import at_zero
 from substructures.tree.glossary_motions import Glossary, inverse_terms, matrix, vector, velocity_terms
 from substructures.tree.grouping import Admitted, every, numbers
 from substructures.tree.inertial import planned
@@ -69,10 +70,11 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, mod
     found |= inverse_terms(placed, chain, rates, accelerations)
     if model is not None:
         own = (rates[m.first + c] for m in assembly.mounted for c in m.part.topology.movers)
-        free = [x for name, x in zip(all_coordinates(assembly), own, strict=True) if name not in spec.driven]
+        given = {**spec.driven, **spec.ignored}
+        free = [x for name, x in zip(all_coordinates(assembly), own, strict=True) if name not in given]
         found |= _stored(assembly.scope.graph, model, free)
     of_loads = {} if model is None else {symbol.name: symbol for symbol in model.symbols}
-    outputs = put_in(assembly, _written(found))
+    outputs = at_zero(assembly, put_in(assembly, _written(found)))
     return program(assembly.scope.graph, outputs, {**of_loads, **assembly.scope.symbols})
 
 

@@ -22,7 +22,8 @@ from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.closures import ClosureRows, Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.driven import all_coordinates, driven_inputs, driven_names, put_in
+from substructures.tree.given.driven import all_coordinates, driven_inputs, driven_names, put_in
+from substructures.tree.given.ignored import ignore, ignored_names
 from substructures.tree.grouping import Admitted, every, numbers_and
 from substructures.tree.load_potentials import found_potential
 from substructures.tree.loads import load_formulas
@@ -33,6 +34,7 @@ from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
 EFFORTS = {"R": "N m", "P": "N"}
+LISTED = ("driven", "ignored", "velocity_constraints")
 
 
 @dataclass(frozen=True)
@@ -40,9 +42,9 @@ class Model:
     """A coupled tree. ``frames``: names of bodies and ports in the order of the kinematic outputs; ``closures``: what
     the rows of the closure outputs are, ``reduction``: in which coordinates it moves; ``parameters``, ``inputs`` (of
     loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
-    ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given;
-    ``velocity_constraints``: of its motions, as plain data; the formulas are those without them; ``numbers``: in SI,
-    still to be put in for symbols of the program (:meth:`with_numbers`)."""
+    ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given,
+    ``ignored``: whose momentum is; ``velocity_constraints``: of its motions, as plain data; the formulas are those
+    without them; ``numbers``: in SI, still to be put in for symbols of the program (:meth:`with_numbers`)."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -58,6 +60,7 @@ class Model:
     driven: tuple[str, ...] = ()
     velocity_constraints: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
     numbers: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
+    ignored: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -76,8 +79,13 @@ class Model:
         return replace(self, program=with_numbers(self.program, self.numbers), numbers={}) if self.numbers else self
 
     @property
+    def given(self) -> tuple[str, ...]:
+        """The coordinates that are driven or ignored."""
+        return (*self.driven, *self.ignored)
+
+    @property
     def constraint_names(self) -> tuple[str, ...]:
-        """The names of the velocity constraints."""
+        """Of the velocity constraints."""
         return tuple(each["name"] for each in self.velocity_constraints)
 
     @property
@@ -114,8 +122,7 @@ class Model:
         """What the axes of the outputs are, as plain data."""
         closures: dict[str, Any] = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
         closures |= {"reduction": self.reduction.plain()} if self.reduction else {}
-        closures |= {"driven": list(self.driven)} if self.driven else {}
-        closures |= {"velocity_constraints": list(self.velocity_constraints)} if self.velocity_constraints else {}
+        closures |= {name: list(getattr(self, name)) for name in LISTED if getattr(self, name)}
         return closures | {
             "coordinates": list(self.coordinates),
             "joints": self.joints,
@@ -139,14 +146,11 @@ class Model:
         names = tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"])
         described = summary["parameters"], summary["certificate"]
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        inputs, limited = summary.get("inputs", {}), tuple(summary.get("limited", ()))
         program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
-        reduction = Reduction.read(summary["reduction"]) if summary.get("reduction") else Reduction()
-        driven = tuple(summary.get("driven", ()))
-        found = cls(program, *names, *described, closures, inputs, limited, reduction=reduction, driven=driven)
-        values = {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}
-        found = replace(found, velocity_constraints=tuple(summary.get("velocity_constraints", ())), numbers=values)
-        return found.with_numbers()
+        more: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in ("limited", *LISTED)}
+        more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
+        more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
+        return cls(program, *names, *described, closures, summary.get("inputs", {}), **more).with_numbers()
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
@@ -250,27 +254,27 @@ def couple_formulas(
     assembly = assemble(spec, parts)
     entries = entries_of(joint_parents(assembly.mounted))
     entries.require("the tree")
-    wanted = None if assembly.cuts or spec.driven else names
+    wanted = None if assembly.cuts or spec.driven or spec.ignored else names
     result = limited(_formulas(assembly, christoffel and not entries.is_large, every, wanted), max_nodes)
     return _model(assembly, result, Plausibility(spec, {name: part.definition for name, part in parts.items()}))
 
 
 def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> Model:
     """The model of an assembly, without a certificate."""
-    driven = driven_names(assembly)
-    free = {name: kind for name, kind in all_coordinates(assembly).items() if name not in driven}
+    kinds = all_coordinates(assembly)
+    given = {"driven": driven_names(assembly), "ignored": ignored_names(assembly, kinds)}
+    free = {name: kind for name, kind in kinds.items() if not any(name in some for some in given.values())}
     rows = tuple(cut.rows for cut in assembly.cuts)
     pairs = list(zip(assembly.instances, assembly.mounted, strict=True))
     moving = [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
-    names_of = (tuple(free), "".join(free.values()), frames)
-    reduction = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
-    reduction = Reduction() if driven else reduction
-    parameters, inputs = assembly.parameters, assembly.inputs | driven_inputs(assembly)
-    model = Model(result, *names_of, parameters, {}, rows, inputs, limited, plausibility, reduction, driven)
-    tied = assembly.reading.spec.velocity_constraints
-    return replace(model, velocity_constraints=tuple(each.plain() for each in tied)) if tied else model
+    told = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
+    tied = tuple(each.plain() for each in assembly.reading.spec.velocity_constraints)
+    axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
+    reduction = Reduction() if any(given.values()) else told
+    more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied}
+    return Model(result, *axes, assembly.parameters, {}, rows, inputs, limited, plausibility, **more)
 
 
 def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted: frozenset[str] | None) -> Program:
@@ -279,7 +283,7 @@ def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted:
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-        outputs = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
+        outputs = ignore(assembly, names, put_in(assembly, loaded_outputs(assembly, coupled, wanted)))
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
         return hoisted(program(graph, outputs, assembly.scope.symbols))
     except ZeroDivisionError:

@@ -29,6 +29,8 @@ from substructures.part.units import (
 from substructures.tree.document import RollingConstraint, TreeSpec
 
 TIME = read_unit("s").dimension
+#: of revolute and prismatic coordinates
+MOMENTUM = tuple(read_unit(unit).dimension for unit in ("kg*m^2/s", "kg*m/s"))
 #: parameters of a definition by name, with their SI units
 DescribedParameters = Mapping[str, Mapping[str, Any]]
 
@@ -63,12 +65,13 @@ def check_tree_units(
     check.check(_bindings(spec, dimension), True)
     radians = _bindings(spec, lambda name: Dimensioned(NUMBER) if unit(name) == RAD else None)
     check.warnings += angle_warnings([*places, *radians], spec.parameters)
-    if spec.loads or spec.driven:
+    if spec.loads or spec.driven or spec.ignored:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)
         check.names = lambda name: dimension(name) or moving.get(name) or dimension_of_measure(name)
         check.check(_loads(spec, kinds), False)
         check.check(_driven(spec, kinds), False)
+        check.check(_ignored(spec, kinds), False)
     return check
 
 
@@ -104,6 +107,13 @@ def _driven(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
     for name, motion in spec.driven.items():
         if name in kinds:
             yield f"/driven/{escape(name)}", motion, COORDINATE[kinds[name]]
+
+
+def _ignored(spec: TreeSpec, kinds: Mapping[str, int]) -> Iterator[Place]:
+    """Given momenta."""
+    for name, momentum in spec.ignored.items():
+        if name in kinds:
+            yield f"/ignored/{escape(name)}", momentum, MOMENTUM[kinds[name]]
 
 
 def _places(spec: TreeSpec) -> Iterator[Place]:

@@ -25,7 +25,7 @@ from substructures.analysis.simulate import Integrator, simulate
 from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
 from substructures.quantities.sources import Sources, of_parts
-from substructures.tree import driven
+from substructures.tree.given import driven
 
 Plain = dict[str, Any]
 #: s, s', s'' of "a*sin(w*t + k) + t^2/10"

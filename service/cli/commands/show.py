@@ -99,7 +99,7 @@ def _tell(found: Mapping[str, Any]) -> None:
         facts |= {
             kind.replace("_", " "): ", ".join(x["name"] for x in found[kind]) for kind in LISTED if found.get(kind)
         }
-        facts |= {"driven": ", ".join(found["driven"])} if found.get("driven") else {}
+        facts |= {kind: ", ".join(found[kind]) for kind in ("driven", "ignored") if found.get(kind)}
     else:
         facts |= {"bodies": ", ".join(found["bodies"]), "ports": ", ".join(found["ports"]) or "none"}
     counts = (

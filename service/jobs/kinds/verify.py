@@ -32,8 +32,8 @@ from substructures.tree.model import couple_shape
 ALL = "*"
 #: what is stored of a tree beside its program, but for the certificate
 SUMMARY = (
-    *("coordinates", "joints", "frames", "closures", "reduction", "limited", "driven", "velocity_constraints"),
-    *("parameters", "inputs", "operations", "numbers"),
+    *("coordinates", "joints", "frames", "closures", "reduction", "limited", "driven", "ignored"),
+    *("velocity_constraints", "parameters", "inputs", "operations", "numbers"),
 )
 
 

@@ -104,7 +104,7 @@ class Constrained:
 
     def _needs(self, is_closed: bool) -> list[str]:
         """Outputs of the model."""
-        drives = [*DRIVES, *(("closure.rate",) if is_closed else ())] if self.model.driven else []
+        drives = [*DRIVES, *(("closure.rate",) if is_closed else ())] if self.model.given else []
         return [*NEEDS, *(CLOSED if is_closed else ()), *drives]
 
     def _bind(self, inputs: list[str], folder: Path | None) -> None:
@@ -234,7 +234,7 @@ class Constrained:
     @property
     def energies(self) -> tuple[float, float]:
         """T and V [J]; at given motions T_2 - T_0 and V, of Jacobi's energy."""
-        if self.model.driven:
+        if self.model.given:
             T_2, T_0, V = (float(self._out[name][0]) for name in (*DRIVES, "potential_energy"))
             return T_2 - T_0, V
         # T = q'^T g q' / 2

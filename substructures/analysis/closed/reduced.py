@@ -34,7 +34,7 @@ from substructures.mechanics.accelerations import condition
 from substructures.mechanics.closure_rows import rank_of
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 
 #: of independent coordinates by name, one or (K,)
@@ -98,7 +98,7 @@ def reduced_equations(
     ``wrong-number`` where the closures leave more or fewer coordinates free, ``out-of-range``; and MissingValue. A
     start that cannot be closed and places that cannot be reached are messages in the result.
     """
-    require_undriven(model.driven, "take simulations, or loop states")
+    require_ungiven(model, "take simulations, or loop states")
     names, t = _independent(model, independent), real(t, "/t")
     begin = _start(model, start or {})
     y, rates, is_one = _states(model, names, {"q": q or {}, "qd": qd or {}}, begin)

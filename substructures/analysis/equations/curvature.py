@@ -36,7 +36,7 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.evaluation import Evaluator, interpreted
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model, require_open
 
 OUTPUTS = ("riemann", "ricci", "scalar_curvature", "inverse_metric", "christoffel_second")
@@ -85,7 +85,7 @@ def curvature(model: Model, max_nodes: int = MAX_NODES) -> Program:
     curved in its own way within that of its coordinates), TooLarge (size, limit) for more than ``max_nodes`` nodes.
     """
     require_open(model.closures, "describe the mechanism in independent coordinates")
-    require_undriven(model.driven, "take the tree without 'driven'")
+    require_ungiven(model, "take the tree without 'driven'")
     space = _Space(model, max_nodes)
     try:
         outputs = space.outputs()

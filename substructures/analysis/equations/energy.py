@@ -104,6 +104,8 @@ def judged_energy(
     if depends_on([f.scalar("potential_energy")], given) or not f.is_scleronomic:
         return None
     idle = f"; {constraints_in(f.model)} do no work" if f.multipliers else ""
+    if f.model.ignored:
+        idle = "; the kinetic energy of all coordinates, T_2 - T_0, and V"
     if f.model.driven:
         idle = "; Jacobi's T_2 - T_0 + V, relative to the given motions"
     rule = rule_of(f, f.power, vanishes)

@@ -120,7 +120,7 @@ class _Search:
 
     def further(self, given: frozenset[str]) -> None:
         """Those beside the momenta that are no combinations of them and of their products; none at given motions."""
-        if self.f.model.driven:
+        if self.f.model.given:
             return
         for integral, value in self.found:
             if integral.rule == "constant" and integral.kind != "energy":
@@ -166,7 +166,7 @@ class _Search:
                 self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
         moving = {i: x for i, x in slopes.items() if i[2] in varied}
         cyclic = [f.model.coordinates.index(name) for name in self.cyclic_names]
-        for direction in () if f.model.driven else directions(f, moving, cyclic, self.vanishes):
+        for direction in () if f.model.given else directions(f, moving, cyclic, self.vanishes):
             self._symmetry(direction)
 
     def _symmetry(self, found: Direction) -> None:
@@ -206,7 +206,7 @@ class _Search:
         self._about(angular, pull)
         if not all(self.vanishes(rate) for rate in rates):
             self._along_axes(linear, angular)
-        if self.f.model.driven:
+        if self.f.model.given:
             return
         self.freely = FreeMotion(self.f, linear, angular, constant, self._constant, self.vanishes)
         for integral, value in self.freely.with_time():
@@ -215,7 +215,7 @@ class _Search:
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
         # momentum_i = n_ai q'^a
-        given = self.f.elements(f"{name}_0") if self.f.model.driven else {}
+        given = self.f.elements(f"{name}_0") if self.f.model.given else {}
         result = [given.get((i,), self.zero) for i in range(3)]
         for (a, i), x in self.f.elements(name).items():
             result[i] = result[i] + x * self.f.rates[a]

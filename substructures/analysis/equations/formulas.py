@@ -28,7 +28,7 @@ def require_moving(model: Model, what: str = "linearisations") -> None:
     """
     require_unconstrained(model.constraint_names, what)
     if not model.dof:
-        why = "the motions of all coordinates are given" if model.driven else "the tree has no joint"
+        why = "all coordinates are given" if model.given else "the tree has no joint"
         raise InvalidDocument.at("", "no-coordinates", f"{why}: there is nothing that moves")
 
 
@@ -115,7 +115,7 @@ class ModelFormulas(Workspace):
     @cached_property
     def momenta(self) -> list[Expr]:
         """p_a = dT/dq'^a: g_ab q'^b, and g_a0 of given motions."""
-        g, mixed = self.elements("metric"), self.elements("g_a0") if self.model.driven else {}
+        g, mixed = self.elements("metric"), self.elements("g_a0") if self.model.given else {}
         result = [self.graph.zero] * self.n
         for (a, b), x in sorted(g.items()):
             result[a] = result[a] + x * self.rates[b]
@@ -124,12 +124,12 @@ class ModelFormulas(Workspace):
     @cached_property
     def drives(self) -> list[Expr]:
         """g_a0 that are not zero, and g_00; none without given motions."""
-        return [*self.elements("g_a0").values(), self.scalar("g_00")] if self.model.driven else []
+        return [*self.elements("g_a0").values(), self.scalar("g_00")] if self.model.given else []
 
     @cached_property
     def energy(self) -> Expr:
         """H = T + V; of given motions Jacobi's T_2 - T_0 + V."""
-        if self.model.driven:
+        if self.model.given:
             return self.scalar("T_2") - self.scalar("T_0") + self.scalar("potential_energy")
         twice = self.graph.sum(p * v for p, v in zip(self.momenta, self.rates, strict=True))
         return twice / 2 + self.scalar("potential_energy")

@@ -26,7 +26,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.quantities.certificate import DYNAMICS, certified
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model, require_open
 
 
@@ -58,7 +58,7 @@ def routh(model: Model, coordinates: Sequence[str] | None = None) -> Reduced:
     for closures. Source: E. J. Routh, 1877; J. E. Marsden, 1992 (see above).
     """
     require_open(model.closures, "use first integrals, and simulations")
-    require_undriven(model.driven, "use first integrals, and simulations")
+    require_ungiven(model, "use first integrals, and simulations")
     found: FirstIntegrals = first_integrals(model)
     names = list(found.cyclic if coordinates is None else dict.fromkeys(coordinates))
     cyclic = require_cyclic(model, found, names)

@@ -86,7 +86,7 @@ class Resets:
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
         n, model = self.conditions.model.dof, self.conditions.model
-        names = [*ENERGY, "T_0"] if model.driven else list(ENERGY)
+        names = [*ENERGY, "T_0"] if model.given else list(ENERGY)
         found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, names, 1)
         metric, potential, *drives = (found[name][0] for name in names)
         return float(0.5 * x[n:] @ metric @ x[n:] + potential - sum(drives))

@@ -45,8 +45,8 @@ def body_statements(model: Model, names: Names, Y: RegressorModel | None, addres
         return
     links, size = [name.removesuffix(".m") for name in Y.names[::10]], len(Y.program) * (model.dof + 1)
     why = ""
-    if model.driven:
-        why = "some motions are given"
+    if model.given:
+        why = "some motions or momenta are given"
     elif size > MOST_WORK:
         why = f"{size:,} operations; the limit is {MOST_WORK:,}"
     try:

@@ -153,7 +153,7 @@ def christoffel_statements(model: Model, names: Names) -> Iterator[Statement]:
         acting[a].add((b, c))
     free = tuple(model.coordinates[a] for a, some in acting.items() if not some)
     if free:
-        but = " but those of the given motions" if model.driven else ""
+        but = f" but those of the given {'motions' if model.driven else 'momenta'}" if model.given else ""
         text = f"The equations of {listed(names[c] for c in free)} have no velocity forces{but}."
         yield Statement("christoffel", "no-velocity-forces", text, coordinates=free)
     centrifugal = {b for some in acting.values() for b, c in some if b == c}

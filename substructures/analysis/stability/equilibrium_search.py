@@ -187,6 +187,9 @@ class RestSearch:
         if len(moving):
             if not np.isfinite(self.at(q)[1]).all():
                 q[moving] += BESIDE * self.length[moving]
+            # the amended potential of a reduced system is infinite where its coordinates fail
+            if not np.isfinite(self.at(q)[0]).all():
+                return None
             with np.errstate(all="ignore"):
                 q[moving] = scipy.optimize.least_squares(
                     lambda x: both(x)[0],

@@ -21,7 +21,7 @@ from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.linearise_constrained import linearise_constrained
 from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
-from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, stability
+from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_order, input_matrix, modes, stability
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import cholesky_solve
@@ -135,5 +135,6 @@ def _judged(point: OperatingPoint, states: States, result: Linearisation, values
     # a given q'' = 0 is an equilibrium only where M^-1 (g q'' + Gamma q' q' - Q) vanishes, too
     if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):
         return result
-    found = modes(result.M, result.D, result.K)
-    return replace(result, modes=found, stability=stability(found, result.D, result.K, point.has_potential(values)))
+    found, minimum = modes(result.M, result.D, result.K), ROUTH if point.model.ignored else DIRICHLET
+    told = stability(found, result.D, result.K, point.has_potential(values), minimum)
+    return replace(result, modes=found, stability=told)

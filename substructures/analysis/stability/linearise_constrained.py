@@ -34,7 +34,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
 from substructures.quantities.numbers.states import read_states, symbol_values
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 
 NEEDS = ("metric", "bias", "forces")
 MATRICES = ("metric", "damping", "stiffness", "input", "residual", "T", "rates_by_position")
@@ -52,7 +52,7 @@ def linearise_constrained(point: OperatingPoint, kind: ConstrainedMotion) -> Con
     are not determined is ``failed``, with advice. Raises InvalidInput as quasi_velocity_equations, and MissingValue.
     """
     model = point.model
-    require_undriven(model.driven, "take the tree without 'driven'")
+    require_ungiven(model, "take the tree without 'driven'")
     values, chosen = values_at(point), point.chosen_inputs()
     place = {name: values[name] for name in model.coordinates}
     equations, matrices = linearised(model, tuple(kind.constraints), choice_of(kind, place))

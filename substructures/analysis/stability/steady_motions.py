@@ -38,12 +38,12 @@ from substructures.analysis.stability.steady_conditions import (
 )
 from substructures.analysis.stability.steady_families import STATIC, Kind, families
 from substructures.analysis.stability.steady_search import SteadySearch
-from substructures.analysis.stability.vibrations import Mode, Stability, modes, normed, stability
+from substructures.analysis.stability.vibrations import ROUTH, Mode, Stability, modes, normed, stability
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.states import with_input_defaults
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 
 #: of a range
@@ -196,7 +196,7 @@ def steady_motions(
         around = SearchRange(starts, count, reach, seed)
         return _constrained(ConstrainedSearch(model, around, conditions, rates or {}, velocities, independent))
     require_no_velocities(velocities, independent)
-    require_undriven(model.driven, "take the tree without it, or equilibria, which are relative to the drives")
+    require_ungiven(model, "take equilibria, which are relative to what is given, or the tree without it")
     one_of(held, "held", ("momenta", "rates"))
     whole(steps, "steps", *STEPS)
     ends = ends_of(model, vary, between)
@@ -286,8 +286,8 @@ def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...],
     kept = f"at constant {held}"
     first = stability(found, D, K, has_even_dissipation(model, values, driven, zero))
     if first.verdict == "stable" and found:
-        what = "the amended potential V + 1/2 p g^-1 p" if held == "momenta" else "V - 1/2 w g w"
-        return Stability("stable", f"{what} has a strict minimum {kept} (Routh, Salvadori)")
+        at_rates = f"V - 1/2 w g w has a strict minimum {kept} (Routh, Salvadori)"
+        return Stability("stable", ROUTH if held == "momenta" else at_rates)
     if first.verdict != "undecided":
         return Stability(first.verdict, f"linearised {kept}: {first.reason}" if found else first.reason)
     if held == "momenta" and not model.closures and not any(search.conditions.inputs.values()):

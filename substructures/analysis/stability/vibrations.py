@@ -20,6 +20,9 @@ Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
 #: real parts of this size, relative to the largest eigenvalue, cannot be told from zero (double eigenvalues)
 NEUTRAL = 1e-7
 SYMMETRIC = 1e-12
+#: why what does not depend on the time is stable, and why at constant momenta
+DIRICHLET = "the potential energy has a strict minimum (Lagrange, Dirichlet)"
+ROUTH = "the amended potential V + 1/2 p g^-1 p has a strict minimum at constant momenta (Routh, Salvadori)"
 #: rounding errors of an eigenvalue problem, and relative differences of eigenvalues that count as none
 ROUNDED, SAME = 64 * float(np.finfo(float).eps), 1e-9
 
@@ -170,12 +173,12 @@ def normed(shape: Any) -> ComplexArray:
     return z / z[k] if len(z) and z[k] != 0 else z
 
 
-def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool) -> Stability:
+def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool, minimum: str = DIRICHLET) -> Stability:
     """What the eigenvalues of an equilibrium say about the motion near it.
 
     ``has_potential``: forces without potential are linear in the velocities, with the same coefficients in all
     positions, or there are none: then a positive definite K decides where the linearisation does not, if D feeds no
-    energy in (Lagrange and Dirichlet).
+    energy in (Lagrange and Dirichlet). ``minimum``: the reason then.
     """
     if not found:
         return Stability("stable", "there is nothing that moves")
@@ -186,7 +189,7 @@ def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool) 
     if worst.eigenvalue.real < -NEUTRAL * scale:
         return Stability("asymptotically stable", "all eigenvalues have negative real parts")
     if has_potential and is_symmetric(K) and _least(K) > NEUTRAL and _least(D) >= -SYMMETRIC:
-        return Stability("stable", "the potential energy has a strict minimum (Lagrange, Dirichlet)")
+        return Stability("stable", minimum)
     where = "0" if abs(worst.eigenvalue) <= NEUTRAL * scale else f"{_text(worst.eigenvalue)} 1/s on the imaginary axis"
     return Stability("undecided", f"the eigenvalue {where} leaves the decision to terms of higher order")
 

@@ -62,7 +62,11 @@ def _inverse_dynamics(m: ModelAt) -> Outputs:
 
 def _kinetic_energy(m: ModelAt) -> Outputs:
     result = Outputs()
-    result.scalar("kinetic_energy", m.kinetic_energy())
+    T = m.kinetic_energy()
+    if "ignored_rates" in m.program.outputs:
+        # of R + V by powers of the rates the first and the last: T = p_a q'^a - R - V
+        T = dot(m.momenta(), m.rates) - T
+    result.scalar("kinetic_energy", T)
     return result
 
 

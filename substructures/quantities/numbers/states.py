@@ -152,6 +152,12 @@ def _count_of(coordinates: Sequence[str]) -> str:
     return f"there {'is' if count == 1 else 'are'} {count} coordinate{'' if count == 1 else 's'}{named}"
 
 
+def _given(coordinate: str, model: Model) -> str:
+    """What is said of the state of a coordinate that is driven or ignored."""
+    what, field = ("motion", "driven") if coordinate in model.driven else ("momentum", "ignored")
+    return f"the {what} of '{coordinate}' is given ('{field}'): leave it out"
+
+
 def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
     """(N, n) of columns by coordinate, in the order of the model; (n,) of numbers. Raises InvalidArgument below
     ``/name``.
@@ -161,8 +167,8 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
         Fault(
             f"/{name}/{escape(key)}",
             "unknown-coordinate",
-            f"the motion of '{key}' is given ('driven'): leave it out"
-            if key in model.driven
+            _given(key, model)
+            if key in model.given
             else f"unknown coordinate '{key[:80]}'{among(key, model.coordinates, k)}",
         )
         for k, key in enumerate(unknown)

@@ -114,18 +114,34 @@ class Workspace:
     def momenta(self) -> list[Expr]:
         """p_a = dT/dq'^a = g_ab q'^b, and g_a0 of given motions."""
         found = self.times_velocity(self.elements("metric"))
-        mixed = self.elements("g_a0") if self.model.driven else {}
+        mixed = self.elements("g_a0") if self.model.given else {}
         return [found.get((a,), self.graph.zero) + mixed.get((a,), 0) for a in range(self.n)]
 
     @cached_property
     def kinetic_energy(self) -> Expr:
-        """T = 1/2 g_ab q'^a q'^b, and g_a0 q'^a + 1/2 g_00 of given motions."""
+        """T = 1/2 g_ab q'^a q'^b, and g_a0 q'^a + 1/2 g_00 of given motions; of given momenta -1/2 g_00."""
+        if not self.model.ignored:
+            return self._kinetic_terms
+        return (self._twice_own - self.scalar("g_00")) / 2
+
+    @cached_property
+    def lagrangian(self) -> Expr:
+        """L = T - V; of given momenta Routh's function T - V - p_c q'^c."""
+        return self._kinetic_terms - self.scalar("potential_energy")
+
+    @cached_property
+    def _twice_own(self) -> Expr:
+        """g_ab q'^a q'^b."""
         momentum = self.times_velocity(self.elements("metric"))
-        twice = self.graph.sum(p * self.velocity_symbol(a) for (a,), p in momentum.items())
-        if not self.model.driven:
-            return twice / 2
+        return self.graph.sum(p * self.velocity_symbol(a) for (a,), p in momentum.items())
+
+    @property
+    def _kinetic_terms(self) -> Expr:
+        """1/2 g_ab q'^a q'^b, and g_a0 q'^a + 1/2 g_00 of what is given."""
+        if not self.model.given:
+            return self._twice_own / 2
         mixed = self.graph.sum(x * self.velocity_symbol(a) for (a,), x in self.elements("g_a0").items())
-        return (twice + self.scalar("g_00")) / 2 + mixed
+        return (self._twice_own + self.scalar("g_00")) / 2 + mixed
 
     @property
     def time(self) -> dict[str, Expr]:

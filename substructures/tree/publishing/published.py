@@ -17,7 +17,7 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
-from substructures.tree.document import Instance, TreeSpec, require_unconstrained, require_undriven
+from substructures.tree.document import Instance, TreeSpec, require_unconstrained, require_ungiven
 from substructures.tree.publishing.published_loads import closure_of_part, frames_of_part, load_of_part
 from substructures.tree.publishing.published_names import PartNames, part_names
 
@@ -96,7 +96,7 @@ def _require_tree(spec: TreeSpec) -> None:
     if not spec.instances:
         raise InvalidDocument.at("", "empty-tree", "a tree without instances is no part")
     require_unconstrained((each.name for each in spec.velocity_constraints), "publish")
-    require_undriven(tuple(spec.driven), "publish the tree without 'driven', and drive the tree that it comes into")
+    require_ungiven(spec, "publish the tree without 'driven', and drive the tree that it comes into")
 
 
 def _hosts_first(spec: TreeSpec) -> Iterator[Instance]:

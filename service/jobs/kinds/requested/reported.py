@@ -57,8 +57,8 @@ def report_of(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 
 def _regressor(about: _Subject, nodes: int) -> RegressorModel | None:
-    """That of a tree of moderate size."""
-    if about.model.dof > MOST_COORDINATES or len(about.model.program) > MOST_OPERATIONS:
+    """That of a tree of moderate size; reduced systems are not linear in inertial parameters."""
+    if about.model.ignored or about.model.dof > MOST_COORDINATES or len(about.model.program) > MOST_OPERATIONS:
         return None
     try:
         return regressor(about.spec, about.parts, nodes)

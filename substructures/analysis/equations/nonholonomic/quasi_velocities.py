@@ -52,7 +52,7 @@ from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.document import require_undriven
+from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS
 
@@ -99,7 +99,7 @@ def quasi_velocity_equations(
     Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
     do not determine the velocities; TooLarge.
     """
-    require_undriven(model.driven, "take the tree without 'driven'")
+    require_ungiven(model, "take the tree without 'driven'")
     constraints = constraints_of(model, constraints)
     if (
         velocities is None

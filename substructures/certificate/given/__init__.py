@@ -1,0 +1,1 @@
+"""Given motions and momenta from the text of a tree."""

@@ -1,0 +1,1 @@
+"""Coordinates that are given: their motion (driven), or their momentum (ignored)."""
