@@ -75,17 +75,18 @@ TREES: dict[str, Plain] = {
         "instances": [INSTANCE],
         "velocity_constraints": [{"type": "linear", "name": "belt", "expression": "x.a' - 0.5*x.b'"}],
     },
+    "contacts": {"instances": [INSTANCE], "contacts": [{"name": "foot", "point": "x.tip"}]},
 }
 
 
 TEXT = """
 Each analysis and each formula of analyses was tried on a small tree of each kind: a cart with two pendulums, one
 coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), a cart whose
-motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity constraint. **no**: the request is
-refused with the code `has-closures`, `has-driven`, `has-ignored` or `has-velocity-constraints`, and told what to take
-in its place. Formulas of the tree itself (`metric`,
+motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity constraint, a point above the
+floor (`contacts`). **no**: the request is refused with the code `has-closures`, `has-driven`, `has-ignored`,
+`has-velocity-constraints` or `has-contacts`, and told what to take in its place. Formulas of the tree itself (`metric`,
 `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
-velocity constraints. In a tree of several kinds the `no` of one is the `no` of all.
+velocity constraints and contacts. In a tree of several kinds the `no` of one is the `no` of all.
 """
 
 

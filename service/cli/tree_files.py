@@ -12,6 +12,7 @@ from service.models.source import Source
 from service.settings import Limits
 from substructures import catalogue
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints
+from substructures.analysis.motion.contacts.rows import check_contacts
 from substructures.documents import DOCUMENTS
 from substructures.errors import InvalidDocument
 from substructures.interchange.files.content import is_foreign
@@ -57,6 +58,7 @@ def coupled_source(spec: TreeSpec, parts: Mapping[str, Part]) -> Source:
     limits = Limits()
     model = couple(spec, parts, limits.program_nodes)
     check_constraints(model)
+    check_contacts(model)
     # the others come with the result
     tell_warnings({"warnings": [w for w in model.certificate["warnings"] if w["code"] not in TOLD | BY_VALUE]})
     sources = Sources(model, of_parts=of_parts(spec, parts, limits.program_nodes))

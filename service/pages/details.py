@@ -100,6 +100,7 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
         *_closures(model),
         *_given(model, read_json(tree.spec.encode())),
         *_constraints(model),
+        *_contacts(model),
         *_sections(
             words.coordinates(model.coordinates, model.joints),
             words.parameters(summary["parameters"]),
@@ -177,6 +178,12 @@ def _constraints(model: Model) -> list[Html]:
     """The velocity constraints of a tree."""
     rows = [(x["name"], x["type"], x.get("frame", x.get("expression", ""))) for x in model.velocity_constraints]
     return [tag("h2", "Velocity constraints"), table(("name", "type", "of"), rows)] if rows else []
+
+
+def _contacts(model: Model) -> list[Html]:
+    """The contacts of a tree."""
+    rows = [(x["name"], x["point"], x.get("plane", "world"), x.get("when", "")) for x in model.contacts]
+    return [tag("h2", "Contacts"), table(("name", "point", "plane", "when"), rows)] if rows else []
 
 
 def _motion(given: Any) -> str:

@@ -205,6 +205,9 @@ class TreeView(Shape):
     velocity_constraints: list[dict[str, Any]] = Field(
         [], description="of motions of the tree, numbers in SI as texts; left out if none"
     )
+    contacts: list[dict[str, Any]] = Field(
+        [], description="points of the tree that do not pass through planes, in simulations; left out if none"
+    )
     limited: list[str] = Field([], description="coordinates with limits, which are the quantity limits")
     operations: dict[str, Any]
     certificate: dict[str, Any]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from typing import Any
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
@@ -18,7 +19,7 @@ from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.load_powers import with_powers
-from substructures.analysis.motion.problems.contacts import Contact
+from substructures.analysis.motion.problems.contacts import Contact, contacts_of
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.kinds import (
     ClosedMotion,
@@ -35,7 +36,8 @@ from substructures.analysis.motion.rolling import RollingProblem, simulate_rolli
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.errors import Fault, InvalidArgument
-from substructures.tree.document import require_unconstrained, require_undriven, require_unignored
+from substructures.tree.document import require_undriven, require_unignored
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 
 __all__ = [
@@ -103,6 +105,8 @@ def simulate(
     if isinstance(kind, Geodesic):
         _refuse("no forces", inputs=inputs, reactions=outputs.reactions, powers=outputs.powers)
         model = without_forces(model)
+    if isinstance(kind, TreeMotion):
+        kind = replace(kind, contacts=contacts_of(model, kind.contacts))
     if isinstance(kind, TreeMotion) and kind.contacts:
         require_unignored(model.ignored)
         _refuse("contacts", reactions=outputs.reactions, powers=outputs.powers)
@@ -146,8 +150,7 @@ def _usual(model: Model) -> MotionKind:
 def _require_kind(model: Model, kind: MotionKind) -> None:
     """Raises InvalidInput for a kind of motion that the model cannot have."""
     found = type(kind).__name__
-    if not isinstance(kind, ConstrainedMotion):
-        require_unconstrained(model.constraint_names, found)
+    require_untied(model, found)
     if isinstance(kind, (ConstrainedMotion, Geodesic)):
         require_undriven(model.driven, f"take the tree without 'driven' for a {found}")
         require_unignored(model.ignored)

@@ -39,7 +39,7 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     joints, limited = "".join(kinds[q] for q in free), [q for q in free if q in bound]
     found = {"coordinates": free, "joints": joints, "frames": frames, "closures": closures, "limited": limited}
     reduction = reduced(tree, definitions)
-    more = {"velocity_constraints": constraints_in(tree), "reduction": reduction if any(reduction.values()) else {}}
+    more = {"reduction": reduction if any(reduction.values()) else {}, **ties_in(tree)}
     return found | {name: x for name, x in (given | more).items() if x}
 
 
@@ -49,12 +49,13 @@ def _rows_of(closure: Plain) -> dict[str, Any]:
     return {**ends, "to": closure.get("to", "world"), "rows": [*ROWS[closure["type"]]]}
 
 
-def constraints_in(tree: Plain) -> list[dict[str, Any]]:
-    """The velocity constraints as they are given, numbers as texts."""
-    return [
-        {name: [*map(_text, x)] if isinstance(x, (list, tuple)) else _text(x) for name, x in each.items()}
-        for each in tree.get("velocity_constraints", ())
-    ]
+def ties_in(tree: Plain) -> dict[str, list[dict[str, Any]]]:
+    """The velocity constraints and contacts as they are given, numbers as texts."""
+    return {kind: [_as_text(each) for each in tree.get(kind, ())] for kind in ("velocity_constraints", "contacts")}
+
+
+def _as_text(given: Plain) -> dict[str, Any]:
+    return {name: [*map(_text, x)] if isinstance(x, (list, tuple)) else _text(x) for name, x in given.items()}
 
 
 def _text(given: object) -> str:

@@ -16,7 +16,8 @@ from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.regressor import RegressorModel, regressor
-from substructures.tree.document import TreeSpec, require_unconstrained
+from substructures.tree.document import TreeSpec
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, couple
 
 #: a tree and the parts of its instances
@@ -40,7 +41,7 @@ class Side:
     @classmethod
     def of_tree(cls, spec: TreeSpec, parts: Mapping[str, Part]) -> Side:
         """A tree with the parts of its instances. Raises InvalidDocument, TooLarge as :func:`couple`."""
-        require_unconstrained((each.name for each in spec.velocity_constraints), "equivalences")
+        require_untied(spec, "equivalences")
         model = couple(spec, parts)
         single = f"{spec.instances[0].name}." if len(spec.instances) == 1 else ""
         return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates), single)

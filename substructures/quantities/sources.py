@@ -33,7 +33,8 @@ from substructures.quantities.quantity import (
     made_of,
     outputs_of,
 )
-from substructures.tree.document import TreeSpec, require_unconstrained, require_undriven
+from substructures.tree.document import TreeSpec, require_undriven
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import require_stored
 from substructures.tree.plausibility import Plausibility
@@ -112,7 +113,7 @@ class Sources:
     def require_known_motion(self, source: str) -> None:
         """Raises InvalidDocument for what depends on the motion by itself, where the tree has velocity constraints."""
         if source in OF_MOTION:
-            require_unconstrained(self.model.constraint_names, source)
+            require_untied(self.model, source)
 
     def formulas(self, quantity: str) -> Program:
         """The program of a quantity, with what tells whether it could be computed. Raises TooLarge, InvalidDocument."""

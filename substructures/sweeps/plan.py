@@ -17,7 +17,8 @@ from substructures.ensembles.samples import MOST_ROWS, Sampler
 from substructures.errors import InvalidDocument, InvalidInput, among
 from substructures.sweeps.columns import Columns, read_columns
 from substructures.sweeps.document import MOST_KEPT, Choice, SweepDocument
-from substructures.tree.document import TreeSpec, require_unconstrained
+from substructures.tree.document import TreeSpec
+from substructures.tree.given.ties import require_untied
 
 #: fields of an instance that a choice replaces as they are; parameters are put to those of the template
 _REPLACED = ("substructure", "at", "placement")
@@ -150,6 +151,6 @@ def check_template(document: SweepDocument, options: Sequence[Sequence[Mapping[s
     """Raise InvalidDocument for a template that is no tree with the first options."""
     try:
         spec = TreeSpec.read({**document.template, "instances": [dict(each[0]) for each in options]})
-        require_unconstrained((each.name for each in spec.velocity_constraints), "sweep")
+        require_untied(spec, "sweep")
     except InvalidInput as error:
         raise error.below("/template") from None

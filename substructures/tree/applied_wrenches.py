@@ -16,8 +16,8 @@ from substructures.mechanics.newton_euler import Wrench
 from substructures.part.frames import axis_rotation
 from substructures.tree.assembly import Assembly, tree_name
 from substructures.tree.closures import PLACE, ClosureEnd, closure_formulas
-from substructures.tree.document import KnifeEdgeConstraint, RollingConstraint
 from substructures.tree.frame_points import place
+from substructures.tree.given.ties import KnifeEdgeConstraint, RollingConstraint
 from substructures.tree.loads import load_formulas
 from substructures.tree.mounted_part import WORLD, PlacedPart
 from substructures.tree.part_loads import loads_of_parts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Mapping
 from decimal import Decimal
 from typing import Annotated, Any, Literal, Protocol
 
@@ -12,12 +12,14 @@ from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
 from substructures.documents.faults import PATTERNS
-from substructures.documents.fields import BY_TYPE, NAME, LibraryName, Name, Number, NumberVector, PlainNumber, in_si
+from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector, PlainNumber
 from substructures.errors import Fault, InvalidDocument, among, listed, meant
 from substructures.expr.syntax import RESERVED
 from substructures.loads.document import AT
 from substructures.loads.kinds import LoadOfTree
 from substructures.part.definition import Definition, Input, Parameter, PartClosure, Placement, WithTables
+from substructures.tree.given.ties import MAX_CONTACTS, ConstraintOfTree, ContactOfTree
+from substructures.tree.given.ties import plain_number as _plain
 
 REFERENCE = r"^[a-z0-9][a-z0-9-]{0,63}(@[A-Za-z0-9][A-Za-z0-9:_.-]{0,80})?$"
 FRAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}\.[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -123,10 +125,6 @@ class DrivenTable(DocumentPart):
         return f"table(t; {knots}; {self.interpolation})"
 
 
-def _plain(x: Any) -> str:
-    return format(x, "f") if isinstance(x, Decimal) else str(x)
-
-
 def _kind(given: Any) -> str:
     """Of a motion, by its fields."""
     if isinstance(given, (DrivenInput, DrivenTable)):
@@ -141,58 +139,10 @@ Driven = Annotated[
 ]
 
 
-FrameName = Annotated[str, Field(max_length=140, description="instance.port or instance.body")]
-
-
-class VelocityConstraint(DocumentPart):
-    """A constraint on velocities by its name; what it means: substructures.analysis.equations.nonholonomic."""
-
-    name: Name
-
-    def plain(self) -> dict[str, Any]:
-        """What was given but defaults, numbers in SI as texts."""
-        given: dict[str, Any] = {name: getattr(self, name) for name in self.model_dump(exclude_defaults=True)}
-        return {
-            name: [_plain(x) for x in value] if isinstance(value, tuple) else _plain(in_si(value))
-            for name, value in given.items()
-        }
-
-
-class LinearConstraint(VelocityConstraint):
-    """An expression that is zero, affine in the velocities: B(q) q' + b(q, t), b what a table or a belt gives."""
-
-    type: Literal["linear"]
-    expression: str
-
-
-class KnifeEdgeConstraint(VelocityConstraint):
-    """A skate: no velocity across the edge, which lies along the first axis of the frame."""
-
-    type: Literal["knife_edge"]
-    frame: FrameName
-
-
-class RollingConstraint(VelocityConstraint):
-    """A disc (axis: third axis of the frame) or a sphere that rolls on a plane without slip."""
-
-    type: Literal["rolling"]
-    frame: FrameName
-    radius: Number = Field(description="m")
-    shape: Literal["disc", "sphere"] = "disc"
-    normal: tuple[PlainNumber, PlainNumber, PlainNumber] = Field(
-        (0, 0, 1), description="of the plane in the world (constant)"
-    )
-
-
-ConstraintOfTree = Annotated[
-    LinearConstraint | KnifeEdgeConstraint | RollingConstraint, Field(discriminator="type"), BY_TYPE
-]
-
-
 class TreeSpec(WithTables):
     """Gravity, parameters and instances; hosts may be given in any order. ``closures`` make loops of the tree, and
     ``loads`` act between its frames, with ``inputs`` of their own. ``driven`` coordinates move as is given,
-    those that are ``ignored`` at constant momenta; ``velocity_constraints`` hold along motions.
+    those that are ``ignored`` at constant momenta; ``velocity_constraints`` and ``contacts`` hold along motions.
     """
 
     name: LibraryName
@@ -210,6 +160,9 @@ class TreeSpec(WithTables):
     )
     velocity_constraints: tuple[ConstraintOfTree, ...] = Field(
         (), max_length=100, description="of motions of the tree; formulas are those of the tree without them"
+    )
+    contacts: tuple[ContactOfTree, ...] = Field(
+        (), max_length=MAX_CONTACTS, description="points that do not pass through planes, in simulations"
     )
 
     def _given(self) -> dict[str, Any]:
@@ -235,6 +188,7 @@ class TreeSpec(WithTables):
         loops += f"; ignored {', '.join(self.ignored)}" if self.ignored else ""
         tied = ", ".join(c.name for c in self.velocity_constraints)
         loops += f"; velocity constraints {tied}" if tied else ""
+        loops += f"; contacts {', '.join(c.name for c in self.contacts)}" if self.contacts else ""
         hosts = ", ".join(f"{i.name} at {i.at}" for i in self.instances)
         return f"TreeSpec '{self.name}', {len(self.instances)} instances\n{hosts or 'empty'}{loops}"
 
@@ -273,23 +227,6 @@ def require_ungiven(given: Given, instead: str) -> None:
     """Raises InvalidDocument as :func:`require_undriven` and :func:`require_unignored`."""
     require_undriven(given.driven, instead)
     require_unignored(given.ignored)
-
-
-#: what takes the velocity constraints of a tree
-TAKES_CONSTRAINTS = (
-    *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
-)
-
-
-def require_unconstrained(constraints: Iterable[str], what: str) -> None:
-    """Raises InvalidDocument (``has-velocity-constraints``) where ``what`` would ignore those with these names."""
-    names = ", ".join(f"'{name}'" for name in constraints)
-    if names and what not in TAKES_CONSTRAINTS:
-        message = (
-            f"the tree has the velocity constraints {names}, which '{what}' does not take into account: take "
-            f"{', '.join(TAKES_CONSTRAINTS)}, or the tree without 'velocity_constraints'"
-        )
-        raise InvalidDocument.at("", "has-velocity-constraints", message)
 
 
 def read_instance(data: Any) -> Instance:

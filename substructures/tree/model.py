@@ -34,7 +34,7 @@ from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
 EFFORTS = {"R": "N m", "P": "N"}
-LISTED = ("driven", "ignored", "velocity_constraints")
+LISTED = ("driven", "ignored", "velocity_constraints", "contacts")
 
 
 @dataclass(frozen=True)
@@ -43,8 +43,8 @@ class Model:
     the rows of the closure outputs are, ``reduction``: in which coordinates it moves; ``parameters``, ``inputs`` (of
     loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
     ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given,
-    ``ignored``: whose momentum is; ``velocity_constraints``: of its motions, as plain data; the formulas are those
-    without them; ``numbers``: in SI, still to be put in for symbols of the program (:meth:`with_numbers`)."""
+    ``ignored``: whose momentum is; ``velocity_constraints``, ``contacts``: of its motions, as plain data; the formulas
+    are those without; ``numbers``: in SI, still to be put in for symbols of the program (:meth:`with_numbers`)."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -61,6 +61,7 @@ class Model:
     velocity_constraints: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
     numbers: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
     ignored: tuple[str, ...] = ()
+    contacts: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -82,11 +83,6 @@ class Model:
     def given(self) -> tuple[str, ...]:
         """The coordinates that are driven or ignored."""
         return (*self.driven, *self.ignored)
-
-    @property
-    def constraint_names(self) -> tuple[str, ...]:
-        """Of the velocity constraints."""
-        return tuple(each["name"] for each in self.velocity_constraints)
 
     @property
     def dof(self) -> int:
@@ -270,10 +266,11 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
     told = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
-    tied = tuple(each.plain() for each in assembly.reading.spec.velocity_constraints)
+    spec = assembly.reading.spec
+    tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told
-    more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied}
+    more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied, "contacts": touching}
     return Model(result, *axes, assembly.parameters, {}, rows, inputs, limited, plausibility, **more)
 
 

@@ -26,7 +26,8 @@ from substructures.part.units import (
     parameter_places,
     placement_places,
 )
-from substructures.tree.document import RollingConstraint, TreeSpec
+from substructures.tree.document import TreeSpec
+from substructures.tree.given.ties import RollingConstraint
 
 TIME = read_unit("s").dimension
 #: of revolute and prismatic coordinates
@@ -124,6 +125,9 @@ def _places(spec: TreeSpec) -> Iterator[Place]:
     for i, each in enumerate(spec.velocity_constraints):
         if isinstance(each, RollingConstraint):
             yield f"/velocity_constraints/{i}/radius", each.radius, LENGTH
+    for i, contact in enumerate(spec.contacts):
+        if contact.rest_velocity is not None:
+            yield f"/contacts/{i}/rest_velocity", contact.rest_velocity, RATE[1]
 
 
 def _bindings(spec: TreeSpec, dimension: Callable[[str], Inferred | None]) -> Iterator[Place]:

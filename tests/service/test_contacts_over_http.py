@@ -34,6 +34,72 @@ def test_a_ball_comes_to_rest(client: TestClient, address: str) -> None:
     assert "contact_forces.1" in table.text.splitlines()[0]
 
 
+def stored(client: TestClient, *contacts: dict[str, Any], **more: Any) -> Any:
+    """The answer to a tree with contacts of its own."""
+    tree = {"name": "bouncy", "gravity": [0, 0, -9.81], "instances": [{"name": "b", "definition": BALL}]}
+    return client.post("/v1/trees", json=tree | {"contacts": list(contacts)} | more)
+
+
+def test_contacts_of_a_tree_are_in_its_simulations(client: TestClient, address: str) -> None:
+    own = FLOOR | {"rest_velocity": {"value": 0.1, "unit": "mm/s"}}
+    made = stored(client, own)
+    assert made.status_code == 201, made.text
+    assert made.json()["contacts"] == [
+        {"name": "floor", "point": "b.body", "restitution": "0.8", "rest_velocity": "0.0001"}
+    ]
+    body = {name: x for name, x in BODY.items() if name != "contacts"}
+    found = client.post("/v1/trees/bouncy/simulations", json=body)
+    assert (found.status_code, found.headers["Trajectory-Right"]) == (200, "true")
+    with_its_own, as_asked = found.json(), client.post(f"{address}/simulations", json=BODY).json()
+    for name in ("q", "qd", "events"):
+        assert with_its_own[name] == as_asked[name]
+    assert {check["name"] for check in with_its_own["checks"]} == {check["name"] for check in as_asked["checks"]}
+    other = client.post("/v1/trees/bouncy/simulations", json=BODY | {"contacts": [FLOOR | {"friction": 0.5}]})
+    fault = other.json()["errors"][0]
+    assert (other.status_code, fault["pointer"], fault["code"]) == (422, "/contacts", "has-contacts")
+    assert "<h2>Contacts</h2>" in client.get("/trees/bouncy").text
+
+
+@pytest.mark.parametrize(
+    ("contact", "more", "pointer", "code"),
+    [
+        ({"point": "b.bdy"}, {}, "/contacts/0/point", "unknown-frame"),
+        ({"restitution": 2}, {}, "/contacts/0/restitution", "less-than-equal"),
+        ({"restitution": "e"}, {}, "/contacts/0", "number-expected"),
+        ({"force": 2}, {}, "/contacts/0/force", "extra-forbidden"),
+        ({"point": "b.base"}, {}, "/contacts/0", "immovable"),
+        ({"when": "b.z"}, {}, "/contacts/0/when", "not-a-comparison"),
+        ({"rest_velocity": {"value": 1, "unit": "m"}}, {}, "/contacts/0/rest_velocity", "unit-mismatch"),
+        ({}, {"ignored": {"b.z": 1}}, "/ignored", "not-supported"),
+        (
+            {},
+            {"velocity_constraints": [{"type": "linear", "name": "c", "expression": "b.z'"}]},
+            "/contacts",
+            "not-supported",
+        ),
+    ],
+)
+def test_contacts_that_are_none_are_refused_with_the_tree(
+    client: TestClient, contact: dict[str, Any], more: dict[str, Any], pointer: str, code: str
+) -> None:
+    found = stored(client, FLOOR | contact, **more)
+    assert found.status_code == 422
+    fault = found.json()["errors"][0]
+    assert (fault["pointer"], fault["code"]) == (pointer, code), fault
+
+
+@pytest.mark.parametrize("path", ["publish", "linearisations", "ensembles", "forward_dynamics", "export?target=fmu"])
+def test_what_would_pass_through_the_floor_says_so(client: TestClient, path: str) -> None:
+    assert stored(client, FLOOR).status_code == 201
+    address = f"/v1/trees/bouncy/{path}"
+    body: dict[str, Any] = {"q": [1], "span": [0, 1]} if path == "ensembles" else {"q": [1]}
+    is_read = path in ("forward_dynamics", "export?target=fmu")
+    found = client.get(address) if is_read else client.post(address, json={} if path == "publish" else body)
+    assert found.status_code == 422
+    fault = found.json()["errors"][0]
+    assert (fault["code"], "'floor'" in fault["message"]) == ("has-contacts", True), fault
+
+
 @pytest.mark.parametrize(
     ("name", "more", "pointer", "code"),
     [

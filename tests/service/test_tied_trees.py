@@ -18,7 +18,7 @@ from service.settings import Limits
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.errors import InvalidInput
 from substructures.quantities.sources import Sources
-from substructures.tree.document import TAKES_CONSTRAINTS
+from substructures.tree.given.ties import TAKES_CONSTRAINTS
 
 from .job_outcomes import outcomes
 from .jobs_library import MemoryLibrary

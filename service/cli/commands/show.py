@@ -20,7 +20,7 @@ from substructures.client.steps import step
 #: formulas of trees whose first index is that of a frame
 OF_FRAMES = ("position", "rotation", "U", "Omega")
 #: what trees have lists of, told by name
-LISTED = ("closures", "loads", "velocity_constraints")
+LISTED = ("closures", "loads", "velocity_constraints", "contacts")
 
 
 @with_server

@@ -18,6 +18,7 @@ from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints
+from substructures.analysis.motion.contacts.rows import check_contacts
 from substructures.documents import read_json
 from substructures.documents.to_json import Written
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
@@ -150,6 +151,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     progress(0.1)
     model = couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
     check_constraints(model)
+    check_contacts(model)
     progress(0.9)
     program = _packed.once(model.program.digest, lambda: pack(model.program))
     files = {"program": program, "spec": spec.canonical(), "summary": tree_summary(spec, model)}

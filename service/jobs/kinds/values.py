@@ -22,10 +22,10 @@ def without_formulas(summary: Mapping[str, Any]) -> Model:
     """The model of a stored summary with an empty program, for checks of names, units and lengths."""
     names = tuple(summary["coordinates"]), summary["joints"], tuple(summary["frames"])
     closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-    tied = tuple(summary.get("velocity_constraints", ()))
+    tied: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in ("velocity_constraints", "contacts")}
     empty = Program((), (), {})
     inputs = summary.get("inputs", {})
-    return Model(empty, *names, summary["parameters"], {}, closures, inputs, velocity_constraints=tied)
+    return Model(empty, *names, summary["parameters"], {}, closures, inputs, **tied)
 
 
 def check_states(summary: Mapping[str, Any], request: EvaluationRequest) -> States:

@@ -15,7 +15,7 @@ from service.models.source import Source
 from substructures.errors import InvalidDocument, InvalidInput, TooLarge
 from substructures.expr.program import Program
 from substructures.late import Table
-from substructures.tree.document import require_unconstrained
+from substructures.tree.given.ties import require_untied
 
 if TYPE_CHECKING:
     from substructures.analysis.identification.base_parameters import BaseParameters
@@ -45,7 +45,7 @@ def made(source: Source, name: str, options: Options) -> Made:
 
     Raises InvalidDocument (with pointers into the query), also for an option that the quantity does not have; TooLarge.
     """
-    require_unconstrained(source.model.constraint_names, name)
+    require_untied(source.model, name)
     quantity = _QUANTITIES[name]
     given = {key: texts for key, texts in options.items() if texts}
     check_options(name, given, quantity.options)

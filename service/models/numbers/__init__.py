@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from substructures.late import Table
-from substructures.tree.document import require_unconstrained
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 
 if TYPE_CHECKING:  # what an analysis needs is imported when it is first asked for
@@ -38,7 +38,7 @@ _MODULES = {
 
 def analysis_of(name: str, model: Model) -> Analysis:
     """The analysis of a model. Raises InvalidDocument where it would ignore velocity constraints of the tree."""
-    require_unconstrained(model.constraint_names, name)
+    require_untied(model, name)
     return ANALYSES[name]
 
 

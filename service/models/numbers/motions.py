@@ -39,8 +39,9 @@ def _simulation(source: Source, request: SpanRequest, report: ProgressReport) ->
     by_load = _powers(source, request)
     if by_load is not None:
         numbers += len(by_load.rows) + n
-    if isinstance(request, SimulationRequest) and request.contacts:
-        numbers += 4 * len(request.contacts) + n
+    touching = len(request.contacts) if isinstance(request, SimulationRequest) else 0
+    if touching or model.contacts:
+        numbers += 4 * (touching + len(model.contacts)) + n
     check_size(source, len(request.output_times().grid()), numbers)
     rest = without(given, "q", "reactions", "powers")
     if isinstance(request, SimulationRequest) and request.friction == "loaded":

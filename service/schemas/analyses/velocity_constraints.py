@@ -11,7 +11,7 @@ from service.schemas.parts import RequestPart
 from substructures.analysis.equations.nonholonomic import velocity_constraints as science
 from substructures.documents import DocumentPart
 from substructures.documents.fields import BY_TYPE, Name, PlainNumber
-from substructures.tree.document import KnifeEdgeConstraint, LinearConstraint, RollingConstraint
+from substructures.tree.given.ties import KnifeEdgeConstraint, LinearConstraint, RollingConstraint
 
 
 class Linear(LinearConstraint, RequestPart):

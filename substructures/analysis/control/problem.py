@@ -26,7 +26,7 @@ from substructures.expr.program import Symbol
 from substructures.loads.scope import Scope
 from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.states import read_states
-from substructures.tree.document import require_unconstrained
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
 
 MAX_INTERVALS = 10_000
@@ -101,7 +101,7 @@ class ControlProblem:
 
 def require_solvable(model: Model, problem: ControlProblem) -> None:
     """Raises InvalidInput for names that the model does not have, too many steps, and closures."""
-    require_unconstrained(model.constraint_names, "optimal-controls")
+    require_untied(model, "optimal-controls")
     require_open(model.closures, LINEAR)
     known, controls = inputs_of(model), problem.controls
     faults = [

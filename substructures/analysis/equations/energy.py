@@ -16,6 +16,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
 from substructures.expr.walk import reachable, transfer
+from substructures.tree.given.ties import names_of
 from substructures.tree.model import Model
 
 #: nearer to a corner of a force than this [rad, m] nothing is told
@@ -141,8 +142,8 @@ def _culprits(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> str:
 def constraints_in(model: Model) -> str:
     """All closures and velocity constraints by name, as part of a sentence."""
     closures = "the closures " + ", ".join(f"'{rows.name}'" for rows in model.closures)
-    others = "the velocity constraints " + ", ".join(f"'{name}'" for name in model.constraint_names)
-    return " and ".join([closures] * bool(model.closures) + [others] * bool(model.constraint_names))
+    others = "the velocity constraints " + ", ".join(f"'{name}'" for name in names_of(model.velocity_constraints))
+    return " and ".join([closures] * bool(model.closures) + [others] * bool(model.velocity_constraints))
 
 
 def depends_on(exprs: Sequence[Expr], names: Iterable[str]) -> bool:

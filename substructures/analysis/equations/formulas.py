@@ -15,7 +15,7 @@ from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.document import require_unconstrained
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
 
 #: what takes closures
@@ -26,7 +26,7 @@ def require_moving(model: Model, what: str = "linearisations") -> None:
     """Raises InvalidDocument (``no-coordinates``) for a model in which nothing moves, and
     (``has-velocity-constraints``) where ``what`` would ignore those of the tree.
     """
-    require_unconstrained(model.constraint_names, what)
+    require_untied(model, what)
     if not model.dof:
         why = "all coordinates are given" if model.given else "the tree has no joint"
         raise InvalidDocument.at("", "no-coordinates", f"{why}: there is nothing that moves")

@@ -154,7 +154,7 @@ def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Ar
 
 def tree_conditions(problem: MotionProblem) -> Conditions:
     """Check a problem against its model, which has no closures. Raises InvalidInput and MissingValue."""
-    require_tree(problem.model)
+    require_tree(problem.model, "TreeMotion")
     return read_conditions(problem.model, problem.start, problem.span, DYNAMICS, problem.events, problem.series)
 
 

@@ -16,7 +16,7 @@ from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise import linearise
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument
-from substructures.tree.document import require_unconstrained
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
 
 #: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
@@ -37,7 +37,7 @@ def linear_system(
     model: Model, q: StateArray, point: Mapping[str, Any], outputs: Mapping[str, NumberOrExpression]
 ) -> Linearisation:
     """A, B, C, D about one state, with inputs that act. Raises as :func:`linearise`, and InvalidArgument."""
-    require_unconstrained(model.constraint_names, "linear systems")
+    require_untied(model, "linear systems")
     require_open(model.closures, "linearise gives A, B, C, D in independent coordinates")
     if why := unsteady(model, point.get("inputs") or {}):
         raise InvalidArgument.at("/q", "not-steady", f"{why}: linearise gives A, B, C, D at any time")

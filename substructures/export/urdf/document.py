@@ -84,6 +84,8 @@ def _not_of_trees(spec: TreeSpec) -> Iterator[str]:
         yield f"the given motion of '{name}'"
     for name in spec.ignored:
         yield f"the given momentum of '{name}'"
+    for contact in spec.contacts:
+        yield f"the contact '{contact.name}'"
     for each in spec.velocity_constraints:
         yield f"the velocity constraint '{each.name}' ({each.type})"
 

@@ -83,6 +83,7 @@ def _momenta(assembly: Assembly, names: Sequence[str]) -> dict[str, Expr]:
         message = f"there is no coordinate '{name}'{among(name, names)}"
         scope.fault(f"/ignored/{escape(name)}", "unknown-coordinate", message)
     others = {"driven": spec.driven, "closures": assembly.cuts, "velocity_constraints": spec.velocity_constraints}
+    others |= {"contacts": spec.contacts}
     for field, given in others.items():
         if spec.ignored and given:
             message = f"'ignored' and '{field}' do not go together: leave one of them out"

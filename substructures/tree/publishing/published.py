@@ -17,7 +17,8 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
-from substructures.tree.document import Instance, TreeSpec, require_unconstrained, require_ungiven
+from substructures.tree.document import Instance, TreeSpec, require_ungiven
+from substructures.tree.given.ties import require_untied
 from substructures.tree.publishing.published_loads import closure_of_part, frames_of_part, load_of_part
 from substructures.tree.publishing.published_names import PartNames, part_names
 
@@ -95,7 +96,7 @@ def _require_tree(spec: TreeSpec) -> None:
     """Raises InvalidDocument for what no part can be."""
     if not spec.instances:
         raise InvalidDocument.at("", "empty-tree", "a tree without instances is no part")
-    require_unconstrained((each.name for each in spec.velocity_constraints), "publish")
+    require_untied(spec, "publish")
     require_ungiven(spec, "publish the tree without 'driven', and drive the tree that it comes into")
 
 

@@ -36,6 +36,7 @@ from substructures.expr.replay import replay
 from substructures.mechanics.linear3 import Matrix, Vector, add, apply, cross, dot, transpose
 from substructures.part.frames import axis_rotation
 from substructures.quantities.numbers.workspace import Workspace
+from substructures.tree.given.ties import names_of
 from substructures.tree.model import Model
 
 SHAPES = ("disc", "sphere")
@@ -102,7 +103,7 @@ def constraints_of(model: Model, given: Sequence[Constraint] = ()) -> tuple[Cons
         own += [Closed(rows.name) for rows in model.closures]
     if not own or tuple(given) in ((), tuple(own)):
         return tuple(own or given)
-    names = listed(model.constraint_names)
+    names = listed(names_of(model.velocity_constraints))
     message = f"the tree has velocity constraints of its own ({names}): leave these out, or make them part of the tree"
     raise InvalidArgument.at("/constraints", "has-velocity-constraints", message)
 

@@ -17,8 +17,8 @@ from collections.abc import Mapping, Sequence
 
 from substructures.analysis.arguments import require_read
 from substructures.analysis.equations.expressions import vector
-from substructures.analysis.motion.problems.contacts import WORLD, Contact
-from substructures.errors import among
+from substructures.analysis.motion.problems.contacts import WORLD, Contact, contacts_of
+from substructures.errors import InvalidDocument, among
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Program, array
@@ -71,6 +71,16 @@ def contact_rows(model: Model, contacts: Sequence[Contact]) -> Program:
         WHEN: vector(whens),
     }
     return f.program(outputs)
+
+
+def check_contacts(model: Model) -> None:
+    """Raises InvalidInput (``/contacts``, ``/contacts/i/...``) for contacts of a tree that are none."""
+    if model.contacts:
+        for field in ("closures", "velocity_constraints"):
+            if getattr(model, field):
+                message = f"'contacts' and '{field}' do not go together: leave one of them out"
+                raise InvalidDocument.at("/contacts", "not-supported", message)
+        contact_rows(model, contacts_of(model))
 
 
 def _rows(f: Workspace, kinematics: Mapping[str, Entries], contact: Contact) -> tuple[Expr, list[list[Expr]]]:

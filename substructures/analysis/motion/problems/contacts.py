@@ -2,15 +2,19 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Any, Literal
 
 from substructures.analysis.arguments import in_range, one_of, positive
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, InvalidInput, listed
+from substructures.tree.given.ties import names_of
+from substructures.tree.model import Model
 
 #: rows across the normal
 TANGENTS = {"point_plane": 2, "point_line": 1}
 WORLD = "world"
+NUMBERS = ("restitution", "friction", "rest_velocity")
 #: largest coefficient of friction
 ROUGHEST = 1e3
 
@@ -43,3 +47,27 @@ class Contact:
         if self.point == self.plane:
             message = f"'{self.point}' cannot touch itself: name a frame of another body, or '{WORLD}'"
             raise InvalidArgument.at("/plane", "same-frame", message)
+
+
+def contacts_of(model: Model, given: Sequence[Contact] = ()) -> tuple[Contact, ...]:
+    """The contacts of a motion: those of the tree, or those that are ``given``.
+
+    Raises InvalidArgument (``/contacts/i/...``) for contacts of the tree that are none, and (``has-contacts``) for
+    others beside them.
+    """
+    own = tuple(_of_tree(each, f"/contacts/{i}") for i, each in enumerate(model.contacts))
+    if not own or tuple(given) in ((), own):
+        return own or tuple(given)
+    message = f"the tree has the contacts {listed(names_of(model.contacts))}: leave 'contacts' out"
+    raise InvalidArgument.at("/contacts", "has-contacts", message)
+
+
+def _of_tree(plain: Mapping[str, Any], pointer: str) -> Contact:
+    try:
+        fields: dict[str, Any] = {name: float(x) if name in NUMBERS else x for name, x in plain.items()}
+        return Contact(**fields)
+    except InvalidInput as error:
+        raise error.moved(lambda place: f"{pointer}{place}") from None
+    except ValueError:
+        message = "restitution, friction and rest_velocity of a contact are numbers"
+        raise InvalidArgument.at(pointer, "number-expected", message) from None
