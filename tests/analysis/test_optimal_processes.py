@@ -76,6 +76,50 @@ def test_bryson_and_denham() -> None:
     assert found.is_right
 
 
+@cache
+def bead() -> Model:
+    """A mass m in a vertical plane, on a smooth wire: its force u |q'| across the path turns the velocity by u/m."""
+    slide: Plain = {"type": "prismatic", "placement": {"position": [0, 0, 0]}}
+    bodies = [
+        {"name": "a", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
+        {"name": "b", "parent": "a", "joint": {**slide, "coordinate": "z", "axis": [0, 0, 1]}, "mass": "m"},
+    ]
+    loads = [{"type": "joint", "coordinate": q, "force": force} for q, force in (("x", "-u*z'"), ("z", "u*x'"))]
+    parameters = {"m": {"value": 2, "unit": "kg"}}
+    return model_of({"name": "x", "parameters": parameters, "inputs": {"u": {"unit": "kg/s"}}, "bodies": bodies,
+                     "loads": loads}, (0, 0, "-9.81"))  # fmt: skip
+
+
+@pytest.mark.parametrize("guess", [0.0, 4.0])
+def test_brachistochrone(guess: float) -> None:
+    """From one point of a cycloid to another its arc is the fastest way: x = R (a - sin a), z = R (cos a - 1) with a' =
+    w = sqrt(g/R). The direction turns by w/2, gravity turns it by -w/2, and so u = m w all along (Bernoulli, 1697).
+    """
+    R, (first, last) = 0.8, (0.6, 2.4)  # noqa: N806 -- symbol of the notation
+    w = np.sqrt(9.81 / R)
+
+    def at(a: float) -> tuple[list[float], list[float]]:
+        """Place and velocity."""
+        return [R * (a - np.sin(a)), R * (np.cos(a) - 1)], [R * w * (1 - np.cos(a)), -R * w * np.sin(a)]
+
+    (q, qd), (end, speed) = at(first), at(last)
+    wire: Plain = {"controls": ["x.u"], "q": q, "qd": qd, "end": End(end), "bounds": {"x.u": (-40, 40)}}
+    wire |= {
+        "horizon": 0.7,
+        "free_horizon": (0.1, 3),
+        "guess": {"x.u": guess},
+        "tolerance": 1e-13,
+        "steps": 20,
+        "intervals": 3,
+    }
+    found = optimal_control(bead(), **control_arguments(**FAST | wire))
+    assert found.status == "optimal"
+    assert found.is_right
+    assert found.horizon == pytest.approx((last - first) / w, rel=1e-8)
+    np.testing.assert_allclose(found.controls, 2 * w, rtol=1e-4)
+    np.testing.assert_allclose(found.trajectory.qd[-1], speed, rtol=1e-4)
+
+
 def test_parameters_alone() -> None:
     """The mass that a force of 3 N takes to 1 m in a second: m = F T^2 / (2 d)."""
     found = solved(
