@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,8 +13,10 @@ from scipy.special import ellipk
 from substructures import couple, derive
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits import flow as flows
+from substructures.analysis.orbits import periodic
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+from substructures.analysis.orbits.quadrature import period_by_quadrature
 from substructures.analysis.orbits.sections import poincare_section
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
@@ -66,6 +69,7 @@ def test_periods_of_a_pendulum(pendulum: Model) -> None:
         assert (orbit.status, orbit.stability, orbit.is_right) == ("finished", "neutral", True), orbit
         assert orbit.period == pytest.approx(expected, rel=1e-9)
         np.testing.assert_allclose(orbit.multipliers, 1, atol=1e-3)
+        assert "quadrature" in [check.name for check in orbit.checks]
 
 
 def test_a_whole_turn_of_a_pendulum(pendulum: Model) -> None:
@@ -76,6 +80,34 @@ def test_a_whole_turn_of_a_pendulum(pendulum: Model) -> None:
     k = 2 * w / rate
     assert orbit.period == pytest.approx(2 * k / w * ellipk(k**2), rel=1e-9)
     assert orbit.is_right
+    assert "quadrature" in [check.name for check in orbit.checks]
+
+
+def test_periods_of_duffings_oscillator(duffing: Model) -> None:
+    """Without damping x = a cn about both wells, T = 4 K(k^2)/sqrt(a^2 - 1) with k^2 = a^2/(2 (a^2 - 1)), and a dn in
+    one, T = 2 sqrt(2) K(k^2)/a with k^2 = 2 - 2/a^2 (I. Kovacic and M. J. Brennan, The Duffing Equation, 2011).
+    """
+    for a, guess in ((1.8, 4.5), (3.0, 2.7), (1.3, 4.7), (1.05, 4.45)):
+        orbit = periodic_orbits(duffing, [a], Shooting(guess, hold=("p.x", "p.x'")), parameters={"p.d": 0}).found[0]
+        about_both, in_one = (a**2 / (2 * (a**2 - 1)), 4 / np.sqrt(a**2 - 1)), (2 - 2 / a**2, 2 * np.sqrt(2) / a)
+        m, factor = about_both if np.sqrt(2) < a else in_one
+        assert orbit.period == pytest.approx(factor * ellipk(m), rel=1e-9)
+        assert orbit.is_right
+        by_energy = period_by_quadrature(duffing, {"p.d": 0, "p.u": 1, "p.w": 1, "t": 0}, orbit.trajectory)
+        assert by_energy == pytest.approx(factor * ellipk(m), rel=1e-12)
+
+
+def test_a_wrong_period_is_seen(pendulum: Model, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By the quadrature; a period of several swings is none."""
+    shooting = Shooting(2.1, hold=("p.q1'", "p.q1"))
+    (once,) = periodic_orbits(pendulum, [1.0], shooting).found
+    (twice,) = periodic_orbits(pendulum, [1.0], replace(shooting, period=2 * once.period)).found
+    assert twice.period == pytest.approx(2 * once.period, rel=1e-9)
+    assert twice.is_right
+    monkeypatch.setattr(periodic, "period_by_quadrature", lambda *_: once.period * (1 + 1e-6))
+    (wrong,) = periodic_orbits(pendulum, [1.0], shooting).found
+    assert wrong.is_right is False
+    assert [check.name for check in wrong.checks if not check.holds] == ["quadrature"]
 
 
 def test_forced_and_damped(duffing: Model) -> None:

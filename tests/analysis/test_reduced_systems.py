@@ -10,6 +10,7 @@ from simulated import simulated
 
 from substructures import Model, couple, derive, evaluate
 from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.steady_motions import steady_motions
@@ -132,6 +133,19 @@ def test_reduced_motions_are_those_of_all_coordinates(name: str) -> None:
     np.testing.assert_allclose(reduced.q, every.q[:, rest], atol=2e-8)
     np.testing.assert_allclose(reduced.qd, every.qd[:, rest], atol=2e-7)
     assert reduced.checks[0].name == "energy"
+
+
+@pytest.mark.parametrize("name", ["pendulum", "top", "gimbals"])
+def test_nutations_come_back_after_what_their_energy_says(name: str) -> None:
+    """Of one coordinate that is left: shooting beside the integral over the amended potential."""
+    definition, ignored, q, _ = CASES[name]
+    m = model(definition, ignored)
+    moved = simulated(m, q=q, span=(0, 3), count=3001)
+    turned = np.flatnonzero((moved.qd[:-1, 0] * moved.qd[1:, 0] < 0) & (moved.t[1:] > 1e-3))
+    shooting = Shooting(float(2 * moved.t[turned[0]]), hold=(m.coordinates[0], f"{m.coordinates[0]}'"))
+    (orbit,) = periodic_orbits(m, q, shooting).found
+    assert orbit.is_right, orbit.message
+    assert "quadrature" in [check.name for check in orbit.checks]
 
 
 def test_equilibria_of_a_governor_are_its_steady_motions() -> None:

@@ -24,6 +24,7 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.orbits.hybrid import HybridFlow
 from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stability
+from substructures.analysis.orbits.quadrature import period_by_quadrature
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 from substructures.documents import escape
@@ -223,7 +224,21 @@ class _Search:
         gap = np.array([np.abs(self._differences(x, period) - monodromy).max()])
         scale = max(1.0, float(np.abs(monodromy).max())) ** 2
         found.append(Check.of(("return-map", "accurate", reason, ""), gap, last, scale, AGREE))
+        whole = self._by_quadrature(motion)
+        if whole is not None:
+            reason = "the period is that of the closed integral of sqrt(g/(2 (E - V))) dq, or a whole number of them"
+            gap = np.array([period / whole - max(1, round(period / whole))])
+            found.append(Check.of(("quadrature", "accurate", reason, "1"), gap, last, 1.0, RETURN))
         return found
+
+    def _by_quadrature(self, motion: Trajectory) -> float | None:
+        """The period of one coordinate at a constant energy, another way; None of others, and where it is open."""
+        is_kept = any((check.name, check.rule) == ("energy", "constant") for check in motion.checks)
+        if self.flow.n != 1 or self.flow.is_forced or self.problem.events or not is_kept:
+            return None
+        inputs = self.flow.conditions.inputs_at(motion.t[:1], np.column_stack([motion.q, motion.qd])[:1])
+        values = {**self.flow.conditions.values, **{name: float(x[0]) for name, x in inputs.items()}, "t": 0.0}
+        return period_by_quadrature(self.problem.model, values, motion, float(self.turned[0]))
 
     def _differences(self, x: Array, period: float) -> Array:
         """dx(T)/dx by central differences."""
