@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from simulated import simulated
 
-from substructures import Model, couple, derive, evaluate
+from substructures import InvalidDocument, Model, couple, derive, evaluate
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
 from substructures.analysis.stability.equilibria import equilibria
@@ -163,6 +163,26 @@ def test_equilibria_of_a_governor_are_its_steady_motions() -> None:
         assert found.modes is not None
         ours, theirs = ([mode.eigenvalue for mode in each] for each in (rest.at.modes, found.modes))
         np.testing.assert_allclose(sorted(ours, key=_order), sorted(theirs, key=_order), rtol=1e-7, atol=1e-5)
+
+
+def test_bifurcations_over_the_momentum_are_those_of_steady_motions() -> None:
+    """Folds and a pitchfork of a governor, over a parameter of the reduced system, or over the momentum."""
+    here, whole = model("flyball-governor", {"x.turn": "h"}, {"h": {"value": 0.3}}), model("flyball-governor", {})
+    options: Plain = {"between": (0.05, 0.4), "steps": 20, "count": 8}
+    ours = steady_motions(here, rates={}, vary="h", starts=[[0.3, 0.3, 0.01]], **options)
+    theirs = steady_motions(whole, momenta={}, vary="x.turn", starts=[[0, 0.3, 0.3, 0.01]], **options)
+    assert sorted(each.kind for each in ours.bifurcations) == ["fold", "fold", "fold", "pitchfork"]
+    for one, other in zip(ours.bifurcations, theirs.bifurcations, strict=True):
+        assert one.kind == other.kind
+        assert one.at.value == pytest.approx(other.at.value, rel=1e-7)
+        np.testing.assert_allclose(one.at.q, other.at.q[1:], atol=1e-5)
+    assert [x.verdict for x in ours.found] == [x.verdict for x in theirs.found]
+
+
+def test_another_cyclic_coordinate_is_refused() -> None:
+    with pytest.raises(InvalidDocument) as caught:
+        steady_motions(model("gimbal-gyroscope", {"x.spin": "0.05"}), rates={"x.precession": 1.0})
+    assert caught.value.faults[0].code == "has-ignored"
 
 
 def _order(z: complex) -> tuple[float, float]:

@@ -78,6 +78,9 @@ def test_it_moves_and_rests(governor: TestClient) -> None:
     scan = {"parameter": "h", "values": [0, 1, 2], "q": [0.3]}
     loci = governor.post("/v1/trees/governor/root-loci", json=scan)
     assert loci.status_code == 200, loci.text
+    body = {"rates": {}, "vary": "h", "between": [0.5, 2], "steps": 5, "starts": [[0.4]], "count": 1}
+    families = governor.post("/v1/trees/governor/steady-motions", json=body).json()
+    assert {x["value"] for x in families["found"]} >= {0.5, 2}
     wrong = governor.post("/v1/trees/governor/simulations", json={"q": {"g.r": 1, "g.turn": 0}, "span": [0, 1]}).json()
     told = "the momentum of 'g.turn' is given ('ignored'): leave it out"
     assert (wrong["errors"][0]["pointer"], wrong["errors"][0]["message"]) == ("/q/g.turn", told)
@@ -87,7 +90,6 @@ def test_it_moves_and_rests(governor: TestClient) -> None:
     ("path", "body"),
     [
         ("publish", {}),
-        ("steady-motions", {}),
         ("curvatures", {"q": [0.1]}),
         ("evaluations", {"quantities": ["reactions"], "q": [0.1]}),
         ("evaluations", {"quantities": ["regressor"], "q": [0.1], "qdd": [0]}),

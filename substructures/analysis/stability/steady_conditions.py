@@ -124,7 +124,7 @@ def _moving(model: Model, conditions: RestConditions, given: Mapping[str, str], 
     if faults:
         raise InvalidArgument(faults)
     moving = sorted(model.coordinates.index(name) for name in (given if held == "rates" else cyclic))
-    if not moving:
+    if not moving and not model.ignored:
         raise InvalidArgument.at(
             f"/{field}", "no-cyclic-coordinate", "there is no coordinate that moves at a constant rate"
         )

@@ -38,12 +38,12 @@ from substructures.analysis.stability.steady_conditions import (
 )
 from substructures.analysis.stability.steady_families import STATIC, Kind, families
 from substructures.analysis.stability.steady_search import SteadySearch
-from substructures.analysis.stability.vibrations import ROUTH, Mode, Stability, modes, normed, stability
+from substructures.analysis.stability.vibrations import AT_RATES, ROUTH, Mode, Stability, modes, normed, stability
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.states import with_input_defaults
-from substructures.tree.document import require_ungiven
+from substructures.tree.document import require_undriven, require_unignored
 from substructures.tree.model import Model
 
 #: of a range
@@ -182,7 +182,8 @@ def steady_motions(
     values: families of steady motions, followed with ``steps`` or more points from those at both ends, and where they
     bifurcate: :mod:`substructures.analysis.stability.steady_families`.
 
-    With velocity constraints of the tree all coordinates keep still but those on which nothing depends (the place on a
+    In reduced systems (``ignored``) all others keep still: ``rates`` {}, ``vary`` a parameter of the momenta. With
+    velocity constraints of the tree all coordinates keep still but those on which nothing depends (the place on a
     plane, headings, angles of wheels), of which ``rates`` are given, or of quasi-velocities: others follow. Where ways
     are left free the motion near to each of ``starts`` and to zero is taken. Quasi-velocities that are constant then
     are given by ``velocities`` or ``independent`` (see quasi_velocity_equations), where those of coordinates that are
@@ -196,7 +197,7 @@ def steady_motions(
         around = SearchRange(starts, count, reach, seed)
         return _constrained(ConstrainedSearch(model, around, conditions, rates or {}, velocities, independent))
     require_no_velocities(velocities, independent)
-    require_ungiven(model, "take equilibria, which are relative to what is given, or the tree without it")
+    require_undriven(model.driven, "take the tree without it, or equilibria, which are relative to the drives")
     one_of(held, "held", ("momenta", "rates"))
     whole(steps, "steps", *STEPS)
     ends = ends_of(model, vary, between)
@@ -205,6 +206,8 @@ def steady_motions(
     asked = SteadyConditions(model, given, field, held, *constant, vary)
     # a coordinate may be free at one end only, where what acts on it is 0
     moving = asked.moving(ends[0] + WITHIN * (ends[-1] - ends[0]))
+    if moving:
+        require_unignored(model.ignored)
     within = SearchRange(starts, count, reach, seed)
     searches = [asked.search(moving, within, value) for value in ends]
     found = [search.places(search.starts(), list(range(search.n))) for search in searches]
@@ -286,8 +289,7 @@ def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...],
     kept = f"at constant {held}"
     first = stability(found, D, K, has_even_dissipation(model, values, driven, zero))
     if first.verdict == "stable" and found:
-        at_rates = f"V - 1/2 w g w has a strict minimum {kept} (Routh, Salvadori)"
-        return Stability("stable", ROUTH if held == "momenta" else at_rates)
+        return Stability("stable", ROUTH if held == "momenta" else AT_RATES)
     if first.verdict != "undecided":
         return Stability(first.verdict, f"linearised {kept}: {first.reason}" if found else first.reason)
     if held == "momenta" and not model.closures and not any(search.conditions.inputs.values()):

@@ -20,9 +20,10 @@ Verdict = Literal["asymptotically stable", "stable", "unstable", "undecided"]
 #: real parts of this size, relative to the largest eigenvalue, cannot be told from zero (double eigenvalues)
 NEUTRAL = 1e-7
 SYMMETRIC = 1e-12
-#: why what does not depend on the time is stable, and why at constant momenta
+#: why what does not depend on the time is stable, and why at constant momenta and rates
 DIRICHLET = "the potential energy has a strict minimum (Lagrange, Dirichlet)"
 ROUTH = "the amended potential V + 1/2 p g^-1 p has a strict minimum at constant momenta (Routh, Salvadori)"
+AT_RATES = "V - 1/2 w g w has a strict minimum at constant rates (Routh, Salvadori)"
 #: rounding errors of an eigenvalue problem, and relative differences of eigenvalues that count as none
 ROUNDED, SAME = 64 * float(np.finfo(float).eps), 1e-9
 
