@@ -11,7 +11,12 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
+from service.jobs.kinds.sweep import SWEEP, rows_of
 from service.messages.negotiation import MEDIA_TYPES
+from substructures.documents import read_json
+
+from .job_outcomes import joined, outcomes
+from .jobs_library import MemoryLibrary
 
 #: a bead on a rod of a table that turns freely, on a spring
 TREE: dict[str, Any] = {
@@ -129,3 +134,28 @@ def test_it_is_an_fmu(governor: TestClient, tmp_path: Path) -> None:
         "/v1/trees/governor/simulations", json={"q": [0.5], "span": [0, 1], "times": found["time"].tolist()}
     ).json()
     np.testing.assert_allclose(found["g.r"], np.array(ours["q"])[:, 0], atol=1e-6)
+
+
+def test_jobs_take_it() -> None:
+    """Assembled, evaluated, simulated, verified, exported and swept as other trees are."""
+    (instance,) = TREE["instances"]
+    stored = {**TREE, "instances": [{"name": "g", "substructure": "table"}]}
+    library = MemoryLibrary([instance["definition"]], [stored])
+    (assembled,) = outcomes(library, "assemble", {"items": [stored]})
+    assert read_json(assembled.files["summary"])["ignored"] == ["g.turn"]
+    asked = {"quantities": ["metric", "ignored_rates"], "q": [[0.1], [0.4]]}
+    made = outcomes(library, "evaluate", {"items": [{"tree": "governor", "request": asked}]})
+    np.testing.assert_allclose(joined(made, "ignored_rates"), [[2 / 0.21], [2 / 0.36]])
+    simulation = {"analysis": "simulations", "request": {"q": [0.4], "span": [0, 1]}}
+    given: list[tuple[str, dict[str, Any]]] = [("verify", {}), ("analyse", simulation)]
+    given += [("export", {"target": target}) for target in ("c", "fmu")]
+    for kind, request in given:
+        for outcome in outcomes(library, kind, {"items": [{"tree": "governor", **request}]}):
+            assert outcome.problem is None, (kind, outcome.problem)
+    column = {"quantity": "bias", "of": "g.r", "over": {"q": [0.4]}, "take": "value"}
+    choices = {"g": ["table", {"substructure": "table", "at": "world"}]}
+    swept = {"template": stored, "choices": choices, "samples": {"of": {"h": {"values": [1, 2]}}}, "proof": 10}
+    (item,) = library.items("sweep", {**swept, "columns": {"bias": column}})
+    found = rows_of(SWEEP.run(item, library.blobs, lambda _: None).files["rows"])["bias"]
+    # -p^2 r/(J + r^2)^2
+    np.testing.assert_allclose(found, np.array([-1, -4, -1, -4]) * 0.4 / 0.36**2)
