@@ -19,6 +19,7 @@ from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import WORLD, ReachColumn
 from substructures.sweeps.grouped import alike, inside
 from substructures.sweeps.shapes import Shape
+from substructures.tree.document import require_unconstrained
 from substructures.tree.driven import PRIMES
 from substructures.tree.model import Model, require_open
 
@@ -65,6 +66,7 @@ class _Search:
     def __post_init__(self) -> None:
         model = self.shape.model
         require_open(model.closures, "sweep other columns")
+        require_unconstrained(model.constraint_names, "columns of reach")
         self.ends = _frame(model, self.column.of, "of"), _frame(model, self.column.about, "about")
         self.matters, self.is_simple = np.ones((2, model.dof, self.rows), dtype=np.bool_)
         judge = self.shape.sources.judge

@@ -239,6 +239,7 @@ def require_undriven(driven: Sequence[str], instead: str) -> None:
 #: what takes the velocity constraints of a tree
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
+    *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
 )
 
 

@@ -107,6 +107,11 @@ def constraints_of(model: Model, given: Sequence[Constraint] = ()) -> tuple[Cons
     raise InvalidArgument.at("/constraints", "has-velocity-constraints", message)
 
 
+def closing(model: Model) -> tuple[Constraint, ...]:
+    """The velocity constraints of a tree with all its closures, or these alone."""
+    return constraints_of(model) or tuple(Closed(rows.name) for rows in model.closures)
+
+
 @dataclass
 class VelocityRows:
     """Rows of B with their names (constraint, or constraint.row), b of those where it is not zero, and what they keep
