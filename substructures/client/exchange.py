@@ -34,6 +34,7 @@ class ExchangeCaller(JobCaller):
         precision: str = "double",
         stages: bool = False,
         standard: str = "c99",
+        independent: Sequence[str] = (),
     ) -> httpx2.Response:
         """The answer with the files of a target: of ``kind`` trees or substructures."""
         wanted = {
@@ -47,6 +48,7 @@ class ExchangeCaller(JobCaller):
             "precision": precision,
             "stages": stages,
             "standard": standard,
+            "independent": ",".join(independent),
         }
         return self.request("GET", f"/v1/{step(kind)}/{step(ref)}/export" + query(wanted))
 

@@ -240,6 +240,7 @@ def require_undriven(driven: Sequence[str], instead: str) -> None:
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
+    "velocity_dynamics",
 )
 
 

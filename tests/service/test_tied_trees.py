@@ -122,6 +122,23 @@ def test_formulas_of_what_perturbs_a_motion(tied: TestClient) -> None:
     assert tied.get("/v1/trees/sleigh/parameter_sensitivity?parameters=s.a").status_code == 200
 
 
+def test_dynamics_in_independent_velocities(tied: TestClient) -> None:
+    """As formulas, in code, and as an FMU; where they are singular is said."""
+    found = tied.get("/v1/trees/sleigh/velocity_dynamics?independent=s.f,s.x")
+    assert found.status_code == 200, found.text
+    assert found.json()["velocities"] == ["s.x'", "s.f'"]
+    assert {*found.json()["outputs"]} == {"rates", "acceleration", "second", "power"}
+    (warning,) = found.json()["warnings"]
+    assert (warning["code"], "cos(f) is zero" in warning["message"]) == ("singular-velocities", True)
+    text = tied.get("/v1/trees/sleigh/velocity_dynamics?format=text&independent=s.x,s.f").text
+    assert "*v_x" in text
+    code = tied.get("/v1/trees/sleigh/export?target=c&quantities=velocity_dynamics&independent=s.x,s.f")
+    assert code.status_code == 200, code.text
+    assert tied.get("/v1/trees/sleigh/export?target=fmu").status_code == 200
+    refused = tied.get("/v1/trees/free/export?target=fmu&independent=s.x")
+    assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/query/independent", "not-of-quantity")]
+
+
 def test_best_parameters(tied: TestClient) -> None:
     """The place of the mass centre at which the sleigh turns least in a second; what ignores the blade says so."""
     motion = {"analysis": "simulation", "at": {"q": [0, 0, 0], "qd": [1, 0, 0.5]}, "span": [0, 1], "expression": "s.f"}
@@ -157,7 +174,7 @@ def test_what_would_ignore_them_says_so(tied: TestClient, path: str, body: dict[
     assert "take simulations, linearisations, velocity-equations" in fault["message"]
 
 
-@pytest.mark.parametrize("path", ["state_space", "routhian", "curvature", "report", "export?target=fmu"])
+@pytest.mark.parametrize("path", ["state_space", "routhian", "curvature", "report", "export?target=simulink"])
 def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
     answer = tied.get(f"/v1/trees/sleigh/{path}")
     assert answer.status_code == 422, answer.text[:300]
@@ -216,9 +233,15 @@ def test_jobs_take_it() -> None:
     for kind, request in refused:
         with pytest.raises(InvalidInput, match="velocity constraints 'blade'"):
             outcomes(library, kind, request)
-    (fmu,) = outcomes(library, "export", {"items": [{"tree": "sleigh", "target": "fmu"}]})
-    assert fmu.problem is not None
-    assert fmu.problem["errors"][0]["code"] == "has-velocity-constraints"
+    fmu = {"tree": "sleigh", "target": "fmu", "independent": ["s.x", "s.f"]}
+    (found,) = outcomes(library, "export", {"items": [fmu]})
+    assert found.problem is None
+    (wrong,) = outcomes(library, "export", {"items": [{**fmu, "independent": ["s.x", "s.q"]}]})
+    assert wrong.problem is not None
+    assert wrong.problem["errors"][0]["pointer"] == "/independent/1"
+    (other,) = outcomes(library, "export", {"items": [{**fmu, "target": "c"}]})
+    assert other.problem is not None
+    assert [(e["pointer"], e["code"]) for e in other.problem["errors"]] == [("/independent", "not-of-quantity")]
 
 
 def test_every_analysis_and_quantity_takes_them_or_says_so() -> None:

@@ -123,6 +123,7 @@ class Packed(DocumentPart):
     precision: Annotated[str, one_of("value", lambda: PRECISIONS)] = PRECISIONS[0]
     stages: StrictBool = False
     standard: Annotated[str, one_of("value", lambda: STANDARDS)] = STANDARDS[0]
+    independent: list[str] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:

@@ -10,6 +10,7 @@ import numpy as np
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     Constraint,
     VelocityRows,
+    closing,
     constraints_of,
     row_values,
     velocity_rows,
@@ -61,3 +62,14 @@ def independent_rows(f: Workspace, constraints: Sequence[Constraint]) -> tuple[V
         if not f.model.velocity_constraints:
             raise
         raise error.moved(lambda pointer: pointer.replace("/constraints", "/velocity_constraints", 1)) from None
+
+
+def place_of_zero(model: Model) -> dict[str, float] | None:
+    """All coordinates at 0 and parameters at their defaults, where the constraints are independent; else None."""
+    f = Workspace(model)
+    rows = independent_rows(f, closing(model))[0].rows
+    place = dict.fromkeys(model.coordinates, 0.0)
+    given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
+    place |= {name: float(x) for name, x in given.items() if x is not None}
+    values = row_values(f, rows, place) if rows else np.zeros((1, 0, f.n))
+    return place if np.isfinite(values).all() and _rank(values) == len(rows) else None

@@ -55,6 +55,17 @@ def varied(equations: QuasiVelocities, parameters: Sequence[str]) -> Program:
     return _varied(Known(equations.program.digest, equations), tuple(parameters))
 
 
+def dynamics(equations: QuasiVelocities) -> Program:
+    """``rates``, ``acceleration``, ``second`` and ``power`` as functions of q, v, t, inputs and parameters, to be
+    exported: velocities of coordinates, ``arm.q1'``, are symbols of their own there, ``v.arm.q1``.
+    """
+    source, graph = solved(equations), Graph()
+    names = {name: f"v.{name[:-1]}" for name in equations.velocities if name.endswith("'")}
+    symbols = [replace(s, name=names.get(s.name, s.name)) for s in source.symbols]
+    bound = {name: graph.symbol(called) for name, called in names.items()}
+    return program(graph, replay(source, graph, bound), {s.name: s for s in symbols}).marked(source.not_judged)
+
+
 @lru_cache(maxsize=32)
 def _solved(known: Known, zero: frozenset[str]) -> Program:
     f = _Motion(known.source, zero)
