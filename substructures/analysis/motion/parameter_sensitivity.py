@@ -15,7 +15,7 @@ import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas, require_moving
-from substructures.analysis.equations.nonholonomic.positions import closed_positions
+from substructures.analysis.equations.nonholonomic.positions import closed_positions, start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import Conditions, read_conditions
@@ -28,7 +28,6 @@ from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
-from substructures.analysis.motion.rolling import start_velocities
 from substructures.analysis.motion.second_run import accurate, halves, second_run
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.trajectory import Trajectory

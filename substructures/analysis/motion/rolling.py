@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
+from substructures.analysis.equations.nonholonomic.positions import start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
@@ -27,9 +28,7 @@ from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.velocity_choices import VelocityChoices
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.errors import InvalidArgument, among
-from substructures.expr.interpret import interpret, interpret_in_blocks
-from substructures.quantities.measured import numeric
+from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.numbers.limits import reached
 
 NEEDS = ("metric", "forces", "potential_energy")
@@ -141,45 +140,6 @@ def _start(rolling: ReducedMotion, problem: RollingProblem) -> Array:
     place = conditions.values | dict(zip(equations.model.coordinates, conditions.q, strict=True))
     qd = None if problem.start.qd is None else conditions.qd
     return start_velocities(equations, place | {"t": problem.span[0]}, qd, problem.kind.v)
-
-
-def start_velocities(equations: QuasiVelocities, place: Mapping[str, Any], qd: Any, v: Any) -> Array:
-    """The quasi-velocities (p,) that ``v`` gives, (p,) or by name, or velocities ``qd`` (n,) that meet the constraints;
-    0 by default. ``place``: values of coordinates, parameters and t. Raises InvalidArgument.
-    """
-    names = equations.velocities
-    if v is not None and qd is not None:
-        raise InvalidArgument.at("/v", "two-velocities", "give either 'v' or 'qd'")
-    found = interpret(equations.program, {**place, **dict.fromkeys(names, 0.0)}, ["T", "rates"])
-    T, given = found["T"], found["rates"]
-    if not np.isfinite(T).all():
-        message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
-        raise InvalidArgument.at("/q", "singular-start", message)
-    if qd is None:
-        return _by_name(v, names)
-    # q' = T v + r, in the sense of least squares, and exact for velocities that meet B q' + b = 0
-    found_v = np.asarray(np.linalg.lstsq(T, qd - given)[0], dtype=np.float64)
-    left = np.abs(T @ found_v + given - qd).max(initial=0)
-    if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
-        message = f"these velocities violate the constraints by {left:.3g}; give 'v' ({', '.join(names)}) instead"
-        raise InvalidArgument.at("/qd", "violated", message)
-    return found_v
-
-
-def _by_name(given: Any, names: tuple[str, ...]) -> Array:
-    if given is None:
-        return np.zeros(len(names))
-    if isinstance(given, Mapping):
-        unknown = [name for name in given if name not in names]
-        if unknown:
-            message = f"unknown velocity '{str(unknown[0])[:80]}'{among(unknown[0], names)}"
-            raise InvalidArgument.at("/v", "unknown-velocity", message)
-        given = [given.get(name, 0) for name in names]
-    v = numeric(given, "/v")
-    if v.shape != (len(names),):
-        message = f"shape {v.shape} found, ({len(names)},) expected: {', '.join(names)}"
-        raise InvalidArgument.at("/v", "wrong-length", message)
-    return v
 
 
 def _judged(choices: VelocityChoices, problem: RollingProblem, motion: IntegratedMotion) -> Trajectory:
