@@ -120,6 +120,7 @@ def simulate(
         _refuse("velocity constraints", powers=outputs.powers)
         if outputs.reactions is not None and not model.velocity_constraints:
             raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
+        require_undriven(model.driven if outputs.reactions is not None else (), "leave 'reactions' out")
         motion = simulate_rolling(RollingProblem(**given, kind=kind))
     elif isinstance(kind, ClosedMotion):
         motion = simulate_closed(ClosedProblem(**given, kind=kind))
@@ -147,7 +148,10 @@ def _require_kind(model: Model, kind: MotionKind) -> None:
     found = type(kind).__name__
     if not isinstance(kind, ConstrainedMotion):
         require_unconstrained(model.constraint_names, found)
-    if isinstance(kind, (ConstrainedMotion, Geodesic)):
+    if isinstance(kind, ConstrainedMotion) and model.driven and kind.form != "voronets":
+        message = "with given motions ('driven') equations are those of Voronets: leave 'form' out"
+        raise InvalidArgument.at("/form", "not-supported", message)
+    if isinstance(kind, Geodesic):
         require_undriven(model.driven, f"take the tree without 'driven' for a {found}")
     if isinstance(kind, ClosedMotion):
         if not model.closures and not kind.prescribed:

@@ -9,7 +9,6 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
-import pytest
 from closed_trees import tree_model
 from random_trees import Plain
 
@@ -20,7 +19,6 @@ from substructures.analysis.equations.nonholonomic.solved import solved
 from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.simulate import Outputs
-from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 
@@ -102,11 +100,12 @@ def start(model: Model) -> list[float]:
     return [START.get(name, 0.0) for name in model.coordinates]
 
 
-def multiplied(q: Any, qd: Any, t: float) -> Any:
+def multiplied(q: Any, qd: Any, t: float, driven: Plain | None = None) -> Any:
     """q'' by [g B^T; B 0] of the tree without its ties: columns of velocities of frames, and their changes by
-    differences along the motion.
+    differences along the motion; ``driven``: accelerations that are given, by coordinate.
     """
     free, inputs = tree_model(TREE, PARTS), {"tau.base.w": 0.5 * np.cos(3 * t), "tau.arm.q1": 2, "tau.hand.left": 0.1}
+    given = driven or {}
 
     def rows(at: Any) -> Any:
         """B: what slips at the foot of the wheel, and the length of the rod."""
@@ -124,9 +123,23 @@ def multiplied(q: Any, qd: Any, t: float) -> Any:
     h, found = 1e-6, evaluate(free, ["metric", "bias", "forces"], q, qd, inputs=inputs)
     held, change = rows(q), (rows(q + h * qd) - rows(q - h * qd)) / (2 * h)
     assert np.abs(held @ qd).max() < 1e-8
-    n, m = free.dof, len(held)
-    left = np.block([[found["metric"], held.T], [held, np.zeros((m, m))]])
-    return np.linalg.solve(left, np.concatenate([found["forces"] - found["bias"], -change @ qd]))[:n]
+    units = np.eye(free.dof)[[free.coordinates.index(name) for name in given]]
+    B, right = np.vstack([held, units]), np.append(-change @ qd, list(given.values()))  # noqa: N806
+    n, m = free.dof, len(B)
+    left = np.block([[found["metric"], B.T], [B, np.zeros((m, m))]])
+    return np.linalg.solve(left, np.concatenate([found["forces"] - found["bias"], right]))[:n]
+
+
+def own_accelerations(model: Model, q: Any, qd: Any, t: float) -> Any:
+    """q'' by the equations in independent velocities, whose q' are those of the motion."""
+    near = dict(zip(model.coordinates, q.tolist(), strict=True))
+    equations = quasi_velocity_equations(model, near=near | {"t": t})
+    rates = dict(zip((f"{name}'" for name in model.coordinates), qd, strict=True))
+    values = dict.fromkeys(model.input_names, 0.0) | near | {name: rates[name] for name in equations.velocities}
+    values |= {"arm.m": 1.5, "t": t, "tau.base.w": 0.5 * np.cos(3 * t), "tau.arm.q1": 2, "tau.hand.left": 0.1}
+    own = interpret(solved(equations), values)
+    np.testing.assert_allclose(own["rates"], qd, atol=1e-8)
+    return own["second"]
 
 
 def test_it_moves_as_with_multipliers() -> None:
@@ -137,17 +150,9 @@ def test_it_moves_as_with_multipliers() -> None:
     assert (found.status, found.is_right) == ("finished", True), found.checks
     assert {"energy", "constraints", "gaps"} <= {check.name for check in found.checks}
     assert np.ptp(found.q, axis=0).max() > 0.1
-    for t, q, qd in zip(found.t[1:], found.q[1:], found.qd[1:], strict=True):
-        near = dict(zip(model.coordinates, q.tolist(), strict=True))
-        equations = quasi_velocity_equations(model, near=near)
-        rates = dict(zip((f"{name}'" for name in model.coordinates), qd, strict=True))
-        values = near | {name: rates[name] for name in equations.velocities} | {"arm.m": 1.5}
-        values |= dict.fromkeys(model.input_names, 0.0)
-        values |= {"tau.base.w": 0.5 * np.cos(3 * t), "tau.arm.q1": 2, "tau.hand.left": 0.1}
-        own = interpret(solved(equations), values)
-        np.testing.assert_allclose(own["rates"], qd, atol=1e-8)
-        expected = multiplied(q, qd, float(t))
-        np.testing.assert_allclose(own["second"], expected, atol=1e-6 * np.abs(expected).max())
+    for t, q, qd in zip(found.t[1:].tolist(), found.q[1:], found.qd[1:], strict=True):
+        expected = multiplied(q, qd, t)
+        np.testing.assert_allclose(own_accelerations(model, q, qd, t), expected, atol=1e-6 * np.abs(expected).max())
 
 
 def test_members_and_derivatives_have_all_of_it() -> None:
@@ -163,15 +168,32 @@ def test_members_and_derivatives_have_all_of_it() -> None:
     np.testing.assert_allclose(slope, expected, atol=1e-2 * np.abs(expected).max())
 
 
-def test_driven_it_moves_without_the_wheel_or_says_so() -> None:
-    """Given motions go with relations, a floating base and loops; with velocity constraints they are refused by name,
-    where the tree is checked first.
-    """
-    driven = {"hand.left": "0.02 + 0.01*sin(t)", "arm.q3": "0.3 + t^2/10"}
-    model = whole(driven=driven, velocity_constraints=[])
-    q = [START.get(name, 0.0) for name in model.coordinates]
-    found = simulate(model, q, (0, 0.4), outputs=Outputs(count=5))
+#: motions with their rates and accelerations at a time
+DRIVEN: Plain = {"hand.left": "0.02 + 0.01*sin(t)", "arm.q3": "0.3 + t^2/10"}
+
+
+def test_driven_it_moves_as_with_multipliers() -> None:
+    """Fingers and wrist move as is given; the wheel, the rod and the free base follow."""
+    model = whole(driven=DRIVEN)
+    check_constraints(model)
+    assert list(model.driven) == ["arm.q3", "hand.left"]
+    torques = {name: x for name, x in TORQUE.items() if name in model.input_names}
+    found = simulate(model, start(model), (0, 0.4), inputs=torques, outputs=Outputs(count=5))
     assert (found.status, found.is_right) == ("finished", True), found.checks
-    with pytest.raises(InvalidInput) as caught:
-        check_constraints(whole(driven=driven))
-    assert caught.value.faults[0].code == "has-driven"
+    for t, q, qd in zip(found.t[1:].tolist(), found.q[1:], found.qd[1:], strict=True):
+        moved = {"arm.q3": (0.3 + t * t / 10, t / 5), "hand.left": (0.02 + 0.01 * np.sin(t), 0.01 * np.cos(t))}
+        whole_q, whole_qd = (
+            np.array([{**dict(zip(model.coordinates, x, strict=True)), **given}[name] for name in COORDINATES])
+            for x, given in ((q, {n: x[0] for n, x in moved.items()}), (qd, {n: x[1] for n, x in moved.items()}))
+        )
+        expected = multiplied(whole_q, whole_qd, t, {"arm.q3": 0.2, "hand.left": -0.01 * np.sin(t)})
+        free = [COORDINATES.index(name) for name in model.coordinates]
+        np.testing.assert_allclose(
+            own_accelerations(model, q, qd, t), expected[free], atol=1e-6 * np.abs(expected).max()
+        )
+
+
+def test_driven_it_moves_without_the_wheel_too() -> None:
+    model = whole(driven=DRIVEN, velocity_constraints=[])
+    found = simulate(model, start(model), (0, 0.4), outputs=Outputs(count=5))
+    assert (found.status, found.is_right) == ("finished", True), found.checks

@@ -127,7 +127,7 @@ def test_units_and_contradictions() -> None:
         check_constraints(tied(sleigh_part(), twice))
     assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == ("/velocity_constraints", "contradiction")
     with pytest.raises(InvalidInput) as caught:
-        check_constraints(tied(sleigh_part(), [EDGE], driven={"s.f": "t"}))
+        check_constraints(tied(sleigh_part(), [EDGE], driven={"s.f": {"input": True}}))
     assert caught.value.faults[0].code == "has-driven"
 
 

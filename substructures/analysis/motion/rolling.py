@@ -62,7 +62,7 @@ def simulate_rolling(problem: RollingProblem) -> Trajectory:
     model, start, kind = problem.model, problem.span[0], problem.kind
     progress, folder = problem.integrator.progress, problem.integrator.folder
     conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
-    place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True))
+    place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True)) | {"t": start}
     equations = quasi_velocity_equations(
         model, kind.constraints, velocities=kind.velocities, independent=kind.independent, near=place
     )
@@ -93,7 +93,9 @@ def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | Non
     """Velocities that the program chose are changed on the way, but where a corner of a force law is followed."""
     equations, conditions = rolling.equations, rolling.conditions
     given = problem.kind.velocities is not None or problem.kind.independent is not None
-    if given or not equations.singular or has_corners(equations.program) or has_corners(conditions.expressions):
+    is_moving = "t" in equations.program.needs(["constraints"])  # rows of frames that are driven
+    cornered = has_corners(equations.program) or has_corners(conditions.expressions)
+    if given or is_moving or cornered or not equations.singular:
         return VelocityChoices(rolling, None)
 
     def make(chosen: Sequence[str]) -> ReducedMotion:
@@ -155,7 +157,7 @@ def _judged(choices: VelocityChoices, problem: RollingProblem, motion: Integrate
     v = states[:, n:-1] if choices.make is None else x[:, n + _places(equations)]
     series = columns | {"v": v, "work": states[:, -1], "constraints": slips}
     checks = _checks(t, series, problem.drift_limit, conditions.varied_potential())
-    span, message = reached(t, x[:, :n], x[:, n:]), _message(choices, motion, x[:, :n])
+    span, message = reached(t, x[:, :n], x[:, n:]), _message(choices, motion, t, x[:, :n])
     t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
@@ -193,12 +195,12 @@ def _places(equations: QuasiVelocities) -> NDArray[np.int64]:
     return np.array([rates.index(name) for name in equations.velocities], dtype=np.int64)
 
 
-def _message(choices: VelocityChoices, motion: IntegratedMotion, q: Array) -> str:
+def _message(choices: VelocityChoices, motion: IntegratedMotion, t: Array, q: Array) -> str:
     """That of the motion; or that velocities that were kept do not describe it somewhere on the way."""
     equations = choices.first.equations
     if motion.message or choices.make is not None or not equations.singular or not len(q):
         return motion.message
-    values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True))
+    values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True)) | {"t": t}
     size = np.abs(interpret_in_blocks(equations.program, values, ["T"], len(q))["T"]).max(axis=(1, 2), initial=0)
     if not size.max() > FAR * size.min():
         return ""

@@ -50,7 +50,8 @@ def _without_dependent(f: Workspace, given: VelocityRows) -> tuple[VelocityRows,
 def check_constraints(model: Model) -> None:
     """Raises InvalidInput (``/velocity_constraints/i/...``) for velocity constraints of a tree that are none."""
     if model.velocity_constraints:
-        require_undriven(model.driven, "take the tree without 'driven', or without 'velocity_constraints'")
+        given = [name for name in model.driven if name in model.inputs]
+        require_undriven(given, "give their motions as formulas in t, or the tree without 'velocity_constraints'")
         independent_rows(Workspace(model), constraints_of(model))
 
 

@@ -39,6 +39,8 @@ from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model
 
 SHAPES = ("disc", "sphere")
+#: velocities of frames that given motions make
+GIVEN = ("U_0", "Omega_0")
 
 
 @dataclass(frozen=True)
@@ -141,6 +143,8 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
     kinematics = f.kinematics() if framed else {}
+    if framed and f.model.driven:
+        kinematics = {**kinematics, **f.outputs(GIVEN)}
     for i, constraint in enumerate(constraints):
         pointer = f"/constraints/{i}"
         if isinstance(constraint, Linear):
@@ -153,8 +157,8 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
-                # B_a = U_a2
-                result.add(constraint.name, [f.graph.lift(U[1]) for U in frame.U])
+                # B_a = U_a2, b = U_02 of given motions
+                result.add(constraint.name, [f.graph.lift(U[1]) for U in frame.U], f.graph.lift(frame.given[0][1]))
             else:
                 _roll(f, constraint, pointer, frame, result)
     names = [c.name for c in constraints]
@@ -181,6 +185,8 @@ class _Frame:
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
         self.Omega = [vector("Omega", a) for a in range(f.n)]
+        #: of given motions, where the coordinates rest
+        self.given = (vector("U_0"), vector("Omega_0")) if "U_0" in kinematics else ((zero,) * 3, (zero,) * 3)
 
 
 def _require_closed(f: Workspace, constraints: Sequence[Constraint]) -> None:
@@ -198,13 +204,15 @@ def _close(f: Workspace, name: str, pointer: str, result: VelocityRows) -> None:
         known = [rows.name for rows in f.model.closures]
         f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'{among(name, known)}")
         return
-    found = f.outputs(["closure.jacobian", "closure.residual"])
+    rates = ["closure.rate"] if "closure.rate" in f.model.program.outputs else []
+    found = f.outputs(["closure.jacobian", "closure.residual", *rates])
     zero = f.graph.zero
     for k, (closure, row) in enumerate(names):
         residual = found["closure.residual"].get((k,), zero)
         # phi_k = const is the integral of G_ka q'^a = 0
         if closure == name and not residual.is_zero:
-            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
+            moved = found[rates[0]].get((k,), zero) if rates else None
+            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)], moved)
             result.gaps[f"{name}.{row}"] = residual
 
 
@@ -228,10 +236,11 @@ def _roll(f: Workspace, c: Rolling, pointer: str, frame: _Frame, result: Velocit
         rho = (-(radius * n[0]), -(radius * n[1]), -(radius * n[2]))
     # B_a = P R (U_a + Omega_a x rho), P: rotation from the world to the axes of the plane
     columns = []
-    for U, Omega in zip(frame.U, frame.Omega, strict=True):
+    for U, Omega in (*zip(frame.U, frame.Omega, strict=True), frame.given):
         columns.append(apply(plane, apply(frame.R, add(U, cross(Omega, rho)))))
     for i, row in enumerate(("slip_1", "slip_2", "contact")):
-        result.add(f"{c.name}.{row}", [f.graph.lift(column[i]) for column in columns])
+        *own, given = (f.graph.lift(column[i]) for column in columns)
+        result.add(f"{c.name}.{row}", own, given)
     # N . c + n . rho
     result.gaps[c.name] = f.graph.lift(dot(normal, frame.c) + dot(n, rho))
 
