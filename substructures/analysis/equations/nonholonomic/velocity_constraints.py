@@ -13,7 +13,8 @@ closure      the rows of a closure of the tree, differentiated by time: G q' = 0
 ===========  =====================================================================================================
 
 A rolling disc has its axis along the third axis e of the frame: rho = -r (N - (N.e) e) / |N - (N.e) e|, N the normal of
-the plane; a sphere has rho = -r N. The row ``contact`` has the integral N . c + N . rho = const, the gap.
+the plane; a sphere has rho = -r N. The row ``contact`` has the integral N . c + N . rho = const, the gap. Where frames
+and loops move with given motions, b is what U_0 and Omega_0 make of these rows, and phi_t.
 (H. Goldstein, Classical Mechanics, 2nd ed. 1980, section 1-3; Ju. I. Neimark and N. A. Fufaev, Dynamics of Nonholonomic
 Systems, AMS 1972.)
 """
