@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -27,7 +27,7 @@ from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import Sources
-from substructures.quantities.quantity import FORWARD, askable
+from substructures.quantities.quantity import FORWARD, VELOCITY_DYNAMICS, askable
 from substructures.tree.document import TreeSpec
 from substructures.tree.glossary import glossary, part_glossary
 
@@ -73,7 +73,8 @@ Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
 class ExportRequest:
     """``together``: also a function with all quantities; ``packed``: independent elements alone; ``fmi``: the version
     of an FMU; of the functions in C ``precision``, the ``ranges`` of arguments that the bound of its rounding is for,
-    ``stages``: what depends on parameters alone apart, ``standard``."""
+    ``stages``: what depends on parameters alone apart, ``standard``; ``independent``: the coordinates in whose
+    velocities motions with constraints are, default chosen."""
 
     target: str
     quantities: tuple[str, ...] = ()
@@ -86,13 +87,21 @@ class ExportRequest:
     ranges: str = ""
     stages: bool = False
     standard: str = STANDARDS[0]
+    independent: tuple[str, ...] = ()
 
     @property
     def identity(self) -> tuple[str, ...]:
         """What an ETag depends on beside the content."""
         flags = str(self.together), str(self.packed), str(self.stages)
         texts = self.fmi, self.precision, self.ranges, self.standard
-        return "export", self.target, ",".join(self.quantities), self.name, self.bind, *flags, *texts
+        names = ",".join(self.quantities), ",".join(self.independent)
+        return "export", self.target, *names, self.name, self.bind, *flags, *texts
+
+    def require_motion(self, quantities: Sequence[str]) -> None:
+        """Raises InvalidArgument (``/independent``) where no function is a motion in independent velocities."""
+        if self.independent and VELOCITY_DYNAMICS not in quantities:
+            message = f"'independent' is of the quantity '{VELOCITY_DYNAMICS}' and of FMUs with velocity constraints"
+            raise InvalidArgument.at("/independent", "not-of-quantity", message)
 
 
 @dataclass(frozen=True, slots=True)
@@ -137,7 +146,10 @@ def tree_package(
     chosen = OF_FMUS if request.target == FMU else OF_TREES
     names = request.quantities or tuple(name for name in chosen if name in known)
     if request.target in MOVING:
-        names = tuple(dict.fromkeys((FORWARD, *names)))
+        # with velocity constraints the motion is one in independent velocities
+        motion = VELOCITY_DYNAMICS if request.target == FMU and sources.model.velocity_constraints else FORWARD
+        names = tuple(dict.fromkeys((motion, *names)))
+    request.require_motion(names)
     interface = _left(interface_of_model(sources.model, reference, digest), request)
 
     def numbers(program: Program) -> Program:
@@ -157,6 +169,7 @@ def part_package(part: Part, reference: str, digest: str, request: ExportRequest
         name = _urdf_name(request, part.name)
         return _urdf(name, urdf_of_part(part, name, reference, digest, _all_numbers(part.parameters, request)))
     names = request.quantities or tuple(name for name in OF_PARTS if name in part.program.outputs)
+    request.require_motion(())
     interface = _left(interface_of_part(part, reference, digest), request)
 
     def numbers(program: Program) -> Program:
@@ -219,6 +232,7 @@ def read_item(item: Mapping[str, Any]) -> ExportRequest:
     """The export that an item of a job asks for; its fields are checked already."""
     given = tuple(item["quantities"])
     more = {name: item[name] for name in ("packed", *OF_TARGETS) if name in item}
+    more["independent"] = tuple(item.get("independent", ()))
     return ExportRequest(item["target"], given, item["name"], item["bind"], item["together"], **more)
 
 

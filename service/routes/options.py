@@ -27,6 +27,7 @@ async def options_of(
     controls: Annotated[Texts, _query("controls")] = None,
     running: Annotated[Texts, _query("running")] = None,
     terminal: Annotated[Texts, _query("terminal")] = None,
+    independent: Annotated[Texts, _query("independent")] = None,
     drives: Annotated[Texts, _query("drives")] = None,
     joints: Annotated[Texts, _query("joints")] = None,
 ) -> Options:
@@ -34,7 +35,7 @@ async def options_of(
     given = {
         "inputs": inputs, "zero": zero, "degree": degree, "cyclic": cyclic, "outputs": outputs,
         "parameters": parameters, "quantities": quantities, "controls": controls, "running": running,
-        "terminal": terminal, "drives": drives, "joints": joints,
+        "terminal": terminal, "independent": independent, "drives": drives, "joints": joints,
     }  # fmt: skip
     return {name: tuple(_split(texts)) for name, texts in given.items() if texts}
 

@@ -30,8 +30,8 @@ numbers, such as `linearisations`, `root-loci`; a request is the body of that en
 - `export`: `tree`, `quantity`, `format`, [`form`, `bind`, `options`, `group`], which mean what they mean for `GET \
 /v1/trees/{ref}/{quantity}`; `options` are lists of texts by name. For the quantity `velocity-equations` also \
 `request`, the body of its endpoint (`VelocityConstraints`). Or `tree`, `target`, [`quantities`, `name`, `bind`, \
-`together`, `packed`, `fmi`, `precision`, `ranges`, `stages`, `standard`], as of `GET /v1/trees/{ref}/export`; with \
-`substructure` in place of `tree`, as of that of a part.
+`together`, `packed`, `fmi`, `precision`, `ranges`, `stages`, `standard`, `independent`], \
+as of `GET /v1/trees/{ref}/export`; with `substructure` in place of `tree`, as of that of a part.
 - `mirror`: `source`, the address of another instance (`https://parts.example.org`), one of those that the operator \
 lists in `SUBSTRUCTURES_MIRROR_SOURCES`; the latest versions of all its public parts are stored, but for those that \
 are there. Submitted again, or tried again after a failure, it goes on with what is missing.

@@ -10,7 +10,7 @@ import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.stability.root_locus import RootLocus
-from substructures.analysis.stability.steady_motions import SteadyMotions
+from substructures.analysis.stability.steady_result import SteadyMotions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.pictures.plot import Line, Panel, plot

@@ -10,7 +10,7 @@ from collections.abc import Mapping, Sized
 from dataclasses import fields
 from typing import Any
 
-from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
+from substructures.analysis.equations.nonholonomic.velocity_constraints import closing, constraints_of
 from substructures.analysis.motion.problems.kinds import (
     ClosedMotion,
     ConstrainedMotion,
@@ -51,9 +51,13 @@ def motion_arguments(model: Model, /, **given: Any) -> dict[str, Any]:
     return rest | found
 
 
-def sensitivity_arguments(**given: Any) -> dict[str, Any]:
-    """Arguments of sensitivities."""
+def sensitivity_arguments(model: Model | None = None, /, **given: Any) -> dict[str, Any]:
+    """Arguments of sensitivities. Raises InvalidArgument for fields of constraints without any; ``model``: see
+    :func:`reduced_kind`.
+    """
     rest = dict(given)
+    if model is not None:
+        rest["kind"] = reduced_kind(model, rest)
     return {"integrator": take(Integrator, rest), "outputs": take(SensitivityOutputs, rest), **rest}
 
 
@@ -65,6 +69,20 @@ def linearisation_arguments(model: Model, /, **given: Any) -> dict[str, Any]:
     of_constraints = {field.name for field in fields(ConstrainedMotion)} & set(rest)
     _refuse(TreeMotion, {name: rest.pop(name) for name in sorted(of_constraints)})
     return rest
+
+
+def reduced_kind(model: Model, rest: dict[str, Any]) -> ConstrainedMotion | None:
+    """The motion in quasi-velocities, whose fields are taken out of ``rest``: with velocity constraints that are given,
+    those of the tree, or its closures alone; None without any.
+
+    Raises InvalidArgument for other fields of constraints then.
+    """
+    constraints = constraints_of(model, rest.pop("constraints", None) or ()) or closing(model)
+    if constraints:
+        rest["constraints"] = constraints
+        return take(ConstrainedMotion, rest)
+    _refuse(TreeMotion, {f.name: rest.pop(f.name) for f in fields(ConstrainedMotion) if f.name in rest})
+    return None
 
 
 def _constrained(model: Model, given: Mapping[str, Any]) -> dict[str, Any]:

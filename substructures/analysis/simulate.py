@@ -125,6 +125,7 @@ def simulate(
         _refuse("velocity constraints", powers=outputs.powers)
         if outputs.reactions is not None and not model.velocity_constraints:
             raise InvalidArgument.at("/reactions", "not-supported", UNPLACED)
+        require_undriven(model.driven if outputs.reactions is not None else (), "leave 'reactions' out")
         motion = simulate_rolling(RollingProblem(**given, kind=kind))
     elif isinstance(kind, ClosedMotion):
         motion = simulate_closed(ClosedProblem(**given, kind=kind))
@@ -151,7 +152,12 @@ def _require_kind(model: Model, kind: MotionKind) -> None:
     """Raises InvalidInput for a kind of motion that the model cannot have."""
     found = type(kind).__name__
     require_untied(model, found)
-    if isinstance(kind, (ConstrainedMotion, Geodesic)):
+    if isinstance(kind, ConstrainedMotion):
+        require_unignored(model.ignored)
+        if model.driven and kind.form != "voronets":
+            message = "with given motions ('driven') equations are those of Voronets: leave 'form' out"
+            raise InvalidArgument.at("/form", "not-supported", message)
+    if isinstance(kind, Geodesic):
         require_undriven(model.driven, f"take the tree without 'driven' for a {found}")
         require_unignored(model.ignored)
     if isinstance(kind, ClosedMotion):

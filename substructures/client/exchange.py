@@ -35,6 +35,7 @@ class ExchangeCaller(JobCaller):
         ranges: str = "",
         stages: bool = False,
         standard: str = "c99",
+        independent: Sequence[str] = (),
     ) -> httpx2.Response:
         """The answer with the files of a target: of ``kind`` trees or substructures."""
         wanted = {
@@ -49,6 +50,7 @@ class ExchangeCaller(JobCaller):
             "ranges": ranges,
             "stages": stages,
             "standard": standard,
+            "independent": ",".join(independent),
         }
         return self.request("GET", f"/v1/{step(kind)}/{step(ref)}/export" + query(wanted))
 

@@ -84,15 +84,22 @@ class MotionColumns:
             integrands = read_expressions(model, {INTEGRANDS: integrated}, inputs=True)
         return cls(columns, sources, read_expressions(model, followed, inputs=True), integrands)
 
-    def of(self, values: Mapping[str, float | Array], x: Array, integrals: Array) -> dict[str, Array]:
+    def of(
+        self,
+        values: Mapping[str, float | Array],
+        x: Array,
+        integrals: Array,
+        second: Callable[[], Array] | None = None,
+    ) -> dict[str, Array]:
         """The columns (M,) of motions ``x`` (M, K, 2n); ``values``: of all other symbols, numbers or (M, K);
-        ``integrals`` (M, k): of :attr:`integrands` up to the end.
+        ``integrals`` (M, k): of :attr:`integrands` up to the end; ``second``: the accelerations (M K, n) where they are
+        not those of the tree.
         """
         model, (rows, times) = self.sources.model, x.shape[:2]
         state = np.ascontiguousarray(x).reshape(rows * times, -1)
         flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
         followed = program_kernel(self.expressions).evaluate(flat, columns=[(state_names(model), state)])
-        answer = self._evaluated(flat, state)
+        answer = self._evaluated(flat, state, second)
         found = {name: integrals[:, k] for k, name in enumerate(self.integrals)}
         for name, column in self.columns.items():
             if name in found:
@@ -108,7 +115,9 @@ class MotionColumns:
                 found[name] = _TAKEN[column.take](numbers.reshape(rows, times))
         return {name: found[name] for name in self.columns}
 
-    def _evaluated(self, values: Mapping[str, Any], state: Array) -> Evaluation | None:
+    def _evaluated(
+        self, values: Mapping[str, Any], state: Array, second: Callable[[], Array] | None
+    ) -> Evaluation | None:
         """All quantities of the columns at all states, None where there are none."""
         wanted = {name: c.quantity for name, c in self.columns.items() if c.quantity is not None}
         if not wanted:
@@ -122,8 +131,11 @@ class MotionColumns:
             "options": EvaluationOptions(evaluator=_compiled),
         }
         if any("qdd" in TABLE[name].requires for name in asked):
-            moved = evaluate(self.sources, FORWARD, state[:, :n], state[:, n:], **given)
-            given["qdd"] = moved[FORWARD].reshape(-1, n)
+            if second is None:
+                moved = evaluate(self.sources, FORWARD, state[:, :n], state[:, n:], **given)
+                given["qdd"] = moved[FORWARD].reshape(-1, n)
+            else:
+                given["qdd"] = second()
         return evaluate(self.sources, asked, state[:, :n], state[:, n:], **given)
 
 

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -11,10 +13,12 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
 from substructures.analysis.motion.judges import Condition, MotionStates, conditions, integral_series
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
 from substructures.ensembles.columns import MotionColumn, MotionColumns, statistics
+from substructures.ensembles.constrained import accelerations, kept_gaps
 from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
 from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
 from substructures.errors import InvalidArgument
@@ -115,20 +119,21 @@ def simulate_ensemble(
     grid: OutputGrid = EVEN,
     integrator: Integrator = DEFAULT,
     states: bool | None = None,
+    kind: ConstrainedMotion | None = None,
 ) -> Ensemble:
-    """Motions over a ``span`` [s] from M starts: q'' = g^-1 (Q - Gamma q' q') of a tree without closures.
+    """Motions over a ``span`` [s] from M starts: q'' = g^-1 (Q - Gamma q' q'); with constraints g* v' + bias = forces.
 
     ``q`` [rad, m], ``qd`` [rad/s, m/s; 0]: (n,) for all or (M, n), or by name; ``parameters`` [SI] and ``inputs`` [N m,
     N]: by name a number or (M,), inputs also an expression in coordinates, velocities, parameters and t. ``columns``:
     numbers of each motion at the times of ``grid``; ``states``: whether q and qd are in the result (by default where
     there are no columns). ``integrator``: an explicit method, DOP853, RK45 or RK23, its tolerances and drift limit.
+    ``kind``: velocity constraints (default: those of the tree, and all closures, onto which positions are moved first),
+    with ``v`` (p,) or (M, p) or by name in place of ``qd``, in quasi-velocities that describe the first member.
 
-    Each member has its own steps, and the same bits whatever other members there are. Raises InvalidInput (pointers
-    start with names of arguments), MissingValue.
+    Each has its own steps, the same bits whatever others there are. Raises InvalidInput (``/q``, ...), MissingValue.
 
     >>> from substructures import couple, derive
-    >>> tree = {"name": "clock", "gravity": [0, 0, "-9.81"]}
-    >>> tree["instances"] = [{"name": "p", "substructure": "simple-pendulum"}]
+    >>> tree = {"name": "c", "gravity": [0, 0, -9.81], "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
     >>> model = couple(tree, {"p": derive("simple-pendulum")})
     >>> top = {"angle": MotionColumn(expression="p.q1", take="largest")}
     >>> simulate_ensemble(model, [[0.1], [0.2], [0.3]], (0, 2), columns=top)
@@ -139,7 +144,7 @@ def simulate_ensemble(
         message = f"members are integrated by {', '.join(METHODS)}; for stiff equations simulate them one by one"
         raise InvalidArgument.at("/method", "not-supported", message)
     times = OutputTimes(span, grid)
-    members = read_members(sources.model, q, qd, parameters, inputs, times.span)
+    members = read_members(sources.model, q, qd, parameters, inputs, times.span, kind)
     read = MotionColumns.read(sources, columns)
     return _Run(members, times, integrator, read, not columns if states is None else states).run()
 
@@ -171,7 +176,7 @@ class _Run:
             start = members.start[chosen]
             lanes = min(settings.lanes, len(start))
             rates = KernelRates(members, lanes, self.integrator.folder, self.columns.integrands, begin)
-            start = np.concatenate([start, np.zeros((len(start), rates.size - 2 * rates.n))], axis=1)
+            start = np.concatenate([start, np.zeros((len(start), rates.size - rates.held))], axis=1)
             told = self._told(begin)
             found = march(rates, start, grid, settings, told)
             self._note(begin, found)
@@ -216,24 +221,29 @@ class _Run:
     ) -> dict[str, Array]:
         """Columns, verdicts and states of a part of the members."""
         n = rates.n
-        values = along(self.members, chosen, grid, x)
-        work = x[..., 2 * n] if rates.has_power else np.zeros(x.shape[:2])
-        motions = MotionStates(np.tile(grid, (len(x), 1)), x[..., :n], x[..., n : 2 * n], values, work)
+        values, states = along(self.members, chosen, grid, x)
+        work = x[..., rates.held] if rates.has_power else np.zeros(x.shape[:2])
+        motions = MotionStates(np.tile(grid, (len(x), 1)), states[..., :n], states[..., n:], values, work)
         integrals_to_end = x[:, -1, rates.size - rates.integrals :]
-        columns = self.columns.of(values, x[..., : 2 * n], integrals_to_end)
+        equations, held = self.members.equations, list[Condition]()
+        second = None
+        if equations is not None:
+            second = partial(accelerations, equations, values, x[..., : rates.held])
+            held = kept_gaps(equations, values, states)
+        columns = self.columns.of(values, states, integrals_to_end, second)
         found = {f"columns.{name}": v for name, v in columns.items()}
-        found["violation"] = self._judged(motions, integrals)
+        found["violation"] = self._judged(motions, integrals, held)
         if self.keeps:
-            found |= {"q": x[..., :n], "qd": x[..., n : 2 * n]}
+            found |= {"q": states[..., :n], "qd": states[..., n:]}
         return found
 
-    def _judged(self, motions: MotionStates, integrals: FirstIntegrals) -> Array:
+    def _judged(self, motions: MotionStates, integrals: FirstIntegrals, held: Sequence[Condition]) -> Array:
         """The largest violation of each member in units of what is allowed."""
         model, limit = self.members.model, self.integrator.drift_limit
         series = integral_series(model, integrals, motions)
         largest = np.full(len(motions.t), np.nan)
         with np.errstate(invalid="ignore", divide="ignore"):
-            for each in conditions(model, integrals, motions, series):
+            for each in chain(conditions(model, integrals, motions, series), held):
                 # whether energy has to fall is not seen from some times of a motion; its balance is kept at all of them
                 if not isinstance(each, Condition) or each.about[1] == "falling":
                     continue

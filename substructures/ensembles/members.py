@@ -9,16 +9,22 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.equations.formulas import require_tree
+from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
+from substructures.analysis.equations.nonholonomic.solved import ACCELERATION as QUASI_ACCELERATION
+from substructures.analysis.equations.nonholonomic.solved import RATES, solved
 from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Table
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_kernel
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.array import Array
+from substructures.compile import Kernel, compile_program
 from substructures.documents import escape
 from substructures.ensembles.columns import INTEGRANDS
+from substructures.ensembles.constrained import constrained_start, full_states, rows_of
 from substructures.ensembles.lanes import Places
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
@@ -32,7 +38,8 @@ Given = Mapping[str, Any]
 @dataclass(frozen=True)
 class Members:
     """``count`` = M motions from ``start`` (M, 2n), x = (q, q'); ``varied``: values (M,) of parameters and constant
-    inputs that are not the same for all; ``conditions``: what is, as of the first member.
+    inputs that are not the same for all; ``conditions``: what is, as of the first member; ``equations``: of motions
+    with constraints in p quasi-velocities, where ``start`` is (M, n+p), x = (q, v).
     """
 
     model: Model
@@ -40,11 +47,19 @@ class Members:
     start: Array
     varied: Mapping[str, Array]
     conditions: Conditions
+    equations: QuasiVelocities | None = None
 
     @property
     def zero(self) -> frozenset[str]:
         """Names of inputs and parameters that are 0 for all."""
         return self.conditions.zero - set(self.varied)
+
+    @property
+    def columns(self) -> list[str]:
+        """What is in a state, by name."""
+        if self.equations is None:
+            return state_names(self.model)
+        return [*self.model.coordinates, *self.equations.velocities]
 
     @property
     def constants(self) -> dict[str, float]:
@@ -59,19 +74,21 @@ def read_members(
     parameters: Given,
     inputs: Given,
     span: tuple[float, float],
+    kind: ConstrainedMotion | None = None,
 ) -> Members:
-    """Check what is given: (n,) or (M, n) of ``q`` and ``qd``, or by name; numbers or (M,) of the others.
+    """Check what is given: (n,) or (M, n) of ``q`` and ``qd``, or by name; numbers or (M,) of the others; ``kind``: of
+    motions with constraints, whose quasi-velocities at the start are (p,) or (M, p), or by name.
 
-    Raises InvalidInput (``has-closures``; pointers ``/q``, ``/parameters/name``, ...) and MissingValue.
+    Raises InvalidInput (pointers ``/q``, ``/parameters/name``, ``/v/name``, ...) and MissingValue.
     """
-    require_tree(model, "ensembles")
+    require_moving(model, "ensembles")
+    kind = usual_kind(model, kind)
     given = with_input_defaults(model, inputs)
-    for name, x in given.items():
-        if isinstance(x, Table):
-            message = "a table is not taken in an ensemble: give an expression in t, or simulate one after the other"
-            raise InvalidArgument.at(f"/inputs/{escape(name)}", "not-supported", message)
+    _require_no_tables(given)
     numbers = {name: x for name, x in given.items() if not isinstance(x, str)}
-    states = read_states(model, {"q": q, "qd": qd, "parameters": parameters, "inputs": numbers}, None)
+    # one q stands for as many states as there are quasi-velocities
+    rates = {} if kind is None or kind.v is None else {"t": np.zeros(rows_of(kind.v))}
+    states = read_states(model, {"q": q, "qd": qd, "parameters": parameters, "inputs": numbers, **rates}, None)
     count = states.count
     values = given_values(parameters, "parameters", "/parameters", count, model.parameters, model.units)
     values |= given_values(numbers, "inputs", "/inputs", count, model.input_names, model.units)
@@ -85,7 +102,18 @@ def read_members(
         {name: x if isinstance(x, str) else first[name] for name, x in given.items()},
     )
     conditions = read_conditions(model, begin, span, DYNAMICS)
-    return Members(model, count, start, varied, conditions)
+    if kind is None:
+        return Members(model, count, start, varied, conditions)
+    values, (q, velocities) = {**conditions.values, **varied, "t": span[0]}, np.hsplit(start, [model.dof])
+    equations, start = constrained_start(model, kind, values, q, None if qd is None else velocities)
+    return Members(model, count, start, varied, conditions, equations)
+
+
+def _require_no_tables(inputs: Given) -> None:
+    for name, x in inputs.items():
+        if isinstance(x, Table):
+            message = "a table is not taken in an ensemble: give an expression in t, or simulate one after the other"
+            raise InvalidArgument.at(f"/inputs/{escape(name)}", "not-supported", message)
 
 
 class KernelRates:
@@ -105,9 +133,10 @@ class KernelRates:
     ) -> None:
         self.members, self.first, model = members, first, members.model
         self.n = model.dof
-        self.kernel = forward_kernel(model, members.zero, folder)
+        #: length of (q, q'), or of (q, v), and names of what is in it
+        self.held, self._own = members.start.shape[1], members.columns
+        self.kernel, self._kinematics = _kernels(members, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
-        self._names = state_names(model)
         self._values = {name: np.zeros(lanes) for name in members.varied}
         self._formulas = members.conditions.formulas
         self._inputs = program_kernel(members.conditions.expressions, folder) if self._formulas else None
@@ -117,7 +146,7 @@ class KernelRates:
     @property
     def size(self) -> int:
         """Length of a state."""
-        return 2 * self.n + self.has_power + self.integrals
+        return self.held + self.has_power + self.integrals
 
     def load(self, lanes: Places, members: Places) -> None:
         """The parameters of ``members`` become those of ``lanes``."""
@@ -126,42 +155,64 @@ class KernelRates:
 
     def bound(self, t: Array, x: Array, found: Array) -> Callable[[], None]:
         """What writes x' (L, m) at t (L,), x (L, m) into ``found``."""
-        n, values = self.n, self.members.constants | self._values | {"t": t}
-        columns = [(self._names, x[:, : 2 * n])]
-        laws: Callable[[], None] | None = None
+        n, held, values = self.n, self.held, self.members.constants | self._values | {"t": t}
+        own = [(self._own, x[:, :held])]
+        rates, moving = found[:, :n], own
+        if self._kinematics is not None:
+            # q' of (q, v), which stands in x' anyway
+            names = state_names(self.members.model)
+            moving = [(names[:n], x[:, :n]), (names[n:], rates)]
+            runs = [self._kinematics.bind({RATES: rates}, values, columns=own)]
+        else:
+            velocities = x[:, n:held]
+            runs = [lambda: np.copyto(rates, velocities)]
+        columns = own
         if self._inputs is not None:
             followed = np.zeros((len(t), len(self._formulas)))
-            laws = self._inputs.bind({"inputs": followed}, values, columns=columns)
-            columns = [*columns, (list(self._formulas), followed)]
-        outputs = {ACCELERATION: found[:, n : 2 * n]} | ({POWER: found[:, 2 * n]} if self.has_power else {})
-        runs = [self.kernel.bind(outputs, values, columns=columns)]
+            runs.append(self._inputs.bind({"inputs": followed}, values, columns=moving))
+            columns, moving = ([*some, (list(self._formulas), followed)] for some in (own, moving))
+        second = ACCELERATION if self._kinematics is None else QUASI_ACCELERATION
+        outputs = {second: found[:, n:held]} | ({POWER: found[:, held]} if self.has_power else {})
+        runs.append(self.kernel.bind(outputs, values, columns=columns))
         if self._integrands is not None:
             places = {INTEGRANDS: found[:, self.size - self.integrals :]}
-            runs.append(self._integrands.bind(places, values, columns=columns))
-        rates, velocities = found[:, :n], x[:, n : 2 * n]
+            runs.append(self._integrands.bind(places, values, columns=moving))
 
         def go() -> None:
             """Once more."""
-            rates[:] = velocities
-            if laws is not None:
-                laws()
             for run in runs:
                 run()
 
         return go
 
 
-def along(members: Members, chosen: slice, t: Array, x: Array) -> dict[str, float | Array]:
-    """Values of all symbols but the state of some members along their motions ``x`` (M, K, m): numbers, or (M, K)."""
+def _kernels(members: Members, folder: Path | None) -> tuple[Kernel, Kernel | None]:
+    """Of accelerations and power, and of q' where that is no part of the state."""
+    if members.equations is None:
+        return forward_kernel(members.model, members.zero, folder), None
+    source = solved(members.equations, members.zero)
+    return (
+        compile_program(source, (QUASI_ACCELERATION, POWER), folder),
+        compile_program(source, (RATES,), folder),
+    )
+
+
+def along(members: Members, chosen: slice, t: Array, x: Array) -> tuple[dict[str, float | Array], Array]:
+    """Of some members along their motions ``x`` (M, K, m): values of all symbols but the state, numbers or (M, K), and
+    (q, q') (M, K, 2n).
+    """
     count, times = x.shape[:2]
     values: dict[str, float | Array] = dict(members.constants)
     for name, column in members.varied.items():
         values[name] = np.repeat(column[chosen, None], times, axis=1)
     values["t"] = np.tile(t, (count, 1))
-    conditions, n = members.conditions, members.model.dof
+    flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
+    conditions, names = members.conditions, state_names(members.model)
+    state = np.ascontiguousarray(x[..., : members.start.shape[1]]).reshape(count * times, -1)
+    if members.equations is not None:
+        state = full_states(members.equations, flat, state)
     if conditions.formulas:
-        flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
-        kernel, state = program_kernel(conditions.expressions), np.ascontiguousarray(x[..., : 2 * n]).reshape(-1, 2 * n)
-        found = kernel.evaluate(flat, ["inputs"], columns=[(state_names(members.model), state)])["inputs"]
+        kernel = program_kernel(conditions.expressions)
+        found = kernel.evaluate(flat, ["inputs"], columns=[(names, state)])["inputs"]
         values |= {name: found[:, k].reshape(count, times) for k, name in enumerate(conditions.formulas)}
-    return values
+    return values, state.reshape(count, times, -1)

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.documents.units import read_unit
@@ -21,26 +22,42 @@ MOST = 10_000_000
 STATE = {"q": "", "qd": "'"}
 
 
-def with_samples(model: Model, samples: Samples | None, given: Mapping[str, Any]) -> dict[str, Any]:
-    """The arguments ``q, qd, parameters, inputs`` of an ensemble with the samples in their places, numbers in SI.
+def with_samples(
+    model: Model, samples: Samples | None, given: Mapping[str, Any], kind: ConstrainedMotion | None = None
+) -> dict[str, Any]:
+    """The arguments ``q, qd, v, parameters, inputs`` of an ensemble with the samples in their places, numbers in SI.
 
     ``samples.of``: coordinates, velocities (``arm.q1'``), parameters, inputs by name; what is sampled of a state stands
-    in place of what is given, 0 where nothing is. Raises InvalidArgument (``/samples/of/name``, ``/samples/count``).
+    in place of what is given, 0 where nothing is. ``kind``: with constraints velocities are quasi-velocities. Raises
+    InvalidArgument (``/samples/of/name``, ``/samples/count``).
     """
     if samples is None:
         return dict(given)
-    _check(model, samples, given)
+    named = {} if kind is None else dict.fromkeys(kind.velocities or (), "")
+    _check(model, samples, given, named)
     sampler = Sampler(samples)
     drawn = sampler.rows(0, sampler.size)
     found = dict(given)
     for field in ("parameters", "inputs"):
         known = model.parameters if field == "parameters" else model.input_names
         found[field] = {**(given.get(field) or {}), **{name: x for name, x in drawn.items() if name in known}}
-    for field, primes in STATE.items():
+    if kind is not None:
+        places = {*named, *(f"{name}'" for name in model.coordinates)}
+        found["v"] = _quasi_velocities(given.get("v"), {name: x for name, x in drawn.items() if name in places})
+    for field, primes in STATE.items() if kind is None else [("q", "")]:
         columns = {a: drawn[c + primes] for a, c in enumerate(model.coordinates) if c + primes in drawn}
         if columns or field == "q":
             found[field] = _state(model, given.get(field), columns, sampler.size)
     return found
+
+
+def _quasi_velocities(v: Any, drawn: Mapping[str, Array]) -> Any:
+    """Those that are given, with what is drawn in place of them. Raises InvalidArgument (``/v``)."""
+    if not drawn:
+        return v
+    if v is not None and not isinstance(v, Mapping):
+        raise InvalidArgument.at("/v", "by-name", "give quasi-velocities beside samples of others by name")
+    return {**(v or {}), **drawn}
 
 
 def _state(model: Model, given: Any, columns: Mapping[int, Array], count: int) -> Array:
@@ -51,8 +68,8 @@ def _state(model: Model, given: Any, columns: Mapping[int, Array], count: int) -
     return state
 
 
-def _check(model: Model, samples: Samples, given: Mapping[str, Any]) -> None:
-    units = dict(model.units)
+def _check(model: Model, samples: Samples, given: Mapping[str, Any], named: Mapping[str, str]) -> None:
+    units = {**model.units, **named}
     for field, primes in STATE.items():
         units |= {f"{name}{primes}": unit for name, unit in model.state_units[field].items()}
     faults = []

@@ -21,6 +21,8 @@ from typing import Any
 
 MODEL, CONDITION, FORWARD = "model", "condition", "forward_dynamics"
 REGRESSOR, REACTIONS, POWERS = "regressor", "reactions", "powers"
+#: q', v' and q'' in independent velocities v, with velocity constraints
+VELOCITY_DYNAMICS = "velocity_dynamics"
 #: formulas that follow from a model by an analysis, and outputs of a part: not numbers of a tree
 ANALYSIS, PART = "analysis", "part"
 COORDINATES, FRAMES, DRIVEN, IGNORED = "coordinates", "frames", "driven", "ignored"
@@ -277,6 +279,7 @@ _ROWS = (
     *(_made(name, "q p", symbol="R") for name in ("riemann", "ricci", "scalar_curvature")),
     _made("curvature", "q p"),
     _made("christoffel_second", "q p", symbol=r"\Gamma", raised=1),
+    _made(VELOCITY_DYNAMICS, "t q u p", arrays=()),
     _made("base_regressor", "q qd qdd p"),
     _made("base_parameters", "p"),
     _made("prepare", "p"),

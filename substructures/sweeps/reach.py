@@ -20,6 +20,7 @@ from substructures.sweeps.document import WORLD, ReachColumn
 from substructures.sweeps.grouped import alike, inside
 from substructures.sweeps.shapes import Shape
 from substructures.tree.given.driven import PRIMES
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
 
 #: starts, which are drawn between the limits; rounds over all coordinates; points of a grid
@@ -65,6 +66,7 @@ class _Search:
     def __post_init__(self) -> None:
         model = self.shape.model
         require_open(model.closures, "sweep other columns")
+        require_untied(model, "columns of reach")
         self.ends = _frame(model, self.column.of, "of"), _frame(model, self.column.about, "about")
         self.matters, self.is_simple = np.ones((2, model.dof, self.rows), dtype=np.bool_)
         judge = self.shape.sources.judge

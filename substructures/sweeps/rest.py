@@ -19,6 +19,7 @@ from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import EquilibriumColumn
 from substructures.sweeps.grouped import alike, check_fields, inside
 from substructures.sweeps.shapes import Shape
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import require_open
 
 STATE = ("q", "qd", "inputs", "t")
@@ -42,6 +43,7 @@ class AtRest:
         """The coordinates (rows, n) of ``at``. Raises InvalidInput."""
         model = self.shape.model
         require_open(model.closures, "sweep other columns")
+        require_untied(model, "columns of equilibria and linearisations")
         require_smooth(model)
         check_fields(self.at, STATE)
         if why := unsteady(model, self.at.get("inputs") or {}):

@@ -14,7 +14,8 @@ from scipy.optimize import brentq
 
 from substructures import InvalidInput, Model
 from substructures.analysis.stability.continuation import Continuation
-from substructures.analysis.stability.steady_motions import SteadyMotions, steady_motions
+from substructures.analysis.stability.steady_motions import steady_motions
+from substructures.analysis.stability.steady_result import SteadyMotions
 from substructures.analysis.stability.steady_search import SteadySearch
 
 G, RADIUS, HOOP = 9.81, 0.5, 0.3

@@ -21,7 +21,8 @@ from substructures.analysis.stability.closed_search import is_met
 from substructures.analysis.stability.found_places import still
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.operating_point import is_small
-from substructures.analysis.stability.steady_motions import SteadyMotion, steady_motions
+from substructures.analysis.stability.steady_motions import steady_motions
+from substructures.analysis.stability.steady_result import SteadyMotion
 from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret

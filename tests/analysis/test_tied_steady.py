@@ -108,7 +108,10 @@ def test_what_means_nothing_says_so() -> None:
     model = tied(sleigh_part(), [EDGE], (0, 0, 0))
     for given, pointer in (
         ({"momenta": {"s.f": 1}}, "/momenta"),
-        ({"rates": {"s.f": 1}, "vary": "s.m", "between": (1, 2)}, "/vary"),
+        ({"rates": {"s.f": 1}, "held": "rates"}, "/held"),
+        ({"rates": {"s.f": 1}, "vary": "s.m"}, "/between"),
+        ({"rates": {"s.f": 1}, "vary": "s.k", "between": (1, 2)}, "/vary"),
+        ({"rates": {"s.f": 1}, "vary": "s.f", "between": (1, 1)}, "/between"),
         ({"rates": {"s.x": 1}, "velocities": FORWARD}, "/rates/s.x"),
         ({}, "/rates"),
     ):

@@ -16,9 +16,7 @@ from substructures import (
     catalogue,
     frequency_response,
     linearise,
-    sensitivities,
     simulate,
-    simulate_ensemble,
 )
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints, constraints_of
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
@@ -93,8 +91,6 @@ def test_what_is_left_of_it() -> None:
         lambda: motion_arguments(model, q=[0, 0, 0], span=(0, 1), constraints=(BLADE, BLADE)),
         lambda: quasi_velocity_equations(model, [Linear("x", "s.x'")]),
         lambda: frequency_response(model, [0, 0, 0]),
-        lambda: sensitivities(model, [0, 0, 0], (0, 1), by=["s.m"]),
-        lambda: simulate_ensemble(model, [0, 0, 0], (0, 1)),
     ]
     for each in refused:
         with pytest.raises(InvalidInput) as caught:
@@ -131,7 +127,7 @@ def test_units_and_contradictions() -> None:
         check_constraints(tied(sleigh_part(), twice))
     assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == ("/velocity_constraints", "contradiction")
     with pytest.raises(InvalidInput) as caught:
-        check_constraints(tied(sleigh_part(), [EDGE], driven={"s.f": "t"}))
+        check_constraints(tied(sleigh_part(), [EDGE], driven={"s.f": {"input": True}}))
     assert caught.value.faults[0].code == "has-driven"
 
 

@@ -19,9 +19,8 @@ from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.perturbation import state_space
 from substructures.analysis.equations.routh import routh
-from substructures.analysis.from_fields import sensitivity_arguments
 from substructures.analysis.identification.base_parameters import base_parameters
-from substructures.analysis.motion.parameter_sensitivity import sensitivities, variational
+from substructures.analysis.motion.variation import variational
 from substructures.quantities.formulas import derived, kept
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.regressor import regressor
@@ -101,7 +100,6 @@ def test_numbers_do_not_make_formulas() -> None:
 
 
 def refused() -> list[tuple[str, Callable[[Model], Any]]]:
-    span: Plain = {"q": [0.7, 0.2, 1.2], "span": [0, 1]}
     return [
         ("evaluate it", lambda m: derived(m, FD)),
         ("linearisations", lambda m: derived(m, f"{FD}_derivative")),
@@ -110,7 +108,6 @@ def refused() -> list[tuple[str, Callable[[Model], Any]]]:
         ("perturbation", state_space),
         ("first integrals", routh),
         ("simulations", lambda m: variational(m, [])),
-        ("simulations", lambda m: sensitivities(m, **sensitivity_arguments(**span, by=[]))),
         ("'type': 'closure'", lambda m: quasi_velocity_equations(m, [])),
     ]
 

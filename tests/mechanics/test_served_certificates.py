@@ -19,11 +19,11 @@ from substructures.analysis.closed import work
 from substructures.analysis.control import adjoint
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations import curvature, first_integrals, perturbation, routh, steady
-from substructures.analysis.equations.nonholonomic import linearised, quasi_velocities
+from substructures.analysis.equations.nonholonomic import linearised, quasi_velocities, solved
 from substructures.analysis.equations.nonholonomic.quasi_equations import QuasiEquations
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
 from substructures.analysis.identification import base_parameters as base
-from substructures.analysis.motion import parameter_sensitivity, right_hand_side
+from substructures.analysis.motion import parameter_sensitivity, right_hand_side, variation
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
@@ -105,7 +105,7 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
     "perturbation of closed loops": (lambda: perturbation.perturbation(model(closed=True)), "closure.jacobian_rate"),
     "state space": (lambda: perturbation.state_space(model(), ["x.x*y.y' + x.u^2", "sin(y.x)"], CONTROLS), "A"),
     "sensitivity": (lambda: parameter_sensitivity.sensitivity_formulas(model(), ["x.l", "y.k"]), "metric:x.l"),
-    "variation": (lambda: parameter_sensitivity.variational(model(), ["x.l"]), "variation"),
+    "variation": (lambda: variation.variational(model(), ["x.l"]), "variation"),
     "curvature": (lambda: curvature.curvature(model()), "riemann"),
     "first integrals": (lambda: first_integrals.first_integrals(model(free=True)), "power"),
     "first integrals of closed loops": (lambda: first_integrals.first_integrals(model(closed=True)), "power"),
@@ -131,6 +131,8 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: linearised.linearised(model(), CONSTRAINTS, (None, ("x.x", "y.y"), None)),
         "rates_by_position",
     ),
+    "motion with velocity constraints": (lambda: solved.solved(tied(), ["x.u"]), "second"),
+    "variation with velocity constraints": (lambda: solved.varied(tied(), ["x.l"]), "rates_variation"),
     "velocity equations of closed loops": (
         lambda: quasi_velocities.quasi_velocity_equations(model(closed=True), [Closed("r")]),
         "gaps",
@@ -145,8 +147,15 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
 }  # fmt: skip
 MODULES = (
     *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, of_parts),
-    *(right_hand_side, routh, steady, work, linearised),
+    *(right_hand_side, routh, steady, work, linearised, solved, variation),
 )
+
+
+@cache
+def tied() -> quasi_velocities.QuasiVelocities:
+    """The constraints move, so that they do work."""
+    turned = Linear("turned", "sin(x.y)*x.x' - 0.3*y.x' - x.k*y.y' + x.l*cos(t*x.x)")
+    return quasi_velocities.quasi_velocity_equations(model(), [turned])
 
 
 @dataclass
@@ -201,8 +210,10 @@ def clear() -> None:
     perturbation._perturbation.cache_clear()
     linearised._linearised.cache_clear()
     first_integrals._found.cache_clear()
-    parameter_sensitivity._variational.cache_clear()
+    variation._variational.cache_clear()
     steady._steady_formulas.cache_clear()
+    solved._solved.cache_clear()
+    solved._varied.cache_clear()
 
 
 def halved(function: Callable[..., list[Expr]]) -> Callable[..., list[Expr]]:
@@ -226,7 +237,9 @@ FAULTS: dict[str, tuple[Any, str, Callable[..., Any]]] = {
     "perturbation": (derivatives, "directional", halved(derivatives.directional)),
     "perturbation of closed loops": (perturbation, "directional", halved(perturbation.directional)),
     "sensitivity": (parameter_sensitivity, "directional", halved(parameter_sensitivity.directional)),
-    "variation": (parameter_sensitivity, "directional", halved(parameter_sensitivity.directional)),
+    "variation": (variation, "directional", halved(variation.directional)),
+    "motion with velocity constraints": (solved, "directional", halved(solved.directional)),
+    "variation with velocity constraints": (solved, "directional", halved(solved.directional)),
     "curvature": (curvature._Space, "_dot", lambda s, x, _: s.graph.sum(p * p for p in x)),
     "adjoint": (adjoint, "pullback", halved(adjoint.pullback)),
     "routhian": (routh._Reduction, "_metric", lambda r, a, b: r.g.get((r.rest[a], r.rest[b]), r.zero)),

@@ -160,7 +160,6 @@ def test_formulas_that_closures_would_falsify(
 
 DRIVEN: dict[str, Any] = {"controls": ["tau.s.left"], "horizon": 1, "intervals": 2, "q": HANGING}
 NUMBERS: list[tuple[str, dict[str, Any], str]] = [
-    ("sensitivities", {"q": HANGING, "span": [0, 1], "by": ["s.c"]}, "has-closures"),
     ("curvatures", {"q": HANGING}, "has-closures"),
     ("identifications", {"q": [HANGING], "qd": [HANGING], "qdd": [HANGING], "tau": [HANGING]}, "has-closures"),
     ("cost-gradients", DRIVEN, "has-closures"),

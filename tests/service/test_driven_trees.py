@@ -98,7 +98,6 @@ def test_revisions_differ_in_their_motions(shaken: TestClient) -> None:
         ("equilibria", {}),
         ("steady-motions", {}),
         ("curvatures", {"q": [0.1]}),
-        ("velocity-equations", {"velocities": {"u": "2*cart.q'"}}),
         ("regulators", {"q": [0]}),
     ],
 )

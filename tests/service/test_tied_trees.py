@@ -104,9 +104,76 @@ def test_steady_motions_and_integrals(tied: TestClient) -> None:
     assert [each["name"] for each in integrals] == ["energy"]
 
 
+def test_ensembles_and_derivatives(tied: TestClient) -> None:
+    """In the velocities of the sleigh, drawn by name, also with units."""
+    speeds = {"uniform": [100, 200], "unit": "cm/s"}
+    samples = {"method": "sobol", "count": 4, "of": {"s.x'": speeds, "s.f": {"uniform": [0, 1]}}}
+    drawn = {"samples": samples, "span": [0, 1], "count": 2, "independent": ["s.x", "s.f"]}
+    many = tied.post("/v1/trees/sleigh/ensembles", json=drawn)
+    assert many.status_code == 200, many.text
+    found = many.json()
+    assert (found["right"], len(found["q"])) == (4, 4)
+    slopes = [(qd[0][1] / qd[0][0], q[0][2]) for q, qd in zip(found["q"], found["qd"], strict=True)]
+    np.testing.assert_allclose([a for a, _ in slopes], [np.tan(f) for _, f in slopes], rtol=1e-9)
+    assert all(1 <= qd[0][0] <= 2 for qd in found["qd"])
+    some = {**VELOCITIES, "q": [0, 0, 0.4], "v": {"u": [1, 2], "w": 1}, "span": [0, 1], "count": 2}
+    assert tied.post("/v1/trees/sleigh/ensembles", json=some).json()["count"] == 2
+    asked = {**START, **VELOCITIES, "span": [0, 1], "count": 3, "by": ["s.a"], "of_start": True}
+    own = tied.post("/v1/trees/sleigh/sensitivities", json=asked)
+    assert own.status_code == 200, own.text
+    assert own.json()["is_right"] is True
+    beside = tied.post("/v1/trees/free/sensitivities", json={**asked, "constraints": [EDGE]})
+    assert own.json()["series"] == beside.json()["series"]
+    assert np.shape(own.json()["series"]["d.start"]) == (3, 6, 5)
+    # what is of constraints means nothing without
+    refused = tied.post("/v1/trees/free/sensitivities", json={**START, "span": [0, 1], "by": ["s.a"]})
+    assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/v", "not-supported")]
+
+
+def test_formulas_of_what_perturbs_a_motion(tied: TestClient) -> None:
+    """In quasi-velocities, which are named."""
+    found = tied.get("/v1/trees/sleigh/perturbation").json()
+    assert found["constraints"] == ["blade"]
+    assert len(found["velocities"]) == 2
+    assert {"metric", "damping", "stiffness", "rates_by_position"} <= {*found["outputs"]}
+    assert tied.get("/v1/trees/sleigh/parameter_sensitivity?parameters=s.a").status_code == 200
+
+
+def test_dynamics_in_independent_velocities(tied: TestClient) -> None:
+    """As formulas, in code, and as an FMU; where they are singular is said."""
+    found = tied.get("/v1/trees/sleigh/velocity_dynamics?independent=s.f,s.x")
+    assert found.status_code == 200, found.text
+    assert found.json()["velocities"] == ["s.x'", "s.f'"]
+    assert {*found.json()["outputs"]} == {"rates", "acceleration", "second", "power"}
+    (warning,) = found.json()["warnings"]
+    assert (warning["code"], "cos(f) is zero" in warning["message"]) == ("singular-velocities", True)
+    text = tied.get("/v1/trees/sleigh/velocity_dynamics?format=text&independent=s.x,s.f").text
+    assert "*v_x" in text
+    code = tied.get("/v1/trees/sleigh/export?target=c&quantities=velocity_dynamics&independent=s.x,s.f")
+    assert code.status_code == 200, code.text
+    assert tied.get("/v1/trees/sleigh/export?target=fmu").status_code == 200
+    refused = tied.get("/v1/trees/free/export?target=fmu&independent=s.x")
+    assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/query/independent", "not-of-quantity")]
+
+
+def test_best_parameters(tied: TestClient) -> None:
+    """The place of the mass centre at which the sleigh turns least in a second; what ignores the blade says so."""
+    motion = {"analysis": "simulation", "at": {"q": [0, 0, 0], "qd": [1, 0, 0.5]}, "span": [0, 1], "expression": "s.f"}
+    asked = {"vary": {"s.a": [0.1, 0.3]}, "columns": {"turn": motion}, "minimise": "turn", "starts": 1}
+    found = tied.post("/v1/trees/sleigh/optimal-parameters", json=asked)
+    assert found.status_code == 200, found.text
+    assert found.json()["parameters"]["s.a"] == pytest.approx(0.3)
+    rest = {"analysis": "equilibrium", "at": {"q": [0, 0, 0]}, "of": "s.f"}
+    held = {"analysis": "linearisation", "at": {"q": [0, 0, 0]}, "held": True, "take": "lowest_frequency"}
+    for column in (rest, held):
+        refused = tied.post("/v1/trees/sleigh/optimal-parameters", json={**asked, "columns": {"turn": column}})
+        assert refused.status_code == 422, refused.text
+        assert refused.json()["errors"][0]["code"] == "has-velocity-constraints"
+
+
 REFUSED: list[tuple[str, dict[str, Any]]] = [
-    ("sensitivities", {"q": [0, 0, 0], "span": [0, 1]}),
-    ("ensembles", {"q": [0, 0, 0], "span": [0, 1]}),
+    ("periodic-orbits", {"q": [0, 0, 0], "period": 1}),
+    ("cost-gradients", {"q": [0, 0, 0], "cost": {"running": "t"}, "horizon": 1}),
     ("frequency-responses", {"q": [0, 0, 0]}),
     ("loop-states", {"q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["forward_dynamics"], "q": [0, 0, 0]}),
@@ -124,7 +191,7 @@ def test_what_would_ignore_them_says_so(tied: TestClient, path: str, body: dict[
     assert "take simulations, linearisations, velocity-equations" in fault["message"]
 
 
-@pytest.mark.parametrize("path", ["perturbation", "routhian", "curvature", "report", "export?target=fmu"])
+@pytest.mark.parametrize("path", ["state_space", "routhian", "curvature", "report", "export?target=simulink"])
 def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
     answer = tied.get(f"/v1/trees/sleigh/{path}")
     assert answer.status_code == 422, answer.text[:300]
@@ -172,8 +239,8 @@ def test_jobs_take_it() -> None:
                 "items": [
                     {
                         "tree": "sleigh",
-                        "analysis": "root-loci",
-                        "request": {"parameter": "s.m", "values": [1], "q": [0, 0, 0]},
+                        "analysis": "poincare-sections",
+                        "request": {"q": [0, 0, 0], "quantity": "s.x", "duration": 1},
                     }
                 ]
             },
@@ -183,9 +250,15 @@ def test_jobs_take_it() -> None:
     for kind, request in refused:
         with pytest.raises(InvalidInput, match="velocity constraints 'blade'"):
             outcomes(library, kind, request)
-    (fmu,) = outcomes(library, "export", {"items": [{"tree": "sleigh", "target": "fmu"}]})
-    assert fmu.problem is not None
-    assert fmu.problem["errors"][0]["code"] == "has-velocity-constraints"
+    fmu = {"tree": "sleigh", "target": "fmu", "independent": ["s.x", "s.f"]}
+    (found,) = outcomes(library, "export", {"items": [fmu]})
+    assert found.problem is None
+    (wrong,) = outcomes(library, "export", {"items": [{**fmu, "independent": ["s.x", "s.q"]}]})
+    assert wrong.problem is not None
+    assert wrong.problem["errors"][0]["pointer"] == "/independent/1"
+    (other,) = outcomes(library, "export", {"items": [{**fmu, "target": "c"}]})
+    assert other.problem is not None
+    assert [(e["pointer"], e["code"]) for e in other.problem["errors"]] == [("/independent", "not-of-quantity")]
 
 
 def test_every_analysis_and_quantity_takes_them_or_says_so() -> None:

@@ -63,6 +63,9 @@ def export(
         bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
     ] = False,
     standard: Annotated[str, one_of(STANDARDS, help="Of c.")] = STANDARDS[0],
+    independent: Annotated[
+        str, typer.Option(help="Coordinates in whose velocities constrained motions are: name,...")
+    ] = "",
     part: Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")] = False,
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
@@ -74,7 +77,8 @@ def export(
     names = tuple(text for text in quantities.split(",") if text)
     if out is not None and out.is_dir():
         raise IsADirectoryError(EISDIR, "a folder", str(out))
-    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard)
+    own = tuple(text for text in independent.split(",") if text)
+    request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard, own)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
     path, ending = out or Path(package.name), Path(package.name).suffix
@@ -99,7 +103,7 @@ def _local(path: Path, request: ExportRequest) -> Package:
     if isinstance(read, Part):
         return part_package(read, path.name, read.definition.digest, request, limit)
     source = coupled_source(*read)
-    others = makers(source)
+    others = makers(source, request.independent)
     return tree_package(source.sources, path.stem, path.name, source.digest, request, limit, lambda: read, others)
 
 
@@ -117,6 +121,7 @@ def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) ->
         "ranges": request.ranges,
         "stages": request.stages,
         "standard": request.standard,
+        "independent": ",".join(request.independent),
     }
     with server.client() as client:
         answer = client.request("GET", f"/v1/{kind}/{step(tree)}/export", params=wanted)

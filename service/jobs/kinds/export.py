@@ -1,7 +1,7 @@
 """export: an item is ``{"tree", "quantity", "format", "form", "bind", "options", "name", "group"}``; its outcome is the
 text. Or ``{"tree", "target", "quantities", "name", "bind", "together", "packed", "fmi", "precision", "ranges",
-"stages", "standard"}``: what is got by ``GET /v1/trees/{tree}/export``; with ``substructure`` in place of ``tree``, by
-``GET /v1/substructures/.../export``.
+"stages", "standard", "independent"}``: what is got by ``GET /v1/trees/{tree}/export``; with ``substructure`` in place
+of ``tree``, by ``GET /v1/substructures/.../export``.
 
 The fields mean what they mean for ``GET /v1/trees/{tree}/{quantity}``; ``form``, ``bind``, ``options`` (lists of texts
 by name, for quantities such as ``state_space``) and ``group`` may be left out. For ``velocity-equations`` there is
@@ -185,7 +185,7 @@ def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
         request,
         item["nodes"],
         lambda: tree_parts(item["parts"], blobs),
-        makers(source),
+        makers(source, request.independent),
     )
 
 

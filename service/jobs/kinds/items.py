@@ -124,6 +124,7 @@ class Packed(DocumentPart):
     ranges: str = ""
     stages: StrictBool = False
     standard: Annotated[str, one_of("value", lambda: STANDARDS)] = STANDARDS[0]
+    independent: list[str] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _fits(self) -> Self:

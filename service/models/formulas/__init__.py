@@ -15,6 +15,7 @@ from service.models.source import Source
 from substructures.errors import InvalidDocument, InvalidInput, TooLarge
 from substructures.expr.program import Program
 from substructures.late import Table
+from substructures.quantities.quantity import VELOCITY_DYNAMICS
 from substructures.tree.given.ties import require_untied
 
 if TYPE_CHECKING:
@@ -33,6 +34,7 @@ OPTIONS = {
     "running": "cost per second, an expression in coordinates, velocities, inputs, parameters and t (adjoint)",
     "terminal": "cost at the end, an expression in coordinates, velocities, parameters and t (adjoint)",
     "joints": "coordinates of joints, and instance.base of seats (reactions; default all)",
+    "independent": "coordinates whose velocities describe the motion (velocity_dynamics; default chosen)",
     "drives": "armature, viscous, coulomb, offset: columns of drives (base_parameters, base_regressor)",
 }
 
@@ -55,13 +57,18 @@ def made(source: Source, name: str, options: Options) -> Made:
     return Made(found.program.select(list(quantity.outputs)), found.members, found.value)
 
 
-def makers(source: Source) -> dict[str, Callable[[], Program]]:
-    """By name what makes the formulas of QUANTITIES, with the default of every option."""
-    return {name: partial(_program, source, name) for name in QUANTITIES}
+def makers(source: Source, independent: Sequence[str] = ()) -> dict[str, Callable[[], Program]]:
+    """By name what makes the formulas of QUANTITIES, with the default of every option but ``independent``."""
+    return {name: partial(_program, source, name, tuple(independent)) for name in QUANTITIES}
 
 
-def _program(source: Source, name: str) -> Program:
-    return made(source, name, {}).program
+def _program(source: Source, name: str, independent: tuple[str, ...]) -> Program:
+    if name != VELOCITY_DYNAMICS:
+        return made(source, name, {}).program
+    try:
+        return made(source, name, {"independent": independent}).program
+    except InvalidInput as error:
+        raise error.moved(lambda pointer: pointer.removeprefix("/query")) from None
 
 
 def check_options(name: str, given: Iterable[str], known: Sequence[str] = ()) -> None:
@@ -118,6 +125,7 @@ _QUANTITIES: Table[Quantity] = Table(
         **dict.fromkeys(("curvature", "riemann", "ricci", "scalar_curvature"), _GEOMETRY),
         "adjoint": _CONTROL,
         **dict.fromkeys(OF_PARTS, _INERTIAL),
+        VELOCITY_DYNAMICS: _CONSTRAINTS,
     },
 )
 QUANTITIES = tuple(_QUANTITIES)

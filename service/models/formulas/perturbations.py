@@ -7,6 +7,8 @@ from typing import Any
 from service.models.formulas.entry import Made, Options, Quantity
 from service.models.source import Source
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
+from substructures.analysis.equations.nonholonomic.linearised import linearised
+from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.perturbation import perturbation, state_space
 from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
@@ -14,6 +16,11 @@ from substructures.analysis.motion.parameter_sensitivity import sensitivity_form
 
 def _perturbation(source: Source, _: Options) -> Made:
     members: dict[str, Any] = {"coordinates": list(source.model.coordinates), "inputs": inputs_of(source.model)}
+    if source.model.velocity_constraints:
+        # in the velocities that are chosen for short formulas
+        equations, matrices = linearised(source.model, constraints_of(source.model), (None, None, None))
+        names = {"velocities": equations.velocities, "constraints": equations.constraints, "gaps": equations.gaps}
+        return Made(matrices, members | {name: list(some) for name, some in names.items()})
     if source.model.closures:
         members["multipliers"] = multipliers_of(source.model)
     return Made(perturbation(source.model), members)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 from service.models.numbers.analysis import Analysis, check_size
+from service.models.requests import arguments
 from service.models.source import Source
 from service.schemas.analyses.ensembles import EnsembleRequest
+from substructures.analysis.from_fields import reduced_kind
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
@@ -14,10 +17,17 @@ from substructures.ensembles.ensemble import Ensemble, simulate_ensemble
 from substructures.ensembles.sampled import with_samples
 from substructures.quantities.numbers.states import longest
 
+#: fields that say in which velocities motions with constraints are
+QUASI_VELOCITIES = ("constraints", "velocities", "independent", "v")
+
 
 def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) -> Ensemble:
     model = source.model
-    given = with_samples(model, request.samples, request.members())
+    fields = {name: x for name, x in arguments(request).items() if name in QUASI_VELOCITIES}
+    kind = reduced_kind(model, fields)
+    given = with_samples(model, request.samples, request.members(), kind)
+    if kind is not None:
+        kind = replace(kind, v=given["v"])
     states = not request.columns if request.states is None else request.states
     times = len(OutputTimes(request.span, request.grid()).grid())
     check_size(source, longest(given), len(request.columns) + 1 + 2 * model.dof * times * states)
@@ -32,7 +42,8 @@ def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) 
         source.folder,
     )
     q = given.pop("q")
-    how: dict[str, Any] = {"columns": request.columns, "grid": request.grid(), "states": states}
+    given.pop("v")
+    how: dict[str, Any] = {"columns": request.columns, "grid": request.grid(), "states": states, "kind": kind}
     return simulate_ensemble(source.sources, q, request.span, integrator=integrator, **how, **given)
 
 

@@ -96,7 +96,7 @@ def _sensitivities(source: Source, request: SensitivityRequest, report: Progress
     columns = len(request.by) + (2 * n if request.of_start else 0)
     check_size(source, len(request.output_times().grid()), 2 * n * (columns + 1))
     rest = without(given, "q", "friction", *SMOOTH)
-    rest = sensitivity_arguments(**rest, progress=report, folder=source.folder)
+    rest = sensitivity_arguments(source.model, **rest, progress=report, folder=source.folder)
     return sensitivities(source.model, request.q, **rest)
 
 

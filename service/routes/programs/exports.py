@@ -52,10 +52,14 @@ async def export_of(
     ranges: Annotated[str, Query(max_length=50_000, description=RANGES)] = "",
     stages: Annotated[bool, Query(description="of target=c: NAME_prepare(p, w), once per set of parameters")] = False,
     standard: Annotated[Literal["c99", "c89"], Query(description="of target=c")] = "c99",
+    independent: Annotated[
+        str, Query(max_length=5_000, description="coordinates in whose velocities constrained motions are, ...")
+    ] = "",
 ) -> ExportRequest:
     """The export that a request asks for."""
     names = tuple(text.strip() for text in quantities.split(",") if text.strip())
-    return ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard)
+    chosen = tuple(text.strip() for text in independent.split(",") if text.strip())
+    return ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard, chosen)
 
 
 ExportOf = Annotated[ExportRequest, Depends(export_of)]
@@ -81,7 +85,7 @@ async def export_substructure(
 
 def export_job(act: Act, of: Mapping[str, str], wanted: ExportRequest) -> Commit:
     """Prepare the job that exports the same. Raises InvalidInput with pointers into the query."""
-    item = {**of, **asdict(wanted), "quantities": list(wanted.quantities)}
+    item = {**of, **asdict(wanted), "quantities": list(wanted.quantities), "independent": list(wanted.independent)}
     try:
         return deferred(act, "export", item)()
     except InvalidInput as error:

@@ -6,11 +6,10 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, SkipValidation, model_validator
 
-from service.schemas.analyses.motions import Reals, Seconds, Span, checked
+from service.schemas.analyses.motions import Reals, Seconds, Span, WithQuasiVelocities, checked
 from service.schemas.measured import SECONDS, WithUnits
 from service.schemas.numbers import StateColumns, ValueColumns
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
-from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Positive, Real
 from substructures.ensembles.columns import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.samples import Samples
@@ -18,9 +17,9 @@ from substructures.ensembles.samples import Samples
 InputColumns = Annotated[dict[str, float | list[float] | str], SkipValidation, WithUnits()]
 
 
-class EnsembleRequest(DocumentPart):
+class EnsembleRequest(WithQuasiVelocities):
     """Motions from many starts, with many parameters: lists of M, or ``samples`` of any of them. Each has its own steps
-    and its own verdict.
+    and its own verdict. With constraints they are in quasi-velocities ``v``, (p,) or (M, p), or by name.
 
     ``columns``: what a motion is worth; without them the states are in the answer. At most one of ``times``, ``step``
     and ``count`` says at which times the columns and states are (default: 101 of equal distance).
@@ -57,4 +56,4 @@ class EnsembleRequest(DocumentPart):
 
     def members(self) -> dict[str, Any]:
         """Arguments that may be one for every member."""
-        return {name: getattr(self, name) for name in ("q", "qd", "parameters", "inputs")}
+        return {name: getattr(self, name) for name in ("q", "qd", "v", "parameters", "inputs")}

@@ -261,8 +261,16 @@ class AnySimulationRequest(RootModel[SimulationRequest | ClosedRequest | Rolling
     """
 
 
-class SensitivityRequest(SimulationRequest):
-    """A simulation, and the parameters by which its motion is differentiated."""
+class WithQuasiVelocities(VelocityConstraints):
+    """Constraints with ``v`` at the start; those of the tree, and its closures, are there without being named."""
+
+    v: Annotated[Any, QUASI_VELOCITIES] = Field(
+        None, description="quasi-velocities, with constraints: a list, or an object by name; 0 by default"
+    )
+
+
+class SensitivityRequest(SimulationRequest, WithQuasiVelocities):
+    """A simulation, and the parameters by which its motion is differentiated; with constraints in quasi-velocities."""
 
     by: tuple[str, ...] = Field((), description="parameters")
     of_start: bool = Field(False, description="also by coordinates and velocities at the start")

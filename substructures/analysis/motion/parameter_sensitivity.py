@@ -9,35 +9,36 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from functools import lru_cache, partial
-from pathlib import Path
+from functools import partial
 
 import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.formulas import ModelFormulas, require_tree
-from substructures.analysis.equations.kernels import Known, program_kernel
+from substructures.analysis.equations.formulas import ModelFormulas, require_moving
+from substructures.analysis.equations.nonholonomic.positions import closed_positions, start_velocities
+from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import MotionStates, integral_series, judge
 from substructures.analysis.motion.limits import with_limits
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.second_run import accurate, halves, second_run
-from substructures.analysis.motion.simulation import tree_conditions
+from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.motion.variation import Variation
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.certificate.derived.perturbed import by_parameters, varied
+from substructures.certificate.derived.perturbed import by_parameters
 from substructures.errors import Fault, InvalidArgument, among
-from substructures.expr.differentiate import directional
-from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, array, program
+from substructures.expr.differentiate import directional, gradient
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
@@ -90,30 +91,6 @@ def _require_parameters(model: Model, names: Sequence[str], argument: str) -> No
         raise InvalidArgument(faults)
 
 
-def variational(model: Model, parameters: Sequence[str]) -> Program:
-    """``acceleration`` (n,) and its ``variation`` (n,) along the symbols ``d.<name>`` of coordinates, velocities and
-    the given parameters. Raises InvalidInput for closures and for a metric that is always singular.
-    """
-    require_tree(model, "sensitivities")
-    return _variational(Known(model.program.digest, model), tuple(parameters))
-
-
-@lru_cache(maxsize=32)
-def _variational(known: Known, parameters: tuple[str, ...]) -> Program:
-    f = ModelFormulas(known.source)
-    names = [*(str(x.value) for x in (*f.q, *f.rates)), *parameters]
-    seeds = {name: f.graph.symbol(f"d.{name}") for name in names}
-    acceleration = f.acceleration
-    # q''(q, q', p): sum over all named z of (dq''/dz) d.z
-    variation = directional(acceleration, seeds)
-    symbols = f.symbols | {f"d.{name}": replace(f.symbols[name], name=f"d.{name}") for name in names}
-    outputs = {
-        "acceleration": array((f.n,), lambda a: acceleration[a]),
-        "variation": array((f.n,), lambda a: variation[a]),
-    }
-    return certified(program(f.graph, outputs, symbols), f.model, varied(parameters), "variation of the motion")
-
-
 def sensitivities(
     model: Model,
     q: StateVector | None,
@@ -125,6 +102,7 @@ def sensitivities(
     parameters: Mapping[str, float] | None = None,
     integrator: Integrator = DEFAULT,
     outputs: SensitivityOutputs = PLAIN,
+    kind: ConstrainedMotion | None = None,
 ) -> Trajectory:
     """The motion of a tree and its derivatives by the parameters ``by``: series ``d.<parameter>`` (K, 2n), dx/dp of
     x = (q, q') [rad, m, rad/s, m/s; per unit of the parameter].
@@ -132,6 +110,9 @@ def sensitivities(
     With ``outputs.of_start`` also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
     :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, the method
     is any but Taylor and FixedStep.
+
+    ``kind``: velocity constraints (default: those of the tree, and all closures). The start is (q, v) then, on the
+    closures, with quasi-velocities (series ``v`` (K, p)); ``d.start`` is (K, 2n, n+p), dx/d(q_0, v_0).
 
     Checks: first integrals of the motion, and a second run with tighter tolerances and shorter steps, whose relative
     difference is the stated error of the motion and of each derivative and may reach ``drift_limit``; both runs take
@@ -145,10 +126,55 @@ def sensitivities(
         times=OutputTimes(span, outputs),
         integrator=integrator,
     )
-    conditions = tree_conditions(problem)
+    return _varied(problem, _variation(problem, by, outputs.of_start, kind), by, integrator.progress)
+
+
+def _variation(problem: MotionProblem, by: Sequence[str], of_start: bool, kind: ConstrainedMotion | None) -> Variation:
+    """What is integrated. Raises InvalidInput, MissingValue."""
+    model, integrator, kind = problem.model, problem.integrator, usual_kind(problem.model, kind)
+    require_moving(model, "sensitivities")
+    conditions = read_conditions(model, problem.start, problem.span, DYNAMICS)
     require_plain(conditions, integrator)
-    variation = Variation(conditions, by, outputs.of_start, integrator.folder)
-    return _varied(problem, variation, by, integrator.progress)
+    if kind is None:
+        return Variation(conditions, by, of_start, integrator.folder)
+    equations, conditions, v = _constrained(conditions, kind, problem, by)
+    return Variation(conditions, by, of_start, integrator.folder, equations, v)
+
+
+def _constrained(
+    conditions: Conditions, kind: ConstrainedMotion, problem: MotionProblem, by: Sequence[str]
+) -> tuple[QuasiVelocities, Conditions, Array]:
+    """The equations, the start on the closures, and the quasi-velocities there. Raises InvalidInput (``/qd``, ``/v``,
+    ``/q``, ``/by/i``).
+    """
+    model, values = conditions.model, conditions.values | {"t": problem.span[0]}
+    place = values | dict(zip(model.coordinates, conditions.q.tolist(), strict=True))
+    equations = quasi_velocity_equations(
+        model, kind.constraints, velocities=kind.velocities, independent=kind.independent, near=place
+    )
+    _require_closed(equations, by)
+    q = closed_positions(equations, values, conditions.q[None])[0]
+    moved = replace(conditions, start=np.concatenate([q, conditions.qd]))
+    qd = None if problem.start.qd is None else conditions.qd
+    place = values | dict(zip(model.coordinates, q.tolist(), strict=True))
+    return equations, moved, start_velocities(equations, place, qd, kind.v)
+
+
+def _require_closed(equations: QuasiVelocities, by: Sequence[str]) -> None:
+    """Raises InvalidArgument (``/by/i``) for parameters with which a start on the closures would open them."""
+    closures = [f"{closure.name}.{row}" for closure in equations.model.closures for row in closure.rows]
+    if not closures or not by:
+        return
+    graph = Graph()
+    gaps = replay(equations.program, graph, {}, ["gaps"])["gaps"].entries
+    rows = {equations.gaps[k]: graph.lift(x) for (k,), x in gaps.items() if equations.gaps[k] in closures}
+    for label, slopes in zip(rows, gradient(list(rows.values()), by), strict=True):
+        for i, slope in enumerate(slopes):
+            if not slope.is_zero:
+                message = (
+                    f"the closure row '{label}' depends on '{by[i]}': the start would not stay closed; compare two"
+                )
+                raise InvalidArgument.at(f"/by/{i}", "opens-closure", f"{message} simulations")
 
 
 def require_plain(conditions: Conditions, integrator: Integrator) -> None:
@@ -169,14 +195,17 @@ def _varied(problem: MotionProblem, f: Variation, by: Sequence[str], progress: P
     motion = _integrated(f, problem.span, problem.times.grid(), problem.integrator, begun)
     runs = second_run(motion, problem.integrator, partial(_integrated, f, progress=ending))
     n, k = f.n, len(by)
-    x = np.array(motion.x).reshape(len(motion.x), f.columns + 1, 2 * n)
+    t, rows = np.array(motion.t), np.array(motion.x).reshape(len(motion.x), f.columns + 1, f.size)
+    x = f.full(t, rows)
     # rows x, S_1, ..., S_k; the columns of dx/dx_0 were integrated as rows
     series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(by)}
     if f.of_start:
         series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
+    if f.equations is not None:
+        series["v"] = rows[:, 0, n:]
     found = Trajectory(
         problem.model.coordinates,
-        np.array(motion.t),
+        t,
         x[:, 0, :n],
         x[:, 0, n:],
         series,
@@ -211,14 +240,14 @@ def _integrated(
 
 def _groups(f: Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, slice]]:
     """What the second run is compared in: coordinates and velocities of the motion and of every derivative."""
-    n, groups = f.n, {}
+    n, size, groups = f.n, f.size, {}
     rows = [("", "rad, m", "rad/s, m/s"), *((f" of d.{name}", "", "") for name in by)]
     for i, (about, unit, rate) in enumerate(rows):
-        start, middle, end = 2 * n * i, 2 * n * i + n, 2 * n * (i + 1)
+        start, middle, end = size * i, size * i + n, size * (i + 1)
         groups[f"q{about}"] = slice(start, middle), unit, slice(start, end)
-        groups[f"qd{about}"] = slice(middle, end), rate, slice(start, end)
+        groups[f"{'qd' if f.equations is None else 'v'}{about}"] = slice(middle, end), rate, slice(start, end)
     if f.of_start:
-        rest = slice(2 * n * len(rows), None)
+        rest = slice(size * len(rows), None)
         groups["d.start"] = rest, "", rest
     return groups
 
@@ -228,54 +257,8 @@ def _integrals(problem: MotionProblem, f: Variation, motion: IntegratedMotion) -
     model, conditions, n = problem.model, f.conditions, f.n
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
-    t, x, _ = motion.judged()
-    values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x[:, : 2 * n])}
-    states = MotionStates(t, x[:, :n], x[:, n : 2 * n], values, None)
+    t, rows, _ = motion.judged()
+    x = f.full(t, rows.reshape(len(t), f.columns + 1, f.size))[:, 0]
+    values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x)}
+    states = MotionStates(t, x[:, :n], x[:, n:], values, None)
     return judge(model, integrals, states, integral_series(model, integrals, states), problem.drift_limit)
-
-
-class Variation:
-    """The right-hand side for rows x, S_1, ..., S_k: all directions at once, as a batch of the kernel.
-
-    ``columns`` = k: those of the parameters, and with ``of_start`` 2n that are 1 at the start.
-    """
-
-    def __init__(self, conditions: Conditions, parameters: Sequence[str], of_start: bool, folder: Path | None) -> None:
-        model, n = conditions.model, conditions.model.dof
-        self.conditions, self.n, self.of_start = conditions, n, of_start
-        self.columns = len(parameters) + (2 * n if of_start else 0)
-        batch = max(self.columns, 1)
-        self.t, self.x = np.zeros(1), np.zeros((1, 2 * n))
-        self.d = np.zeros((batch, 2 * n))
-        self.out = {"acceleration": np.zeros((batch, n)), "variation": np.zeros((batch, n))}
-        names = state_names(model)
-        self.inputs = VaryingInputs(conditions, self.t, self.x, folder)
-        columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
-        # dp_i = 1 in the i-th direction, 0 in all others
-        seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}
-        kernel = program_kernel(variational(model, parameters), folder)
-        self.run = kernel.bind(self.out, conditions.values | {"t": self.t} | seeds, columns=columns)
-
-    def start(self) -> Array:
-        """The start, S = 0 for parameters and S = 1 for the start itself."""
-        rows = np.zeros((self.columns + 1, 2 * self.n))
-        # x(0) = x_0, S(0) = 0 for parameters, dx/dx_0 = 1
-        rows[0] = self.conditions.start
-        if self.of_start:
-            rows[-2 * self.n :] = np.eye(2 * self.n)
-        return rows.ravel()
-
-    def __call__(self, t: float, flat: Array) -> Array:
-        """x', S_1', ..., S_k' at t, as they stand in ``flat``."""
-        rows = flat.reshape(self.columns + 1, 2 * self.n)
-        n = self.n
-        self.t[0], self.x[0] = t, rows[0]
-        self.d[: self.columns] = rows[1:]
-        self.inputs.fill()
-        self.run()
-        result = np.empty_like(rows)
-        # rows x, S_1, ..., S_k: (q, q')' = (q', q''), (dq, dq')' = (dq', variation of q'')
-        result[:, :n] = rows[:, n:]
-        result[0, n:] = self.out["acceleration"][0]
-        result[1:, n:] = self.out["variation"][: self.columns]
-        return result.ravel()

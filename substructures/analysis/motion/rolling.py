@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
+from substructures.analysis.equations.nonholonomic.positions import start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
@@ -27,9 +28,7 @@ from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.velocity_choices import VelocityChoices
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.errors import InvalidArgument, among
-from substructures.expr.interpret import interpret, interpret_in_blocks
-from substructures.quantities.measured import numeric
+from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.numbers.limits import reached
 
 NEEDS = ("metric", "forces", "potential_energy")
@@ -63,7 +62,7 @@ def simulate_rolling(problem: RollingProblem) -> Trajectory:
     model, start, kind = problem.model, problem.span[0], problem.kind
     progress, folder = problem.integrator.progress, problem.integrator.folder
     conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
-    place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True))
+    place = dict(zip(model.coordinates, conditions.q.tolist(), strict=True)) | {"t": start}
     equations = quasi_velocity_equations(
         model, kind.constraints, velocities=kind.velocities, independent=kind.independent, near=place
     )
@@ -94,7 +93,9 @@ def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | Non
     """Velocities that the program chose are changed on the way, but where a corner of a force law is followed."""
     equations, conditions = rolling.equations, rolling.conditions
     given = problem.kind.velocities is not None or problem.kind.independent is not None
-    if given or not equations.singular or has_corners(equations.program) or has_corners(conditions.expressions):
+    is_moving = "t" in equations.program.needs(["constraints"])  # rows of frames that are driven
+    cornered = has_corners(equations.program) or has_corners(conditions.expressions)
+    if given or is_moving or cornered or not equations.singular:
         return VelocityChoices(rolling, None)
 
     def make(chosen: Sequence[str]) -> ReducedMotion:
@@ -143,45 +144,6 @@ def _start(rolling: ReducedMotion, problem: RollingProblem) -> Array:
     return start_velocities(equations, place | {"t": problem.span[0]}, qd, problem.kind.v)
 
 
-def start_velocities(equations: QuasiVelocities, place: Mapping[str, Any], qd: Any, v: Any) -> Array:
-    """The quasi-velocities (p,) that ``v`` gives, (p,) or by name, or velocities ``qd`` (n,) that meet the constraints;
-    0 by default. ``place``: values of coordinates, parameters and t. Raises InvalidArgument.
-    """
-    names = equations.velocities
-    if v is not None and qd is not None:
-        raise InvalidArgument.at("/v", "two-velocities", "give either 'v' or 'qd'")
-    found = interpret(equations.program, {**place, **dict.fromkeys(names, 0.0)}, ["T", "rates"])
-    T, given = found["T"], found["rates"]
-    if not np.isfinite(T).all():
-        message = f"the velocities {', '.join(names)} do not describe the motion at this start; take others"
-        raise InvalidArgument.at("/q", "singular-start", message)
-    if qd is None:
-        return _by_name(v, names)
-    # q' = T v + r, in the sense of least squares, and exact for velocities that meet B q' + b = 0
-    found_v = np.asarray(np.linalg.lstsq(T, qd - given)[0], dtype=np.float64)
-    left = np.abs(T @ found_v + given - qd).max(initial=0)
-    if left > 1e-9 * max(1.0, np.abs(qd).max(initial=0)):
-        message = f"these velocities violate the constraints by {left:.3g}; give 'v' ({', '.join(names)}) instead"
-        raise InvalidArgument.at("/qd", "violated", message)
-    return found_v
-
-
-def _by_name(given: Any, names: tuple[str, ...]) -> Array:
-    if given is None:
-        return np.zeros(len(names))
-    if isinstance(given, Mapping):
-        unknown = [name for name in given if name not in names]
-        if unknown:
-            message = f"unknown velocity '{str(unknown[0])[:80]}'{among(unknown[0], names)}"
-            raise InvalidArgument.at("/v", "unknown-velocity", message)
-        given = [given.get(name, 0) for name in names]
-    v = numeric(given, "/v")
-    if v.shape != (len(names),):
-        message = f"shape {v.shape} found, ({len(names)},) expected: {', '.join(names)}"
-        raise InvalidArgument.at("/v", "wrong-length", message)
-    return v
-
-
 def _judged(choices: VelocityChoices, problem: RollingProblem, motion: IntegratedMotion) -> Trajectory:
     equations, conditions, n = choices.first.equations, choices.first.conditions, choices.first.n
     t, states, results = motion.judged()
@@ -195,7 +157,7 @@ def _judged(choices: VelocityChoices, problem: RollingProblem, motion: Integrate
     v = states[:, n:-1] if choices.make is None else x[:, n + _places(equations)]
     series = columns | {"v": v, "work": states[:, -1], "constraints": slips}
     checks = _checks(t, series, problem.drift_limit, conditions.varied_potential())
-    span, message = reached(t, x[:, :n], x[:, n:]), _message(choices, motion, x[:, :n])
+    span, message = reached(t, x[:, :n], x[:, n:]), _message(choices, motion, t, x[:, :n])
     t, x = t[results], x[results]
     return Trajectory(
         equations.model.coordinates,
@@ -233,12 +195,12 @@ def _places(equations: QuasiVelocities) -> NDArray[np.int64]:
     return np.array([rates.index(name) for name in equations.velocities], dtype=np.int64)
 
 
-def _message(choices: VelocityChoices, motion: IntegratedMotion, q: Array) -> str:
+def _message(choices: VelocityChoices, motion: IntegratedMotion, t: Array, q: Array) -> str:
     """That of the motion; or that velocities that were kept do not describe it somewhere on the way."""
     equations = choices.first.equations
     if motion.message or choices.make is not None or not equations.singular or not len(q):
         return motion.message
-    values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True))
+    values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True)) | {"t": t}
     size = np.abs(interpret_in_blocks(equations.program, values, ["T"], len(q))["T"]).max(axis=(1, 2), initial=0)
     if not size.max() > FAR * size.min():
         return ""

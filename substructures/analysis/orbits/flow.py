@@ -10,16 +10,12 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
-from substructures.analysis.motion.parameter_sensitivity import (
-    Variation,
-    require_plain,
-    sensitivities,
-    variational,
-)
+from substructures.analysis.motion.parameter_sensitivity import require_plain, sensitivities
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.motion.variation import Variation, variational
 from substructures.array import Array
 
 

@@ -81,20 +81,20 @@ class ConstrainedSearch:
             independent = self._chosen((self.near[0], self.random[0]))
         self.kind = ConstrainedMotion(constraints, velocities=velocities, independent=independent)
         self.equations, self.matrices = linearised(model, constraints, choice_of(self.kind, {}))
-        self.known = values_at(self._point(self.near[0]))
-        self.known |= {f"{name}{prime}": 0.0 for name in self.equations.velocities for prime in ("", "'")}
+        self.known = self._values()
         order, moved = ignorable_coordinates(model.coordinates, self.equations.velocities, self.matrices, self.known)
         self.ignorable = sorted(order)
         #: at a constant rate in a steady motion
         self.moving = [a for a in self.ignorable if not moved[a, order].any()]
         self.still = [a for a in range(n) if a not in order]
         self.p = 0 if rates is None else len(self.equations.velocities)
-        wanted, names = self._known_rates(rates or {}), self.equations.velocities
-        self.rates = {model.coordinates.index(name): w for name, w in wanted.items() if name not in names}
-        self.speeds = {names.index(name): w for name, w in wanted.items() if name in names}
+        self.rates, self.speeds = dict[int, float](), dict[int, float]()
+        for name, w in self._known_rates(rates or {}).items():
+            self._put_rate(name, w)
         turning = [model.joints[a] == "R" for a in self.still]
         self.length = np.concatenate((np.where(turning, 1.0, within.reach), np.ones(self.p)))
         self.turning = np.array([*turning, *[False] * self.p], dtype=bool)
+        self.n = len(self.length)
 
     def _chosen(self, places: Sequence[Array]) -> tuple[str, ...]:
         """Independent coordinates near the first place where there are such."""
@@ -106,6 +106,44 @@ class ConstrainedSearch:
                 break
         names, _ = quasi_velocity_rows(f, rows, None, None, at)
         return tuple(name.removesuffix("'") for name in names)
+
+    def _values(self) -> dict[str, float]:
+        """Of all symbols, where nothing moves."""
+        rest = {f"{name}{prime}": 0.0 for name in self.equations.velocities for prime in ("", "'")}
+        return values_at(self._point(self.near[0])) | rest
+
+    def _put_rate(self, name: str, value: float) -> None:
+        names = self.equations.velocities
+        if name in names:
+            self.speeds[names.index(name)] = value
+        else:
+            self.rates[self.model.coordinates.index(name)] = value
+
+    def put(self, name: str, value: float) -> None:
+        """A parameter, or the rate of a coordinate or quasi-velocity that is given, has another value."""
+        if name in self.model.parameters:
+            self.conditions = replace(self.conditions, parameters={**self.conditions.parameters, name: value})
+            self.known = self._values()
+        else:
+            self._put_rate(name, value)
+
+    def measure(self, speed: float) -> None:
+        """Quasi-velocities are measured by this one, as lengths are by the reach."""
+        self.length[len(self.still) :] = speed
+
+    def is_rate(self, name: str) -> bool:
+        """Whether this is no parameter."""
+        return name not in self.model.parameters
+
+    def by_rate(self, name: str) -> Array:
+        """Derivatives of what is zero by a rate that is given."""
+        names, k = self.equations.velocities, len(self.equations.velocities) + len(self.still)
+        wanted = [*self.rates, *(len(self.model.coordinates) + i for i in self.speeds)]
+        number = len(self.model.coordinates) + names.index(name) if name in names else -1
+        number = self.model.coordinates.index(name) if number < 0 else number
+        result = np.zeros(k + len(wanted) + len(self.equations.gaps))
+        result[k + wanted.index(number)] = -1.0
+        return result
 
     def _point(self, q: Array) -> OperatingPoint:
         held = self.conditions
@@ -123,6 +161,10 @@ class ConstrainedSearch:
         if faults:
             raise InvalidArgument(faults)
         return rates
+
+    def place(self, at: ConstrainedLinearisation) -> Array:
+        """y of a linearisation."""
+        return np.concatenate((at.q[self.still], at.v[: self.p]))
 
     def equations_at(self, y: Array) -> tuple[Array, Array]:
         """What is zero, and its Jacobian."""
@@ -160,12 +202,12 @@ class ConstrainedSearch:
             # of a family, the members near to what is given
             if found is None or (found[1] and i >= len(self.near)):
                 continue
-            if not any(self._distance(found[0], y) < SAME for y, _ in places):
+            if not any(self.distance(found[0], y) < SAME for y, _ in places):
                 places.append(found)
         if places:
             order = np.lexsort(np.round(np.array([y / self.length for y, _ in places]), 6).T[::-1])
             places = [places[i] for i in order]
-        states = [FoundState(self._linearised(y), free) for y, free in places]
+        states = [FoundState(self.linearised(y), free) for y, free in places]
         return [state for state in states if state.at.is_steady]
 
     def _solve(self, x: Array) -> tuple[Array, int] | None:
@@ -191,7 +233,7 @@ class ConstrainedSearch:
             return None
         sizes = np.linalg.svd(J * self.length, compute_uv=False) if len(y) else np.zeros(0)
         rank = int((sizes > FREE * sizes.max(initial=0)).sum())
-        return self._wound(y), len(y) - rank
+        return self.wound(y), len(y) - rank
 
     def _newton(self, both: Callable[[Array], tuple[Array, Array]], y: Array) -> Array:
         """Steps of least size, as of families of places, shortened where they do not lead nearer."""
@@ -207,7 +249,7 @@ class ConstrainedSearch:
             y = y + share * step
         return y
 
-    def _wound(self, y: Array) -> Array:
+    def wound(self, y: Array) -> Array:
         """Angles in (-pi, pi], where a full turn changes nothing."""
         before, wound = self.equations_at(y)[0], y.copy()
         for a in np.flatnonzero(self.turning):
@@ -217,11 +259,13 @@ class ConstrainedSearch:
                 wound[a] = other[a]
         return wound
 
-    def _distance(self, y: Array, z: Array) -> float:
+    def distance(self, y: Array, z: Array) -> float:
+        """The largest difference, angles by the shorter way."""
         d = np.abs(y - z) / self.length
         return float(np.where(self.turning, np.minimum(d, np.abs(2 * np.pi - d)), d).max(initial=0))
 
-    def _linearised(self, y: Array) -> ConstrainedLinearisation:
+    def linearised(self, y: Array) -> ConstrainedLinearisation:
+        """The linearisation about y."""
         q, k = np.zeros(self.model.dof), len(self.still)
         q[self.still] = y[:k]
         return linearise_constrained(self._point(q), replace(self.kind, v=y[k:] if self.p else None))

@@ -108,14 +108,16 @@ class Continuation:
         lost = sizes[:n] / sizes.max(initial=1)
         if not n or lost[-1] > NEARLY or (lost < RANK).sum() > 1:
             return None
+        # n equations, where others follow from them
+        independent = left[:, :n].T
 
         def both(z: Array) -> Array:
             """F + b psi, psi F_u and |psi|^2 - 1 at z = (u, b, psi): b unfolds what does not cross."""
-            F, J = self.equations(z[: n + 1])
+            F, J = (independent @ x for x in self.equations(z[: n + 1]))
             psi = z[n + 2 :]
             return np.concatenate((F + z[n + 1] * psi, psi @ J, [psi @ psi - 1]))
 
-        start = np.concatenate((u, [0.0], left[:, n - 1]))
+        start = np.concatenate((u, [0.0], np.eye(n)[n - 1]))
         if not np.isfinite(both(start)).all():
             return None
         found = scipy.optimize.least_squares(both, start, jac="3-point", max_nfev=STEPS, **TOLERANCES)

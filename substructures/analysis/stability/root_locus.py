@@ -13,6 +13,11 @@ import scipy
 from substructures.analysis.arguments import Numbers, reals
 from substructures.analysis.given import StateArray, numbers
 from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.linearisation_result import (
+    ClosedLinearisation,
+    ConstrainedLinearisation,
+    Linearisation,
+)
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
@@ -25,8 +30,9 @@ MAX_VALUES = 10_000
 
 @dataclass(frozen=True, repr=False)
 class RootLocus:
-    """Branches: ``eigenvalues`` (N, 2r) [1/s] for r degrees of freedom (n of a tree without closures), ``q`` (N, n) and
-    ``stability`` verdicts at ``values`` (N,).
+    """Branches: ``eigenvalues`` (N, k) [1/s], ``q`` (N, n) and ``stability`` verdicts at ``values`` (N,). k is twice
+    the number of degrees of freedom (2n of a tree without closures); with velocity constraints those of the motions
+    that keep the gaps, without coordinates on which nothing depends.
 
     ``status`` ``failed``: the equilibrium was lost, ``message`` says where; the arrays end before.
     """
@@ -111,8 +117,16 @@ def _nearest(
     near = min(found, key=lambda e: float(np.abs(e.q - q).max(initial=0)))
     if near.at.stability is None:
         return None
-    # det(A - z 1) = 0
-    return near.q, np.linalg.eigvals(near.at.A).astype(np.complex128), near.at.stability.verdict
+    return near.q, _eigenvalues(near.at), near.at.stability.verdict
+
+
+def _eigenvalues(at: Linearisation | ClosedLinearisation | ConstrainedLinearisation) -> ComplexArray:
+    """z of det(A - z 1) = 0; with velocity constraints of the part of A whose modes are told."""
+    if not isinstance(at, ConstrainedLinearisation):
+        return np.linalg.eigvals(at.A).astype(np.complex128)
+    # modes have the eigenvalue of a pair that is not below the real axis
+    upper = [mode.eigenvalue for mode in at.modes]
+    return np.array([*upper, *(z.conjugate() for z in upper if z.imag)], dtype=np.complex128)
 
 
 def _followed(before: ComplexArray, roots: ComplexArray) -> ComplexArray:

@@ -14,12 +14,10 @@ from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
 from substructures.analysis.stability.nearly_cyclic import nearly_cyclic
+from substructures.analysis.stability.steady_result import Held
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.tree.model import Model
-
-#: what keeps its values in a disturbed motion
-Held = Literal["momenta", "rates"]
 
 
 @dataclass(frozen=True)
@@ -59,14 +57,16 @@ class SteadyConditions:
         return kind(self.model, moving, within, conditions, wanted, self.field == "momenta")
 
 
-def ends_of(model: Model, vary: str | None, between: Any) -> tuple[float, ...]:
-    """The two values between which something varies; else any. Raises InvalidArgument."""
+def ends_of(model: Model, vary: str | None, between: Any, velocities: Sequence[str] = ()) -> tuple[float, ...]:
+    """The two values between which a parameter, a coordinate or one of the ``velocities`` varies; else any. Raises
+    InvalidArgument.
+    """
     if (vary is None) != (between is None):
         message = "'vary' says what, and 'between' from where to where: give both, or none"
         raise InvalidArgument.at("/vary" if vary is None else "/between", "missing", message)
     if vary is None:
         return (0.0,)
-    known = [*model.parameters, *model.coordinates]
+    known = [*model.parameters, *model.coordinates, *velocities]
     if vary not in known:
         message = f"there is no parameter or coordinate '{str(vary)[:80]}'{among(vary, known)}"
         raise InvalidArgument.at("/vary", "unknown-name", message)
@@ -76,10 +76,10 @@ def ends_of(model: Model, vary: str | None, between: Any) -> tuple[float, ...]:
     return ends
 
 
-def require_rates(rates: object, momenta: object, held: Held, vary: str | None) -> None:
+def require_rates(rates: object, momenta: object, held: Held) -> None:
     """Raises InvalidArgument for what needs momenta that are kept, which trees with velocity constraints have not."""
     what = "a tree with velocity constraints, whose cyclic coordinates keep no momenta"
-    pairs = (("momenta", momenta is not None), ("held", held != "momenta"), ("vary", vary is not None))
+    pairs = (("momenta", momenta is not None), ("held", held != "momenta"))
     faults = [Fault(f"/{name}", "not-supported", f"'{name}' is not for {what}") for name, given in pairs if given]
     if not faults and rates is None:
         faults = [Fault("/rates", "missing", "'rates' are needed; none by name for any")]

@@ -19,26 +19,21 @@ Hamiltonian Hopf Bifurcation, 1985.
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
 from substructures.analysis.stability.continuation import LOST, Change, Continuation
-from substructures.analysis.stability.steady_search import SteadySearch
-from substructures.analysis.stability.vibrations import NEUTRAL, first_order
-from substructures.array import Array
+from substructures.analysis.stability.steady_result import CROSSED, Kind
+from substructures.analysis.stability.vibrations import NEUTRAL
+from substructures.array import Array, ComplexArray
 
-Kind = Literal["fold", "pitchfork", "transcritical", "branch-point", "zero-eigenvalue", "hopf", "hamiltonian-hopf"]
-#: at which families cross, and at which the equations of the search are singular
-CROSSED: tuple[Kind, ...] = ("pitchfork", "transcritical")
-STATIC: tuple[Kind, ...] = (*CROSSED, "fold", "branch-point")
 #: what is nearer is one place; a part of the range along which a value counts as extreme
 NEAR, VERTICAL = 1e-4, 1e-3
 #: imaginary parts of eigenvalues that count as none, relative to the largest eigenvalue
 REAL = 1e-6
-#: eigenvalues of K that count as zero, and what K - K^T may have, relative to the largest element
-ZERO, SYMMETRIC = 1e-11, 1e-8
 #: step of differences of equations by the value, of the range
 DIFFERENCE = 1e-6
 #: families that are followed
@@ -72,19 +67,30 @@ class Families:
     messages: list[str]
 
 
-def families(
-    search: SteadySearch, vary: str, between: tuple[float, float], starts: list[list[Array]], steps: int, held: bool
-) -> Families:
-    """All that go through the ``starts``, steady motions at both ends of the range, and through those found on the way;
-    ``held``: whether momenta are, in a disturbed motion.
-    """
-    with np.errstate(all="ignore"):
-        return _Families(search, vary, between, steps, held).run(starts)
+class Searched(Protocol):
+    """What families need of a search: ``n`` unknowns x and the ``length`` (n,) of each."""
+
+    n: int
+    length: Array
+
+    def put(self, name: str, value: float) -> None:
+        """What varies has another value."""
+
+    def wound(self, x: Array, /) -> Array:
+        """Angles by the shorter way round."""
+
+    def distance(self, x: Array, y: Array, /) -> float:
+        """How far two places are apart."""
 
 
-class _Families:
-    def __init__(self, search: SteadySearch, vary: str, between: tuple[float, float], steps: int, held: bool) -> None:
-        self.search, self.vary, self.between, self.held = search, vary, between, held
+S = TypeVar("S", bound=Searched)
+
+
+class FamilySearch(ABC, Generic[S]):
+    """The families of one search, with what is watched on the way."""
+
+    def __init__(self, search: S, vary: str, between: tuple[float, float], steps: int) -> None:
+        self.search, self.vary, self.between = search, vary, between
         self.curve = Continuation(self._equations, self._signature, 1 / steps)
         self.branches: list[list[Array]] = []
         self.bifurcations: list[Found] = []
@@ -184,17 +190,9 @@ class _Families:
             return "pitchfork", f"a family crosses along which {self.vary} is extreme here", ways
         return "transcritical", "another family crosses", ways
 
-    def _least(self, u: Array) -> float:
-        h, n = DIFFERENCE * self.search.length, self.search.n
-        x = self._put(u)
-        sides = [[self.search.equations(x + side * h * e)[0] for e in np.eye(n)] for side in (1, -1)]
-        sizes = np.linalg.svd((np.array(sides[0]) - sides[1]) / (2 * DIFFERENCE), compute_uv=False)
-        return float(sizes[n - 1] / sizes.max(initial=1))
-
     def _hopf(self, change: Change) -> tuple[Kind, str]:
         u = max(change.before, change.after, key=lambda side: side[1][3])[0]
-        at = self.search.matrices(self._put(u), self.held)
-        eigenvalues = np.linalg.eigvals(first_order(at.M, at.D, at.K))
+        eigenvalues = self._eigenvalues(u)
         scale = float(np.abs(eigenvalues).max())
         z = min(eigenvalues[eigenvalues.real > NEUTRAL * scale], key=lambda z: z.real)
         if abs(z.imag) <= REAL * scale:
@@ -205,29 +203,21 @@ class _Families:
             return "hamiltonian-hopf", reason
         return "hopf", f"a pair of eigenvalues passes through the imaginary axis at {abs(z.imag):.6g} rad/s"
 
-    def _signature(self, u: Array) -> tuple[int, ...]:
-        """What the module watches, but for whether the value rises."""
-        x = self._put(u)
-        if self.search.is_singular(x):
-            return SINGULAR
-        given, held = (self.search.matrices(x, held) for held in (self.search.of_momenta, self.held))
-        if not all(np.isfinite(matrix).all() for matrix in (given.K, held.K, held.D)):
-            return SINGULAR
-        eigenvalues = np.linalg.eigvals(first_order(held.M, held.D, held.K))
-        growing = int((eigenvalues.real > NEUTRAL * np.abs(eigenvalues).max(initial=0)).sum())
-        return _negative(given.K), _negative(held.K), growing
-
+    @abstractmethod
     def _equations(self, u: Array) -> tuple[Array, Array]:
         """F and F_u; not a number where the coordinates are singular."""
-        sides = []
-        for side in (1, -1):
-            x = self._put(u + side * DIFFERENCE * np.eye(len(u))[-1])
-            sides.append(self.search.equations(x)[0])
-        x = self._put(u)
-        F, J = self.search.equations(x)
-        by_value = (sides[0] - sides[1]) / (2 * DIFFERENCE)
-        J = np.nan_to_num(np.column_stack((J * self.search.length, by_value)))
-        return (np.full_like(F, np.nan) if self.search.is_singular(x) else F), J
+
+    @abstractmethod
+    def _signature(self, u: Array) -> tuple[int, ...]:
+        """What the module watches, but for whether the value rises."""
+
+    @abstractmethod
+    def _eigenvalues(self, u: Array) -> ComplexArray:
+        """Of the disturbances of a motion."""
+
+    @abstractmethod
+    def _least(self, u: Array) -> float:
+        """The least singular value of F_x by differences, over the largest or 1."""
 
     def _put(self, u: Array) -> Array:
         """The coordinates of a point, when the search has its value."""
@@ -245,13 +235,3 @@ class _Families:
         """Whether two points are one."""
         apart = self.search.distance(self._x(u), self._x(other))
         return max(apart, abs(float(u[-1] - other[-1]))) < NEAR
-
-
-def _negative(K: Array) -> int:
-    """How many eigenvalues of K are negative, of K that is not symmetric whether the number is odd."""
-    size = float(np.abs(K).max(initial=0))
-    if not size:
-        return 0
-    if np.abs(K - K.T).max() > SYMMETRIC * size:
-        return int(np.linalg.slogdet(K)[0] < 0)
-    return int((np.linalg.eigvalsh((K + K.T) / 2) < -ZERO * size).sum())

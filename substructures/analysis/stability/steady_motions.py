@@ -16,7 +16,7 @@ E. J. Routh, Stability of a given state of motion, 1877; L. Salvadori, Rend. Acc
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -24,129 +24,43 @@ from substructures.analysis.arguments import one_of, whole
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.given import numbers
+from substructures.analysis.stability.constrained_families import constrained_motions
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
-from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
+from substructures.analysis.stability.found_places import confirmed
 from substructures.analysis.stability.steady_conditions import (
-    Held,
     SteadyConditions,
     ends_of,
     given_of,
     require_no_velocities,
     require_rates,
 )
-from substructures.analysis.stability.steady_families import STATIC, Kind, families
+from substructures.analysis.stability.steady_families import DIFFERENCE, SINGULAR, FamilySearch
+from substructures.analysis.stability.steady_result import Bifurcation, Held, SteadyMotion, SteadyMotions
 from substructures.analysis.stability.steady_search import SteadySearch
-from substructures.analysis.stability.vibrations import AT_RATES, ROUTH, Mode, Stability, modes, normed, stability
-from substructures.analysis.verdict import Check
-from substructures.array import Array
-from substructures.expr.interpret import interpret
+from substructures.analysis.stability.vibrations import (
+    AT_RATES,
+    NEUTRAL,
+    ROUTH,
+    Mode,
+    Stability,
+    first_order,
+    modes,
+    normed,
+    stability,
+)
+from substructures.array import Array, ComplexArray
 from substructures.quantities.numbers.states import with_input_defaults
 from substructures.tree.document import require_undriven, require_unignored
 from substructures.tree.model import Model
 
+#: eigenvalues of K that count as zero, and what K - K^T may have, relative to the largest element
+ZERO, SYMMETRIC = 1e-11, 1e-8
 #: of a range
 STEPS = (2, 1000)
 #: where in it is looked which coordinates are free
 WITHIN = 0.38
-#: a singular value of differences that is rounding, relative to the largest or 1
-SINGULAR = 1e-6
-
-
-@dataclass(frozen=True, repr=False)
-class SteadyMotion:
-    """``q`` (n,): the coordinates, 0 where they move [rad, m]; ``rates`` (m,) of the ``moving`` ones [rad/s, m/s] and
-    their ``momenta`` (m,) [N m s, N s].
-
-    ``M``, ``D``, ``K`` (r, r): of M dy'' + D dy' + K dy = 0 for disturbances of the r ``independent`` others, with
-    ``modes``, slowest first, whose shapes are those of all others, and ``qdd`` (r,) their accelerations in the motion,
-    which are none but for rounding. With velocity constraints of the tree ``independent`` are the p quasi-velocities,
-    M, D (p, p) and K (p, n) those of M dv' + D dv + K dq = 0, and momenta are not kept. ``stability`` is None where
-    there is no linearisation; ``message`` says why.
-    """
-
-    coordinates: tuple[str, ...]
-    moving: tuple[str, ...]
-    independent: tuple[str, ...]
-    q: Array
-    rates: Array
-    momenta: Array
-    M: Array
-    D: Array
-    K: Array
-    qdd: Array
-    modes: tuple[Mode, ...] = ()
-    stability: Stability | None = None
-    message: str = ""
-    value: float | None = None
-    branch: int | None = None
-
-    def __repr__(self) -> str:
-        still = [name for name in self.coordinates if name not in self.moving]
-        at = dict(zip(self.coordinates, self.q.tolist(), strict=True))
-        place = ", ".join(f"{name}={at[name]:.6g}" for name in still)
-        rates = ", ".join(f"{name}'={w:.6g}" for name, w in zip(self.moving, self.rates.tolist(), strict=True))
-        finding = self.message if self.stability is None else f"{self.stability.verdict}: {self.stability.reason}"
-        return f"SteadyMotion({', '.join(filter(None, (place, rates)))})\n{finding}"
-
-    @property
-    def verdict(self) -> str:
-        """Of its stability; ``failed`` where there is none."""
-        return "failed" if self.stability is None else self.stability.verdict
-
-    def check(self) -> Check:
-        """That it is steady, by the equations of motion of the model, which the search had not."""
-        place = ", ".join(f"{x:.6g}" for x in self.q.tolist())
-        name = f"steady at {place}"
-        if self.stability is None or not self.independent:
-            why = self.message or "nothing is left to move"
-            return Check.left_out(name, "zero", why, needed=self.stability is None)
-        return still(name, "what is still is not accelerated", self.qdd, self.M, self.K)
-
-
-@dataclass(frozen=True)
-class Bifurcation:
-    """Where a family of steady motions turns back, meets others or changes its stability: ``at``, with the ``value`` of
-    what varies; its ``kind`` by the names of :mod:`substructures.analysis.stability.steady_families`, and the reason.
-    ``least``: the least singular value of the equations by x, by differences, over the largest or 1; 0 but for rounding
-    where families turn back or meet.
-    """
-
-    kind: Kind
-    reason: str
-    at: SteadyMotion
-    least: float
-
-    def checks(self) -> tuple[Check, ...]:
-        """That it is steady, and that neighbours branch or turn back there."""
-        name = f"{self.kind} at {self.at.value:.6g}"
-        reason = "the equations of steady motions, by differences, are singular where families turn back or meet"
-        branches = Check.at((name, "zero", reason, ""), self.least, 0.0, 1.0, SINGULAR)
-        return (self.at.check(), branches) if self.kind in STATIC else (self.at.check(),)
-
-
-@dataclass(frozen=True, repr=False)
-class SteadyMotions(FoundPlaces[SteadyMotion]):
-    """All that were found. ``moving``: coordinates with constant rates, ``held``: what keeps its values in a disturbed
-    motion. The ``message`` also says how many places were left out because the coordinates are singular there (a
-    spherical joint at a pitch of +-pi/2). Where something varies (``vary``), those of one ``branch`` after the other,
-    each from the one before, and the ``bifurcations`` of these families.
-    """
-
-    moving: tuple[str, ...]
-    held: Held
-    vary: str | None = None
-    bifurcations: tuple[Bifurcation, ...] = ()
-
-    def __repr__(self) -> str:
-        places = tuple(f"{one.kind} at {one.at.value:.6g}" for one in self.bifurcations)
-        return self._shown(moving=self.moving, **({"bifurcations": places} if self.vary else {}))
-
-    @property
-    def checks(self) -> tuple[Check, ...]:
-        """One for each, and those of the bifurcations."""
-        return (*super().checks, *(check for one in self.bifurcations for check in one.checks()))
 
 
 def steady_motions(
@@ -187,19 +101,22 @@ def steady_motions(
     plane, headings, angles of wheels), of which ``rates`` are given, or of quasi-velocities: others follow. Where ways
     are left free the motion near to each of ``starts`` and to zero is taken. Quasi-velocities that are constant then
     are given by ``velocities`` or ``independent`` (see quasi_velocity_equations), where those of coordinates that are
-    chosen by default are not. Raises InvalidInput (``/rates``, ``/rates/name``, ``/momenta/name``, ``/vary``,
-    ``/between``, ``not-smooth``) and MissingValue. Source: notation.md, section 7.
+    chosen by default are not; ``vary`` may be one of them. Raises InvalidInput (``/rates``, ``/rates/name``,
+    ``/momenta/name``, ``/vary``, ``/between``, ``not-smooth``) and MissingValue. Source: notation.md, section 7.
     """
     require_moving(model, "steady-motions")
+    whole(steps, "steps", *STEPS)
     if model.velocity_constraints:
         conditions = RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
-        require_rates(rates, momenta, held, vary)
+        require_rates(rates, momenta, held)
+        ends = ends_of(model, vary, between, tuple(velocities or ()))
+        given = dict(rates or {}) | ({} if vary is None or vary in model.parameters else {vary: ends[0]})
         around = SearchRange(starts, count, reach, seed)
-        return _constrained(ConstrainedSearch(model, around, conditions, rates or {}, velocities, independent))
+        constrained = ConstrainedSearch(model, around, conditions, given, velocities, independent)
+        return constrained_motions(constrained, vary, ends, steps)
     require_no_velocities(velocities, independent)
     require_undriven(model.driven, "take the tree without it, or equilibria, which are relative to the drives")
     one_of(held, "held", ("momenta", "rates"))
-    whole(steps, "steps", *STEPS)
     ends = ends_of(model, vary, between)
     given, field = given_of(rates, momenta, held)
     constant = numbers(parameters, "parameters"), with_input_defaults(model, inputs or {})
@@ -228,30 +145,12 @@ def steady_motions(
     return SteadyMotions(motions, names, held, vary, more, message=message)
 
 
-def _constrained(search: ConstrainedSearch) -> SteadyMotions:
-    """With velocity constraints."""
-    model, names, some = search.model, search.named(search.moving), []
-    found = search.found()
-    for state in found:
-        at, places = state.at, search.moving
-        q = np.where(np.isin(np.arange(model.dof), search.ignorable), 0.0, at.q)
-        values = search.known | dict(zip(model.coordinates, q.tolist(), strict=True))
-        momenta = interpret(model.program, values, ["metric"])["metric"] @ at.qd
-        matrices = at.qd[places], momenta[places], at.M, at.D, at.K, at.vd
-        some.append(SteadyMotion(model.coordinates, names, at.velocities, q, *matrices, at.modes, at.stability))
-    motions, left_out = confirmed(some)
-    message = "" if motions else "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
-    free = max((state.free for state in found), default=0)
-    beside = f"beside some are families of up to {free} parameters with the same rates: name rates of more coordinates"
-    message = "; ".join(filter(None, (message, left_out, beside if free else "")))
-    return SteadyMotions(motions, names, "momenta", message=message)
-
-
 def _families(
     search: SteadySearch, vary: str, between: tuple[float, float], starts: list[list[Array]], steps: int, held: Held
 ) -> tuple[list[SteadyMotion], tuple[Bifurcation, ...], str]:
     """The motions of all families, their bifurcations, and what is to be said."""
-    found = families(search, vary, between, starts, steps, held == "momenta")
+    with np.errstate(all="ignore"):
+        found = _TreeFamilies(search, vary, between, steps, held == "momenta").run(starts)
 
     def described(x: Array, value: float, branch: int) -> SteadyMotion:
         search.put(vary, value)
@@ -297,3 +196,55 @@ def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...],
         if reason is not None:
             return Stability("stable", reason)
     return Stability("undecided", f"linearised {kept}: {first.reason}")
+
+
+class _TreeFamilies(FamilySearch[SteadySearch]):
+    def __init__(self, search: SteadySearch, vary: str, between: tuple[float, float], steps: int, held: bool) -> None:
+        super().__init__(search, vary, between, steps)
+        self.held = held
+
+    def _least(self, u: Array) -> float:
+        h, n = DIFFERENCE * self.search.length, self.search.n
+        x = self._put(u)
+        sides = [[self.search.equations(x + side * h * e)[0] for e in np.eye(n)] for side in (1, -1)]
+        sizes = np.linalg.svd((np.array(sides[0]) - sides[1]) / (2 * DIFFERENCE), compute_uv=False)
+        return float(sizes[n - 1] / sizes.max(initial=1))
+
+    def _eigenvalues(self, u: Array) -> ComplexArray:
+        """Of the disturbances of a motion."""
+        at = self.search.matrices(self._put(u), self.held)
+        return np.linalg.eigvals(first_order(at.M, at.D, at.K)).astype(np.complex128)
+
+    def _signature(self, u: Array) -> tuple[int, ...]:
+        """What the module watches, but for whether the value rises."""
+        x = self._put(u)
+        if self.search.is_singular(x):
+            return SINGULAR
+        given, held = (self.search.matrices(x, held) for held in (self.search.of_momenta, self.held))
+        if not all(np.isfinite(matrix).all() for matrix in (given.K, held.K, held.D)):
+            return SINGULAR
+        eigenvalues = np.linalg.eigvals(first_order(held.M, held.D, held.K))
+        growing = int((eigenvalues.real > NEUTRAL * np.abs(eigenvalues).max(initial=0)).sum())
+        return _negative(given.K), _negative(held.K), growing
+
+    def _equations(self, u: Array) -> tuple[Array, Array]:
+        """F and F_u; not a number where the coordinates are singular."""
+        sides = []
+        for side in (1, -1):
+            x = self._put(u + side * DIFFERENCE * np.eye(len(u))[-1])
+            sides.append(self.search.equations(x)[0])
+        x = self._put(u)
+        F, J = self.search.equations(x)
+        by_value = (sides[0] - sides[1]) / (2 * DIFFERENCE)
+        J = np.nan_to_num(np.column_stack((J * self.search.length, by_value)))
+        return (np.full_like(F, np.nan) if self.search.is_singular(x) else F), J
+
+
+def _negative(K: Array) -> int:
+    """How many eigenvalues of K are negative, of K that is not symmetric whether the number is odd."""
+    size = float(np.abs(K).max(initial=0))
+    if not size:
+        return 0
+    if np.abs(K - K.T).max() > SYMMETRIC * size:
+        return int(np.linalg.slogdet(K)[0] < 0)
+    return int((np.linalg.eigvalsh((K + K.T) / 2) < -ZERO * size).sum())

@@ -66,9 +66,9 @@ class Quasi:
         vector_of(result, "rates", rates)
         symmetric_of(result, "metric", T.transpose() * g * T)
         bias = times(T.transpose(), inertial)
-        vector_of(result, "bias", bias)
-        # both forms are those of g* v' + bias = forces
-        vector_of(result, "hamel_bias", bias)
+        # both forms are those of g* v' + bias = forces; with given motions there is one
+        for name in {"bias", "hamel_bias"} & {*self.program.outputs}:
+            vector_of(result, name, bias)
         vector_of(result, "forces", times(T.transpose(), Q))
         _structure(result, Y, [turned([T[a, i] for a in range(n)]) for i in range(p)])
         multipliers = times(S.transpose(), missing)
@@ -86,8 +86,25 @@ class Quasi:
     def _rests(self, m: ModelAt) -> list[Ball]:
         """b of every row: the expression where nothing moves."""
         still = Numbers({**m.values, **{f"{q}'": arb(0) for q in m.coordinates}})
-        given = [self._given(label) for label in self.rows]
-        return [still.read(each["expression"]) if "expression" in each else arb(0) for each in given]
+        given = [(label, self._given(label)) for label in self.rows]
+        return [still.read(x["expression"]) if "expression" in x else self._moved(label, x, m) for label, x in given]
+
+    def _moved(self, label: str, given: Plain, m: ModelAt) -> Ball:
+        """What given motions make of a row where the coordinates rest."""
+        outputs = m.program.outputs
+        if "frame" not in given:
+            rate = m.elements("closure.rate") if "closure.rate" in outputs else {}
+            return rate.get((self.closed.index(label),), arb(0))
+        if "U_0" not in outputs:
+            return arb(0)
+        k, zero = self.frames.index(given["frame"]), arb(0)
+        found = m.elements("U_0"), m.elements("Omega_0")
+        u, w = (vector(*(each.get((k, i), zero) for i in range(3))) for each in found)
+        if "radius" not in given:
+            return u[1, 0]
+        R = self._kinematics(given["frame"], m)[0]
+        plane, rho = self._contact(given, R, m)
+        return (plane.transpose() * R * (u + cross(w, rho)))[ROLLING[label.rpartition(".")[2]], 0]
 
     def _row(self, label: str, m: ModelAt) -> list[Ball]:
         """B of one row."""
@@ -163,12 +180,14 @@ def _structure(result: Outputs, Y: Matrix, along: Sequence[Matrix]) -> None:
 
 
 def _energies(result: Outputs, here: ModelAt, rates: Sequence[Ball]) -> None:
-    """T, V, and the power that is lost: Q.q' + V'."""
-    result.scalar("kinetic_energy", here.kinetic_energy())
+    """T, of given motions T_2 - T_0, V, and the power that is lost: Q.q' + V' - d_t T."""
+    own = total(p * v for p, v in zip(times(here.matrix("metric"), rates), rates, strict=True))
+    result.scalar("kinetic_energy", (own - here.drives_alone()) / 2)
     result.scalar("potential_energy", here.scalar("potential_energy"))
     moved = here.along({"t": arb(1)} | dict(zip(here.coordinates, rates, strict=True)))
     power = total(f * x for f, x in zip(here.vector("forces"), rates, strict=True))
-    result.scalar("lost_power", power + moved.scalar("potential_energy"))
+    given = here.kinetic_change({"t": arb(1)}) if "g_00" in here.program.outputs else arb(0)
+    result.scalar("lost_power", power + moved.scalar("potential_energy") - given)
 
 
 def _work_of_constraints(result: Outputs, program: Stored, b: Sequence[Ball], multipliers: Sequence[Ball]) -> None:

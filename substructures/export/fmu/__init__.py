@@ -2,7 +2,8 @@
 
 An FMU has its description, C sources (functions of :mod:`substructures.export.languages.c`, and a simulation that is
 written once, in ``runtime/``), and libraries of the platforms for which there is a compiler. States are coordinates and
-velocities, inputs those of the tree, parameters tunable, outputs the other quantities of the export.
+velocities, with velocity constraints those of independent coordinates (q' = T v beside); inputs those of the tree,
+parameters tunable, outputs the other quantities of the export.
 """
 
 from __future__ import annotations
@@ -13,15 +14,23 @@ from uuid import UUID
 
 from substructures.export.archive import archive
 from substructures.export.c_files import c_core
-from substructures.export.exported import Exported
+from substructures.export.exported import Exported, Function
 from substructures.export.fmu import model
 from substructures.export.fmu.binaries import libraries
 from substructures.export.fmu.description import build_description, description2, description3, terminals
 from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
-from substructures.export.fmu.variables import layout_of
-from substructures.quantities.quantity import FORWARD
+from substructures.export.fmu.variables import Layout, layout_of
 
 _SHARED = ("simulation.h", "simulation.c", "fmi.h")
+
+
+def _differentiated(layout: Layout) -> tuple[Function, tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The function of the accelerations, without the power, and what it is differentiated by."""
+    motion = layout.motion
+    if layout.is_tree:
+        return motion, (OF_STATE, ())
+    kept = motion.program.select(["rates", "acceleration", "second"])
+    return Function(motion.quantity, kept, motion.interface), (("q", "u"), layout.velocities.names)
 
 
 def fmu(exported: Exported, version: str, limit: int) -> bytes:
@@ -30,9 +39,9 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
     Raises InvalidArgument where there is nothing to be simulated, MissingValue, TooLarge.
     """
     layout = layout_of(exported)
-    dynamics = [each for each in exported.functions if each.quantity == FORWARD]
+    motion, by = _differentiated(layout)
     tangents = (
-        tangent("dynamics_tangent", dynamics, layout.interface, OF_STATE),
+        tangent("dynamics_tangent", [motion], layout.interface, *by),
         tangent("outputs_tangent", layout.outputs, layout.interface, OF_ALL),
     )
     core = Exported(f"{exported.name}_core", exported.interface, (*exported.functions, *tangents), exported.form)

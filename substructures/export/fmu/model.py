@@ -2,23 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from math import prod
 
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu.tangents import directions
 from substructures.export.fmu.variables import TOLERANCE, Layout
-from substructures.quantities.quantity import FORWARD
 
 _OF_ALL = "double t, const double *q, const double *qd, const double *qdd, const double *u, const double *p"
-_OF_STATE = "double t, const double *q, const double *qd, const double *u, const double *p"
+_OF_STATE = "double t, const double *q, const double *v, const double *u, const double *p"
+_TANGENT = "double t, const double *q, const double *v, const double *qdd, const double *u, const double *p"
 _DECLARATIONS = (
     "extern const unsigned FMU_SIZES[]; /* numbers of the variable that begins here, or 0 */",
-    "void fmu_start(double *q, double *qd, double *u, double *p);",
-    f"void fmu_dynamics({_OF_STATE}, double *qdd);",
+    "void fmu_start(double *q, double *v, double *u, double *p);",
+    "/* der(q), der(v) and, where FMU_NA is not 0, the accelerations of all coordinates */",
+    f"void fmu_dynamics({_OF_STATE}, double *dq, double *dv, double *qdd);",
     f"void fmu_outputs({_OF_ALL}, double *y);",
-    "/* d: the direction, as the values of an instance stand */",
-    f"void fmu_dynamics_tangent({_OF_ALL}, const double *d, double *dqdd);",
+    "/* d: the direction, as the values of an instance stand; dx: that of der(q), der(v) and of the accelerations */",
+    f"void fmu_dynamics_tangent({_TANGENT}, const double *d, double *dx);",
     f"void fmu_outputs_tangent({_OF_ALL}, const double *d, double *y);",
 )
 
@@ -26,7 +27,9 @@ _DECLARATIONS = (
 def header(layout: Layout, token: str) -> str:
     """``model.h``."""
     vectors = layout.interface.vectors
-    sizes = {"NQ": len(vectors["q"]), "NU": len(vectors["u"]), "NP": len(vectors["p"])}
+    sizes = {"NQ": len(vectors["q"]), "NV": len(layout.velocities), "NA": 0 if layout.is_tree else len(vectors["q"])}
+    sizes |= {"NU": len(vectors["u"]), "NP": len(vectors["p"])}
+    sizes["V"] = layout.begins["v"]
     sizes["NY"] = layout.size - layout.begins["y"]
     lines = ["#ifndef SUBSTRUCTURES_MODEL_H", "#define SUBSTRUCTURES_MODEL_H", "", f'#define FMU_TOKEN "{token}"']
     lines += [f"#define FMU_TOLERANCE {TOLERANCE!r}", "enum {"]
@@ -39,30 +42,56 @@ def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) 
     sizes = [0] * layout.size
     for each in layout.variables:
         sizes[each.at] = each.size
-    dynamics = next(each for each in layout.exported.functions if each.quantity == FORWARD)
     lines = ['#include "model.h"', "", f'#include "{core.name}.h"', "", "#include <string.h>", ""]
     lines += ["const unsigned FMU_SIZES[] = {", *_wrapped(map(str, sizes)), "};", ""]
-    lines += ["void fmu_start(double *q, double *qd, double *u, double *p)", "{"]
-    lines += ["    memset(q, 0, FMU_NQ * sizeof *q);", "    memset(qd, 0, FMU_NQ * sizeof *qd);"]
+    lines += ["void fmu_start(double *q, double *v, double *u, double *p)", "{"]
+    lines += ["    memset(q, 0, FMU_NQ * sizeof *q);", "    if (FMU_NV > 0) memset(v, 0, FMU_NV * sizeof *v);"]
     lines += ["    if (FMU_NU > 0) memset(u, 0, FMU_NU * sizeof *u);"]
     lines += [f"    u[{i}] = {x!r};" for i, x in enumerate(layout.interface.vectors["u"].defaults) if x]
     lines += [f"    {core.name}_defaults(p);", "}", ""]
-    lines += _function(f"fmu_dynamics({_OF_STATE}, double *qdd)", "t q qd u p qdd", _calls(core, [dynamics], "qdd"))
+    lines += _dynamics(layout, core)
     lines += _function(
         f"fmu_outputs({_OF_ALL}, double *y)", "t q qd qdd u p y", _calls(core, list(layout.outputs), "y")
     )
-    names = "t q qd qdd u p d"
-    for called, tangent, result in zip(("dynamics", "outputs"), tangents, ("qdd", "y"), strict=True):
-        target = "dqdd" if result == "qdd" else result
-        seeds = directions(tangent, layout.places)
-        body = [f"static const unsigned from[] = {{{', '.join(map(str, seeds))}}};"] if seeds else []
-        body += (
-            [f"double x[{len(seeds)}];", f"for (int i = 0; i < {len(seeds)}; ++i) x[i] = d[from[i]];"] if seeds else []
-        )
-        body += _calls(core, [tangent], target)
-        head = f"fmu_{called}_tangent({_OF_ALL}, const double *d, double *{target})"
-        lines += _function(head, f"{names} {target}", body)
+    of_motion, of_outputs = tangents
+    # the velocities of a tree are der(q)
+    body = ["memcpy(dx, d + FMU_V, FMU_NQ * sizeof *dx);"] if layout.is_tree else []
+    body += _tangent(layout, core, of_motion, "dx + FMU_NQ" if layout.is_tree else "dx")
+    head = f"fmu_dynamics_tangent({_TANGENT}, const double *d, double *dx)"
+    lines += _function(head, "t q v qdd u p d dx", body)
+    head = f"fmu_outputs_tangent({_OF_ALL}, const double *d, double *y)"
+    lines += _function(head, "t q qd qdd u p d y", _tangent(layout, core, of_outputs, "y"))
     return "\n".join(lines)
+
+
+def _dynamics(layout: Layout, core: Exported) -> list[str]:
+    head = f"fmu_dynamics({_OF_STATE}, double *dq, double *dv, double *qdd)"
+    motion, names = layout.motion, "t q v u p dq dv qdd"
+    if layout.is_tree:
+        called = f"{core.called(motion)}({', '.join(_arguments(motion, {'qd': 'v'}))}, dv);"
+        return _function(head, names, ["memcpy(dq, v, FMU_NQ * sizeof *dq);", called])
+    found = {"rates": "dq", "acceleration": "dv", "second": "qdd"}
+    results = [found.get(name, "&power") for name in motion.program.outputs]
+    own = layout.velocities.place
+    x = ", ".join(f"v[{own[name]}]" for name in motion.further.names)
+    called = f"{core.called(motion)}({', '.join([*motion.arguments, *results])});"
+    return _function(
+        head, names, [*([f"const double x[] = {{{x}}};"] if x else []), "double power;", called, "(void)power;"]
+    )
+
+
+def _arguments(function: Function, renamed: Mapping[str, str]) -> list[str]:
+    return [renamed.get(symbol, symbol) for symbol in function.arguments]
+
+
+def _tangent(layout: Layout, core: Exported, function: Function, target: str) -> list[str]:
+    """A call with the directions, and quasi-velocities, where the function has them."""
+    seeds, own = directions(function, layout.places), layout.velocities.place
+    renamed = {} if target == "y" else {"qd": "v"}
+    body = [f"double x[{len(seeds)}];"] if seeds else []
+    values = [f"v[{own[name]}]" if at is None else f"d[{at}]" for name, at in seeds.items()]
+    body += [f"x[{i}] = {value};" for i, value in enumerate(values)]
+    return body + _calls(core, [function], target, renamed)
 
 
 def _function(head: str, names: str, body: Sequence[str]) -> list[str]:
@@ -70,7 +99,9 @@ def _function(head: str, names: str, body: Sequence[str]) -> list[str]:
     return [f"void {head}", "{", *(f"    {line}" for line in body), f"    {unused};", "}", ""]
 
 
-def _calls(core: Exported, functions: Sequence[Function], target: str) -> list[str]:
+def _calls(
+    core: Exported, functions: Sequence[Function], target: str, renamed: Mapping[str, str] | None = None
+) -> list[str]:
     """Calls that put all outputs one behind the other."""
     lines, at = [], 0
     for function in functions:
@@ -78,7 +109,7 @@ def _calls(core: Exported, functions: Sequence[Function], target: str) -> list[s
         for array in function.program.outputs.values():
             outputs.append(f"{target} + {at}")
             at += prod(array.shape)
-        lines.append(f"{core.called(function)}({', '.join([*function.arguments, *outputs])});")
+        lines.append(f"{core.called(function)}({', '.join([*_arguments(function, renamed or {}), *outputs])});")
     return lines
 
 

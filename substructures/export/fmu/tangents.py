@@ -21,10 +21,15 @@ _MARK = "direction of "
 OF_STATE, OF_ALL = ("q", "qd", "u"), ("q", "qd", "qdd", "u")
 
 
-def tangent(name: str, functions: Sequence[Function], interface: Interface, by: Sequence[str]) -> Function:
-    """The directional derivatives of all outputs of some functions, in their order, as one function."""
+def tangent(
+    name: str, functions: Sequence[Function], interface: Interface, by: Sequence[str], further: Sequence[str] = ()
+) -> Function:
+    """The directional derivatives of all outputs of some functions, in their order, as one function; ``further``:
+    symbols beside those of the vectors ``by``.
+    """
     graph = Graph()
     varied = {n: Symbol(n, "parameter") for symbol in by for n in interface.vectors[symbol].names}
+    varied |= {n: Symbol(n, "parameter") for n in further}
     seeds = {n: graph.symbol(_MARK + n) for n in varied}
     outputs: dict[str, Formulas] = {}
     symbols: dict[str, Symbol] = {_MARK + n: replace(s, name=_MARK + n) for n, s in varied.items()}
@@ -38,6 +43,7 @@ def tangent(name: str, functions: Sequence[Function], interface: Interface, by: 
     return Function(name, made, interface)
 
 
-def directions(function: Function, places: Mapping[str, int]) -> list[int]:
-    """Where in the values of an instance the direction of each element of ``x`` stands."""
-    return [places[name.removeprefix(_MARK)] for name in function.further.names]
+def directions(function: Function, places: Mapping[str, int]) -> dict[str, int | None]:
+    """Where in the values of an instance the direction of each element of ``x`` stands; None of what is none."""
+    names = function.further.names
+    return {name: places[name.removeprefix(_MARK)] if name.startswith(_MARK) else None for name in names}

@@ -1,6 +1,9 @@
 """The variables of a model for simulators, in the order in which their values stand in an instance.
 
-time | q | qd | der(q) | der(qd) | u | p | solver_step, solver_tolerance | outputs
+time | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | outputs
+
+Of a tree v are the velocities of all coordinates, and q'' is der(v); with velocity constraints v are those of the
+independent ones, der(q) = T(q) v the velocities of all, and q'' stands behind.
 """
 
 from __future__ import annotations
@@ -14,13 +17,15 @@ from math import isfinite, prod
 
 from substructures.errors import InvalidArgument, MissingValue, TooLarge
 from substructures.export.exported import Exported, Function
-from substructures.export.interface import Interface
-from substructures.quantities.quantity import FORWARD, FRAMES, OUTPUTS, Array
+from substructures.export.interface import Interface, Vector
+from substructures.quantities.quantity import FORWARD, FRAMES, OUTPUTS, VELOCITY_DYNAMICS, Array
 
 _NAME = re.compile(r"(der\()?[A-Za-z_]\w*(\.\w+)*\)?", re.ASCII)
 #: most numbers of an instance
 MOST = 100_000
 TOLERANCE = 1e-8
+#: what gives accelerations: of a tree, and with velocity constraints
+MOTIONS, PRIME = (FORWARD, VELOCITY_DYNAMICS), "'"
 
 
 @dataclass(frozen=True)
@@ -60,7 +65,7 @@ class Variable:
 
 @dataclass(frozen=True)
 class Layout:
-    """The variables of functions, of which the first is that of the accelerations."""
+    """The variables of functions, of which one is that of the accelerations."""
 
     exported: Exported
 
@@ -72,26 +77,50 @@ class Layout:
     @property
     def outputs(self) -> Sequence[Function]:
         """All functions but that of the accelerations."""
-        return [each for each in self.exported.functions if each.quantity != FORWARD]
+        return [each for each in self.exported.functions if each.quantity not in MOTIONS]
+
+    @cached_property
+    def motion(self) -> Function:
+        """That of the accelerations."""
+        return next(each for each in self.exported.functions if each.quantity in MOTIONS)
+
+    @property
+    def is_tree(self) -> bool:
+        """Whether v are the velocities of all coordinates."""
+        return self.motion.quantity == FORWARD
+
+    @cached_property
+    def velocities(self) -> Vector:
+        """v in the order of the coordinates, by the names of their symbols."""
+        if self.is_tree:
+            return self.interface.vectors["qd"]
+        order, found = self.interface.vectors["q"].place, self.motion.further
+        places = sorted(range(len(found)), key=lambda i: order[found.names[i].removeprefix("v.")])
+        return Vector("x", tuple(found.names[i] for i in places), tuple(found.units[i] for i in places))
 
     @cached_property
     def begins(self) -> Mapping[str, int]:
-        """Where each vector begins; ``dq`` are the derivatives of coordinates, ``s`` parameters of the solver."""
+        """Where each vector begins; ``dq``, ``dv`` are derivatives, ``qd``, ``qdd`` velocities and accelerations of all
+        coordinates, ``s`` parameters of the solver.
+        """
         vectors = self.interface.vectors
-        n, found, at = len(vectors["q"]), dict[str, int](), 0
+        n, p, found, at = len(vectors["q"]), len(self.velocities), dict[str, int](), 0
         for symbol, size in (
-            ("t", 1), ("q", n), ("qd", n), ("dq", n), ("qdd", n), ("u", len(vectors["u"])), ("p", len(vectors["p"])),
-            ("s", 2), ("y", 0),
+            ("t", 1), ("q", n), ("v", p), ("dq", n), ("dv", p), ("qdd", 0 if self.is_tree else n),
+            ("u", len(vectors["u"])), ("p", len(vectors["p"])), ("s", 2), ("y", 0),
         ):  # fmt: skip
             found[symbol] = at
             at += size
-        return found
+        if self.is_tree:
+            return {**found, "qd": found["v"], "qdd": found["dv"]}
+        return {**found, "qd": found["dq"]}
 
     @cached_property
     def places(self) -> Mapping[str, int]:
         """Where the number of each name of a vector stands."""
-        vectors = self.interface.vectors
-        return {n: self.begins[s] + i for s in ("q", "qd", "qdd", "u", "p") for i, n in enumerate(vectors[s].names)}
+        vectors = {symbol: self.interface.vectors[symbol] for symbol in ("q", "qd", "qdd", "u", "p")}
+        vectors |= {} if self.is_tree else {"v": self.velocities}
+        return {name: self.begins[s] + i for s, vector in vectors.items() for i, name in enumerate(vector.names)}
 
     @cached_property
     def size(self) -> int:
@@ -102,18 +131,23 @@ class Layout:
     def variables(self) -> list[Variable]:
         """All of them. Raises MissingValue for parameters without value, InvalidArgument for bad names, TooLarge."""
         vectors = self.interface.vectors
-        q, qd, u, p = (vectors[symbol] for symbol in ("q", "qd", "u", "p"))
+        q, v, u, p = vectors["q"], self.velocities, vectors["u"], vectors["p"]
         begins = self.begins
         found = [Variable("time", 0, "independent", "s")]
         found += [Variable(n, begins["q"] + i, "output", x, start=0.0) for i, (n, x) in _named(q.names, q.units)]
-        rates = [f"{name}_d" for name in q.names]
-        found += [Variable(n, begins["qd"] + i, "output", x, start=0.0) for i, (n, x) in _named(rates, qd.units)]
-        for symbol, of, names in (("dq", "q", q.names), ("qdd", "qd", rates)):
-            units = vectors["qd" if symbol == "dq" else "qdd"].units
+        rates = [f"{name.removeprefix('v.').removesuffix(PRIME)}_d" for name in v.names]
+        found += [Variable(n, begins["v"] + i, "output", x, start=0.0) for i, (n, x) in _named(rates, v.units)]
+        for symbol, of, names, units in (
+            ("dq", "q", q.names, vectors["qd"].units),
+            ("dv", "v", rates, vectors["qdd"].units if self.is_tree else [f"{unit}^2" for unit in v.units]),
+        ):
             found += [
                 Variable(f"der({n})", begins[symbol] + i, "local", x, of=begins[of] + i)
                 for i, (n, x) in _named(names, units)
             ]
+        if not self.is_tree:
+            second, units = [f"{name}_dd" for name in q.names], vectors["qdd"].units
+            found += [Variable(n, begins["qdd"] + i, "output", x) for i, (n, x) in _named(second, units)]
         starts = u.defaults or (0.0,) * len(u)
         inputs = [name.replace("''", "_dd").replace("'", "_d") for name in u.names]
         found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(inputs, u.units)]
@@ -159,12 +193,13 @@ def _named(names: Sequence[str], units: Sequence[str]) -> Iterator[tuple[int, tu
 
 def layout_of(exported: Exported) -> Layout:
     """Raises InvalidArgument where there are no accelerations of a tree."""
-    if all(each.quantity != FORWARD for each in exported.functions):
+    if all(each.quantity not in MOTIONS for each in exported.functions):
         message = "an FMU needs the accelerations of a tree: make a tree of the part, which says gravity and mounts"
         raise InvalidArgument.at("/target", "not-a-tree", message)
     if not len(exported.interface.vectors["q"]):
         raise InvalidArgument.at("/target", "no-coordinates", "nothing moves: there is nothing to be simulated")
-    further = next((each for each in exported.functions if each.further.names), None)
+    others = (each for each in exported.functions if each.quantity != VELOCITY_DYNAMICS)
+    further = next((each for each in others if each.further.names), None)
     if further is not None:
         message = f"'{further.quantity}' depends on more than states, inputs and parameters: it is no output of an FMU"
         raise InvalidArgument.at("/quantities", "signature", message)

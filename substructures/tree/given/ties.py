@@ -98,6 +98,8 @@ class Tied(Protocol):
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
+    *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
+    "velocity_dynamics",
 )
 TAKES_CONTACTS = ("simulations",)
 #: with the kind of motion that has them

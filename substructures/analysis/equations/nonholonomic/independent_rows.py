@@ -10,6 +10,7 @@ import numpy as np
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     Constraint,
     VelocityRows,
+    closing,
     constraints_of,
     row_values,
     velocity_rows,
@@ -49,7 +50,8 @@ def _without_dependent(f: Workspace, given: VelocityRows) -> tuple[VelocityRows,
 def check_constraints(model: Model) -> None:
     """Raises InvalidInput (``/velocity_constraints/i/...``) for velocity constraints of a tree that are none."""
     if model.velocity_constraints:
-        require_undriven(model.driven, "take the tree without 'driven', or without 'velocity_constraints'")
+        given = [name for name in model.driven if name in model.inputs]
+        require_undriven(given, "give their motions as formulas in t, or the tree without 'velocity_constraints'")
         independent_rows(Workspace(model), constraints_of(model))
 
 
@@ -61,3 +63,14 @@ def independent_rows(f: Workspace, constraints: Sequence[Constraint]) -> tuple[V
         if not f.model.velocity_constraints:
             raise
         raise error.moved(lambda pointer: pointer.replace("/constraints", "/velocity_constraints", 1)) from None
+
+
+def place_of_zero(model: Model) -> dict[str, float] | None:
+    """All coordinates at 0 and parameters at their defaults, where the constraints are independent; else None."""
+    f = Workspace(model)
+    rows = independent_rows(f, closing(model))[0].rows
+    place = dict.fromkeys(model.coordinates, 0.0)
+    given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
+    place |= {name: float(x) for name, x in given.items() if x is not None}
+    values = row_values(f, rows, place) if rows else np.zeros((1, 0, f.n))
+    return place if np.isfinite(values).all() and _rank(values) == len(rows) else None

@@ -21,6 +21,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
+from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 
 EQUATIONS = ("metric", "bias", "forces", "rates", "T")
@@ -41,6 +42,7 @@ def linearised(model: Model, constraints: tuple[Constraint, ...], choice: Choice
 @lru_cache(maxsize=32)
 def _linearised(known: Known, constraints: tuple[Constraint, ...], choice: Choice) -> tuple[QuasiVelocities, Program]:
     model: Model = known.source
+    require_undriven(model.driven, "take simulations")
     require_smooth(model)
     velocities, independent, near = choice
     equations = quasi_velocity_equations(

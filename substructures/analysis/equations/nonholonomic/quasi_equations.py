@@ -8,9 +8,11 @@ from typing import Any
 from substructures.analysis.equations.nonholonomic.quasi_choice import MatrixRows
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
-from substructures.expr.program import Entries, Formulas, array
+from substructures.expr.program import Entries, Formulas, array, program
+from substructures.expr.replay import replay
 from substructures.quantities.numbers.workspace import Workspace
 
+ENERGIES = ("T_2", "T_1", "T_0")
 DYNAMICS = ("metric", "christoffel", "bias", "forces", "potential_energy")
 
 
@@ -31,11 +33,13 @@ class QuasiEquations:
             self.r = [-x for x in self._times(self.S, given)]
             self.rates = [x + y for x, y in zip(self.rates, self.r, strict=True)]
         bound = {f"{name}'": x for name, x in zip(f.model.coordinates, self.rates, strict=True)}
-        self.model = f.outputs(DYNAMICS, bound)
+        self.model = f.outputs([*DYNAMICS, *(ENERGIES if f.model.driven else ())], bound)
         #: dT[a][i][b] = d T^a_i / dq^b
         self.dT = [gradient(row, f.model.coordinates) for row in self.T]
         #: dr[a][b] = d r^a / dq^b, and the last d r^a / dt
         self.dr = gradient(self.r, [*f.model.coordinates, "t"]) if given else []
+        #: of given motions, d T^a_i / dt
+        self.T_t = [[x for (x,) in gradient(row, ["t"])] for row in self.T] if f.model.driven else []
 
     def outputs(self) -> dict[str, Formulas]:
         """All of the table but the gaps."""
@@ -53,10 +57,9 @@ class QuasiEquations:
         # g q'' + Gamma q'q' - Q with q'' = T v' + T' v + r'
         missing = [self._sum(gT[a][i] * self.dv[i] for i in range(p)) + inertial[a] - Q[a] for a in range(n)]
         structure = self._structure()
-        hamel = self._hamel(momentum, carried, structure)
         B = self.Y[p:]
-        # T* = p_a q'^a / 2
-        energy = self._sum(m * x for m, x in zip(momentum, self.rates, strict=True)) / 2
+        # T* = p_a q'^a / 2, of given motions T_2 - T_0
+        energy = self._sum(m * x for m, x in zip(momentum, self.rates, strict=True)) / 2 - self._scalar("T_0")
         multipliers = [self._column(self.S, k, missing) for k in range(n - p)]
         return {
             "constraints": array((n - p, n), lambda k, a: B[k][a]),
@@ -64,7 +67,7 @@ class QuasiEquations:
             "rates": array((n,), lambda a: self.rates[a]),
             "metric": Formulas((p, p), {(i, j): reduced[i][j] for i in range(p) for j in range(i, p)}, "symmetric"),
             "bias": array((p,), lambda i: self._column(self.T, i, inertial)),
-            "hamel_bias": array((p,), lambda i: hamel[i]),
+            **self._hamel_bias(momentum, carried, structure),
             "forces": array((p,), lambda i: self._column(self.T, i, Q)),
             "structure": Formulas((n, p, p), structure),
             "multipliers": array((n - p,), lambda k: multipliers[k]),
@@ -88,6 +91,13 @@ class QuasiEquations:
             "given": array((len(self.given),), lambda k: self.given[k]),
             "constraint_power": array((), lambda: power),
         }
+
+    def _hamel_bias(self, momentum: Sequence[Expr], carried: Sequence[Expr], structure: Entries) -> dict[str, Formulas]:
+        """Nothing with given motions, which add to the momenta."""
+        if self.f.model.driven:
+            return {}
+        hamel = self._hamel(momentum, carried, structure)
+        return {"hamel_bias": array((self.p,), lambda i: hamel[i])}
 
     def _hamel(self, momentum: Sequence[Expr], carried: Sequence[Expr], structure: Entries) -> list[Expr]:
         """(g*' v + (T^T g r)')_i - X_i(T*) - c^k_ji v^j p_k; ``carried`` = g (T' v + r')."""
@@ -150,14 +160,28 @@ class QuasiEquations:
         return self._sum(self.T[b][i] * self.dT[a][j][b] for b in range(self.n))
 
     def _slope(self, a: int, i: int) -> Expr:
-        """T'^a_i = d_b T^a_i q'^b."""
-        return self._sum(self.dT[a][i][b] * self.rates[b] for b in range(self.n))
+        """T'^a_i = d_b T^a_i q'^b + d_t T^a_i."""
+        found = self._sum(self.dT[a][i][b] * self.rates[b] for b in range(self.n))
+        return found + self.T_t[a][i] if self.T_t else found
 
     def _lost_power(self, Q: Sequence[Expr]) -> Expr:
         potential = self.f.graph.zero + self.model["potential_energy"].get((), 0)
         # (Q_a + dV/dq^a) q'^a + dV/dt
         ((*slopes, rate),) = gradient([potential], [*self.f.model.coordinates, "t"])
-        return rate + self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
+        power = rate + self._sum((q + s) * x for q, s, x in zip(Q, slopes, self.rates, strict=True))
+        return power - self._rate_of_given() if self.f.model.driven else power
+
+    def _rate_of_given(self) -> Expr:
+        """d_t (T_2 + T_1 + T_0) at fixed q, q': what given motions change of T."""
+        found = self.f.outputs(ENERGIES)
+        ((rate,),) = gradient([self._sum(found[name].get((), 0) for name in ENERGIES)], ["t"])
+        made = program(self.f.graph, {"x": Formulas((), {(): rate})}, self.f.symbols)
+        bound = {f"{name}'": x for name, x in zip(self.f.model.coordinates, self.rates, strict=True)}
+        return self.f.graph.lift(replay(made, self.f.graph, bound)["x"].entries.get((), 0))
+
+    def _scalar(self, name: str) -> Expr:
+        """An output without axes; 0 where the model has none."""
+        return self.f.graph.zero + self.model.get(name, {}).get((), 0)
 
     def _sum(self, terms: Any) -> Expr:
         return self.f.graph.sum(self.f.graph.zero + x for x in terms)

@@ -20,11 +20,11 @@ T                     n p    q' = T v + r
 rates                 n      T v + r
 metric                p p    T^T g T
 bias                  p      of Voronets' form
-hamel_bias            p      of the Boltzmann-Hamel form
+hamel_bias            p      of the Boltzmann-Hamel form; not with given motions
 forces                p      T^T Q
 structure             n p p  c^k_ij at [k, i, j]
 multipliers           m      lambda in g q'' + Gamma q'q' = Q + B^T lambda; needs v' (``name'``): S^T (g q'' + ... - Q)
-kinetic_energy               T* = v^T g* v / 2 [J]
+kinetic_energy               T* = v^T g* v / 2, of trees with given motions T_2 - T_0 [J]
 potential_energy             of gravity and springs [J]
 lost_power                   power of the forces without potential, and dV/dt of springs that change with time [W]
 constraint_power             of the constraints where b is not zero: -lambda_k b_k; needs v' [W]
@@ -43,6 +43,7 @@ from substructures.analysis.equations.nonholonomic.independent_rows import indep
 from substructures.analysis.equations.nonholonomic.quasi_choice import quasi_velocity_rows, vanishing
 from substructures.analysis.equations.nonholonomic.quasi_equations import QuasiEquations
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
+    GIVEN,
     Closed,
     Constraint,
     constraints_of,
@@ -52,7 +53,7 @@ from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.document import require_ungiven
+from substructures.tree.document import require_undriven, require_unignored
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS
 
@@ -99,7 +100,8 @@ def quasi_velocity_equations(
     Raises InvalidInput (pointers start with names of arguments): constraints that are not linear, quasi-velocities that
     do not determine the velocities; TooLarge.
     """
-    require_ungiven(model, "take the tree without 'driven'")
+    require_undriven([name for name in model.driven if name in model.inputs], "give their motions as formulas in t")
+    require_unignored(model.ignored)
     constraints = constraints_of(model, constraints)
     if (
         velocities is None
@@ -128,7 +130,7 @@ def quasi_velocity_equations(
     texts = {name: name for name in names} if velocities is None else dict(velocities)
     expectation = quasi_expected(model, result, texts, rows, constraints)
     kinds = {s.name: s.kind for s in f.symbols.values()}
-    needs = (*CERTIFIED, *KINEMATICS)
+    needs = (*CERTIFIED, *KINEMATICS, *GIVEN, "closure.rate")
     result = certified(result, model, expectation, "velocity equations", needs=needs, more=kinds)
     labels = tuple(rows.labels), tuple(rows.gaps), tuple(dependent)
     return QuasiVelocities(model, result, tuple(names), *labels, vanishing(f, Y))

@@ -13,7 +13,8 @@ closure      the rows of a closure of the tree, differentiated by time: G q' = 0
 ===========  =====================================================================================================
 
 A rolling disc has its axis along the third axis e of the frame: rho = -r (N - (N.e) e) / |N - (N.e) e|, N the normal of
-the plane; a sphere has rho = -r N. The row ``contact`` has the integral N . c + N . rho = const, the gap.
+the plane; a sphere has rho = -r N. The row ``contact`` has the integral N . c + N . rho = const, the gap. Where frames
+and loops move with given motions, b is what U_0 and Omega_0 make of these rows, and phi_t.
 (H. Goldstein, Classical Mechanics, 2nd ed. 1980, section 1-3; Ju. I. Neimark and N. A. Fufaev, Dynamics of Nonholonomic
 Systems, AMS 1972.)
 """
@@ -40,6 +41,8 @@ from substructures.tree.given.ties import names_of
 from substructures.tree.model import Model
 
 SHAPES = ("disc", "sphere")
+#: velocities of frames that given motions make
+GIVEN = ("U_0", "Omega_0")
 
 
 @dataclass(frozen=True)
@@ -108,6 +111,11 @@ def constraints_of(model: Model, given: Sequence[Constraint] = ()) -> tuple[Cons
     raise InvalidArgument.at("/constraints", "has-velocity-constraints", message)
 
 
+def closing(model: Model) -> tuple[Constraint, ...]:
+    """The velocity constraints of a tree with all its closures, or these alone."""
+    return constraints_of(model) or tuple(Closed(rows.name) for rows in model.closures)
+
+
 @dataclass
 class VelocityRows:
     """Rows of B with their names (constraint, or constraint.row), b of those where it is not zero, and what they keep
@@ -137,6 +145,8 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
     result = VelocityRows()
     framed = any(isinstance(c, (KnifeEdge, Rolling)) for c in constraints)
     kinematics = f.kinematics() if framed else {}
+    if framed and f.model.driven:
+        kinematics = {**kinematics, **f.outputs(GIVEN)}
     for i, constraint in enumerate(constraints):
         pointer = f"/constraints/{i}"
         if isinstance(constraint, Linear):
@@ -149,8 +159,8 @@ def velocity_rows(f: Workspace, constraints: Sequence[Constraint]) -> VelocityRo
         else:
             frame = _Frame(f, kinematics, f.model.frames.index(constraint.frame))
             if isinstance(constraint, KnifeEdge):
-                # B_a = U_a2
-                result.add(constraint.name, [f.graph.lift(U[1]) for U in frame.U])
+                # B_a = U_a2, b = U_02 of given motions
+                result.add(constraint.name, [f.graph.lift(U[1]) for U in frame.U], f.graph.lift(frame.given[0][1]))
             else:
                 _roll(f, constraint, pointer, frame, result)
     names = [c.name for c in constraints]
@@ -177,6 +187,8 @@ class _Frame:
         self.c = vector("position")
         self.U = [vector("U", a) for a in range(f.n)]
         self.Omega = [vector("Omega", a) for a in range(f.n)]
+        #: of given motions, where the coordinates rest
+        self.given = (vector("U_0"), vector("Omega_0")) if "U_0" in kinematics else ((zero,) * 3, (zero,) * 3)
 
 
 def _require_closed(f: Workspace, constraints: Sequence[Constraint]) -> None:
@@ -194,13 +206,15 @@ def _close(f: Workspace, name: str, pointer: str, result: VelocityRows) -> None:
         known = [rows.name for rows in f.model.closures]
         f.scope.fault(pointer, "unknown-closure", f"unknown closure '{name}'{among(name, known)}")
         return
-    found = f.outputs(["closure.jacobian", "closure.residual"])
+    rates = ["closure.rate"] if "closure.rate" in f.model.program.outputs else []
+    found = f.outputs(["closure.jacobian", "closure.residual", *rates])
     zero = f.graph.zero
     for k, (closure, row) in enumerate(names):
         residual = found["closure.residual"].get((k,), zero)
         # phi_k = const is the integral of G_ka q'^a = 0
         if closure == name and not residual.is_zero:
-            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)])
+            moved = found[rates[0]].get((k,), zero) if rates else None
+            result.add(f"{name}.{row}", [found["closure.jacobian"].get((k, a), zero) for a in range(f.n)], moved)
             result.gaps[f"{name}.{row}"] = residual
 
 
@@ -224,10 +238,11 @@ def _roll(f: Workspace, c: Rolling, pointer: str, frame: _Frame, result: Velocit
         rho = (-(radius * n[0]), -(radius * n[1]), -(radius * n[2]))
     # B_a = P R (U_a + Omega_a x rho), P: rotation from the world to the axes of the plane
     columns = []
-    for U, Omega in zip(frame.U, frame.Omega, strict=True):
+    for U, Omega in (*zip(frame.U, frame.Omega, strict=True), frame.given):
         columns.append(apply(plane, apply(frame.R, add(U, cross(Omega, rho)))))
     for i, row in enumerate(("slip_1", "slip_2", "contact")):
-        result.add(f"{c.name}.{row}", [f.graph.lift(column[i]) for column in columns])
+        *own, given = (f.graph.lift(column[i]) for column in columns)
+        result.add(f"{c.name}.{row}", own, given)
     # N . c + n . rho
     result.gaps[c.name] = f.graph.lift(dot(normal, frame.c) + dot(n, rho))
 

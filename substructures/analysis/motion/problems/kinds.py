@@ -7,12 +7,13 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from substructures.analysis.arguments import one_of
-from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint
+from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint, closing
 from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.problem import StateVector
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
 from substructures.quantities.reactions import ReactionModel
+from substructures.tree.model import Model
 
 
 @dataclass(frozen=True)
@@ -79,6 +80,14 @@ class ConstrainedMotion:
         if not self.constraints:
             raise InvalidArgument.at("/constraints", "too-short", "at least one constraint is needed, found none")
         one_of(self.form, "form", ("voronets", "boltzmann-hamel"))
+
+
+def usual_kind(model: Model, kind: ConstrainedMotion | None) -> ConstrainedMotion | None:
+    """The motion in quasi-velocities: the one that is given, that of the tree with its velocity constraints and all its
+    closures, or of these alone; None where it has none.
+    """
+    constraints = closing(model) if kind is None else ()
+    return ConstrainedMotion(constraints) if constraints else kind
 
 
 @dataclass(frozen=True)

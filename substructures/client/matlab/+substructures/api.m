@@ -146,7 +146,7 @@ classdef api
     function answer = export_substructure (ref, varargin)
       % GET /v1/substructures/{ref}/export: Functions of the part as it stands alone for a target, on one
       % calling convention. Query: target, quantities, name, bind, together, packed, fmi, precision, ranges,
-      % stages, standard.
+      % stages, standard, independent.
       answer = substructures.call ('get', '/v1/substructures/{ref}/export', ...
         {ref}, {}, varargin);
     end
@@ -481,7 +481,7 @@ classdef api
     function answer = export_tree (ref, varargin)
       % GET /v1/trees/{ref}/export: Functions of the tree for a target: C, MATLAB, Fortran, computer
       % algebra, ..., on one calling convention. Query: target, quantities, name, bind, together, packed,
-      % fmi, precision, ranges, stages, standard.
+      % fmi, precision, ranges, stages, standard, independent.
       answer = substructures.call ('get', '/v1/trees/{ref}/export', ...
         {ref}, {}, varargin);
     end
@@ -489,7 +489,8 @@ classdef api
     function answer = get_tree_quantity (ref, quantity, varargin)
       % GET /v1/trees/{ref}/{quantity}: The formulas of a quantity: metric, christoffel, forces, gravity,
       % coriolis, kinematics, regressor, ... Query: group, format, form, bind, name, document, inputs, zero,
-      % degree, cyclic, outputs, parameters, quantities, controls, running, terminal, drives, joints.
+      % degree, cyclic, outputs, parameters, quantities, controls, running, terminal, independent, drives,
+      % joints.
       answer = substructures.call ('get', '/v1/trees/{ref}/{quantity}', ...
         {ref, quantity}, {}, varargin);
     end

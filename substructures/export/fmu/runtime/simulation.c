@@ -24,7 +24,7 @@ static const long STEPS = 10000000; /* of one communication step */
 void state_reset(State *s)
 {
     memset(s, 0, sizeof *s);
-    fmu_start(s->v + AT_Q, s->v + AT_QD, s->v + AT_U, s->v + AT_P);
+    fmu_start(s->v + AT_Q, s->v + AT_V, s->v + AT_U, s->v + AT_P);
     s->v[AT_TOLERANCE] = FMU_TOLERANCE;
     s->phase = PHASE_NEW;
 }
@@ -43,11 +43,11 @@ int state_write(State *s, size_t at, double value)
     return 0;
 }
 
-static int accelerations(double t, const double *x, const double *u, const double *p, double *rates)
+/* rates: der(q), der(v); qdd: the accelerations where they are not among these */
+static int accelerations(double t, const double *x, const double *u, const double *p, double *rates, double *qdd)
 {
     int wrong = 0;
-    memcpy(rates, x + FMU_NQ, FMU_NQ * sizeof(double));
-    fmu_dynamics(t, x, x + FMU_NQ, u, p, rates + FMU_NQ);
+    fmu_dynamics(t, x, x + FMU_NQ, u, p, rates, rates + FMU_NQ, qdd);
     for (size_t i = 0; i < STATES; ++i) wrong |= !isfinite(rates[i]);
     return wrong;
 }
@@ -55,7 +55,8 @@ static int accelerations(double t, const double *x, const double *u, const doubl
 int state_rates(State *s)
 {
     if (!s->has_rates) {
-        if (accelerations(s->v[AT_T], s->v + AT_Q, s->v + AT_U, s->v + AT_P, s->v + AT_DQ)) return 1;
+        if (accelerations(s->v[AT_T], s->v + AT_Q, s->v + AT_U, s->v + AT_P, s->v + AT_DQ, s->v + AT_DV + FMU_NV))
+            return 1;
         s->has_rates = 1;
     }
     return 0;
@@ -93,8 +94,7 @@ int state_tangent(State *s, const unsigned *unknowns, size_t n_unknowns, const u
         if (!may) return 1;
         d[at] = seed[i];
     }
-    memcpy(d + AT_DQ, d + AT_QD, FMU_NQ * sizeof(double));
-    fmu_dynamics_tangent(v[AT_T], v + AT_Q, v + AT_QD, v + AT_QDD, v + AT_U, v + AT_P, d, d + AT_QDD);
+    fmu_dynamics_tangent(v[AT_T], v + AT_Q, v + AT_V, v + AT_QDD, v + AT_U, v + AT_P, d, d + AT_DQ);
     int needs_outputs = 0;
     for (size_t i = 0; i < n_unknowns; ++i) {
         if (unknowns[i] >= VALUES || unknowns[i] < AT_DQ || (unknowns[i] >= AT_U && unknowns[i] < AT_Y)) return 1;
@@ -109,7 +109,7 @@ int state_tangent(State *s, const unsigned *unknowns, size_t n_unknowns, const u
 /* Classical fixed steps of order 4, the last one shorter. */
 static int advance_fixed(State *s, double to)
 {
-    double k[4][STATES], y[STATES];
+    double k[4][STATES], y[STATES], qdd[FMU_NA + 1];
     double *x = s->v + AT_Q;
     const double *u = s->v + AT_U, *p = s->v + AT_P;
     double from = s->v[AT_T], step = s->v[AT_STEP];
@@ -122,7 +122,7 @@ static int advance_fixed(State *s, double to)
         for (int j = 0; j < 4; ++j) {
             double part = j == 0 ? 0.0 : j == 3 ? h : 0.5 * h;
             for (size_t i = 0; i < STATES; ++i) y[i] = x[i] + (j ? part * k[j - 1][i] : 0.0);
-            if (accelerations(t + part, y, u, p, k[j])) return 1;
+            if (accelerations(t + part, y, u, p, k[j], qdd)) return 1;
         }
         for (size_t i = 0; i < STATES; ++i) x[i] += h / 6.0 * (k[0][i] + 2.0 * (k[1][i] + k[2][i]) + k[3][i]);
     }
@@ -143,11 +143,11 @@ static double first_step(const double *x, const double *rates, double tolerance,
 
 static int advance_adaptive(State *s, double to)
 {
-    double k[STAGES][STATES], y[STATES];
+    double k[STAGES][STATES], y[STATES], qdd[FMU_NA + 1];
     double *x = s->v + AT_Q;
     const double *u = s->v + AT_U, *p = s->v + AT_P;
     double t = s->v[AT_T], tolerance = s->v[AT_TOLERANCE];
-    if (accelerations(t, x, u, p, k[0])) return 1;
+    if (accelerations(t, x, u, p, k[0], qdd)) return 1;
     if (!(s->next > 0.0)) s->next = first_step(x, k[0], tolerance, to - t);
     for (long n = 0; t < to; ++n) {
         int is_last = t + s->next >= to - 1e-12 * fabs(to);
@@ -160,7 +160,7 @@ static int advance_adaptive(State *s, double to)
                 for (int m = 0; m < j; ++m) sum += WEIGHTS[j][m] * k[m][i];
                 y[i] = x[i] + h * sum;
             }
-            failed = accelerations(t + NODES[j] * h, y, u, p, k[j]);
+            failed = accelerations(t + NODES[j] * h, y, u, p, k[j], qdd);
         }
         for (size_t i = 0; i < STATES && !failed; ++i) {
             double error = 0.0;

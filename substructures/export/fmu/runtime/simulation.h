@@ -2,7 +2,10 @@
  *
  * All numbers of an instance stand in one array, in the order of the variables of modelDescription.xml:
  *
- *     t | q | qd | der(q) | der(qd) | u | p | solver_step, solver_tolerance | outputs
+ *     t | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | outputs
+ *
+ * v: velocities of all coordinates, FMU_NA is 0 then and q'' is der(v); or, with velocity constraints, of the
+ * independent ones.
  */
 #ifndef SUBSTRUCTURES_SIMULATION_H
 #define SUBSTRUCTURES_SIMULATION_H
@@ -14,16 +17,19 @@
 enum {
     AT_T = 0,
     AT_Q = 1,
-    AT_QD = AT_Q + FMU_NQ,
-    AT_DQ = AT_QD + FMU_NQ,
-    AT_QDD = AT_DQ + FMU_NQ,
-    AT_U = AT_QDD + FMU_NQ,
+    AT_V = AT_Q + FMU_NQ,
+    AT_DQ = AT_V + FMU_NV,
+    AT_DV = AT_DQ + FMU_NQ,
+    AT_U = AT_DV + FMU_NV + FMU_NA,
+    /* velocities and accelerations of all coordinates, on which outputs depend */
+    AT_QD = FMU_NA ? AT_DQ : AT_V,
+    AT_QDD = FMU_NA ? AT_DV + FMU_NV : AT_DV,
     AT_P = AT_U + FMU_NU,
     AT_STEP = AT_P + FMU_NP,
     AT_TOLERANCE = AT_STEP + 1,
     AT_Y = AT_TOLERANCE + 1,
     VALUES = AT_Y + FMU_NY,
-    STATES = 2 * FMU_NQ
+    STATES = FMU_NQ + FMU_NV
 };
 
 /* what may be written: states and inputs, parameters, time */
@@ -32,7 +38,7 @@ enum { PHASE_NEW, PHASE_INITIALISING, PHASE_READY, PHASE_ENDED };
 typedef struct {
     double v[VALUES];
     double next;      /* step that the adaptive solver tries next; 0: none was made yet */
-    int has_rates;    /* der(q), der(qd) belong to the state */
+    int has_rates;    /* der(q), der(v), q'' belong to the state */
     int has_outputs;
     int phase;
 } State;
