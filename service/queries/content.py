@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, union_all, update
 
 from service.content.derivation import software
 from service.content.integrity import checked, missing, reading
 from service.database.packed import unpack
 from service.database.seals import seal
-from service.database.tables import parts, programs, trees
+from service.database.tables import parts, programs, summary_forms, trees
 from service.queries.common import insert_missing, now
 from service.queries.jobs.uploads import get_upload
 from service.queries.searching.formulas import FormulaRow, packed
@@ -45,6 +45,19 @@ def put_program(connection: Connection, digest: str, content: bytes, nodes: int)
     """Store a packed program."""
     row = {"digest": digest, "content": content, "nodes": nodes, "created": now()}
     insert_missing(connection, programs, [row])
+
+
+def has_program(connection: Connection, digest: str) -> bool:
+    """Whether a program is stored."""
+    return connection.execute(_HAS_PROGRAM, {"digest": digest}).first() is not None
+
+
+def stored_of(connection: Connection, digests: Collection[str]) -> list[str]:
+    """Those of these digests that programs or forms of summaries are stored under."""
+    if not digests:
+        return []
+    found = (select(table.c.digest).where(table.c.digest.in_(digests)) for table in (programs, summary_forms))
+    return list(connection.execute(union_all(*found)).scalars())
 
 
 def get_program(connection: Connection, digest: str) -> bytes | None:
@@ -164,6 +177,7 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
 
 
 # Built once: to build a statement takes longer than to execute it.
+_HAS_PROGRAM = select(programs.c.nodes).where(programs.c.digest == bindparam("digest"))
 _PROGRAM_OF = select(parts.c.program, parts.c.software).where(parts.c.digest == bindparam("digest"))
 _STORED = (
     select(*(parts.c[name] for name in (*SEALED, "definition", "recipe", "seal")), programs.c.content)
