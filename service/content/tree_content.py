@@ -85,9 +85,9 @@ def tree_summary(spec: TreeSpec, model: Model) -> TreeSummary:
         values.extend(members[name] for name in own)
         return {**members, **dict.fromkeys(own, HOLE)}
 
-    holed = plain | {"certificate": without(plain["certificate"], "seconds", "warnings")}
+    holed = plain | {"certificate": without(plain["certificate"], "converted", "seconds", "warnings")}
     holed = without(holed, "gravity", "instances", "loads", "numbers")
-    holed["parameters"] = {name: without(each, "value") for name, each in sorted(plain["parameters"].items())}
+    holed["parameters"] = {name: without(each, "given", "value") for name, each in sorted(plain["parameters"].items())}
     form = write_json(holed)
     if form.decode().count(_HOLE) != len(values):  # an old document's description is a hole
         whole = write_json(plain)

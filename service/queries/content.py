@@ -62,7 +62,7 @@ def stored_of(connection: Connection, digests: Collection[str]) -> list[str]:
 
 def get_program(connection: Connection, digest: str) -> bytes | None:
     """A program's canonical bytes. Raises Refused (``damaged-content``)."""
-    content = connection.execute(select(programs.c.content).where(programs.c.digest == digest)).scalar()
+    content = connection.execute(_PROGRAM, {"of_digest": digest}).scalar()
     return None if content is None else _unpacked(digest, content)
 
 
@@ -139,7 +139,7 @@ def get_row(connection: Connection, digest: str) -> Mapping[str, Any]:
 
 def get_recipe(connection: Connection, digest: str) -> str | None:
     """What a part that is a published tree was coupled of."""
-    return connection.execute(select(parts.c.recipe).where(parts.c.digest == digest)).scalar()
+    return connection.execute(_RECIPE, {"of_digest": digest}).scalar()
 
 
 def stale_parts(connection: Connection) -> list[str]:
@@ -163,7 +163,7 @@ def count_parts(connection: Connection) -> tuple[int, int]:
 
 def get_definition(connection: Connection, digest: str) -> bytes | None:
     """The definition of a part as stored. Raises Refused (``damaged-content``)."""
-    text = connection.execute(select(parts.c.definition).where(parts.c.digest == digest)).scalar()
+    text = connection.execute(_DEFINITION, {"of_digest": digest}).scalar()
     return None if text is None else checked("a definition", digest, text.encode())
 
 
@@ -177,6 +177,9 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
 
 
 # Built once: to build a statement takes longer than to execute it.
+_PROGRAM = select(programs.c.content).where(programs.c.digest == bindparam("of_digest"))
+_DEFINITION = select(parts.c.definition).where(parts.c.digest == bindparam("of_digest"))
+_RECIPE = select(parts.c.recipe).where(parts.c.digest == bindparam("of_digest"))
 _HAS_PROGRAM = select(programs.c.nodes).where(programs.c.digest == bindparam("digest"))
 _PROGRAM_OF = select(parts.c.program, parts.c.software).where(parts.c.digest == bindparam("digest"))
 _STORED = (

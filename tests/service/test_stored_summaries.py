@@ -53,14 +53,14 @@ def test_trees_of_one_shape_have_a_form_in_common(tmp_path: Path) -> None:
         client = make_client(store)
         assert client.post("/v1/substructures", json=PENDULUM).status_code == 201
         for k in range(4):
-            parameters = {"g": {"value": 9.81 + k, "unit": "m/s^2"}}
+            parameters = {"g": {"value": 9810 + 1000 * k, "unit": "mm/s^2"}}
             arm, hand = {**TREE["instances"][0], "parameters": {"m": 2 + k}}, {**HAND, "parameters": {}}
             tree = {**TREE, "name": f"t{k}", "parameters": parameters, "instances": [arm, hand]}
             assert client.post("/v1/trees", json=tree).status_code == 201
             answers[k] = client.get(f"/v1/trees/t{k}").json()
         assert [finding for finding in verify_all(store.database) if finding.fault] == []
     for k, answer in answers.items():
-        assert (answer["parameters"]["g"]["value"], answer["numbers"]) == (9.81 + k, {"arm.m": str(2 + k)})
+        assert (answer["parameters"]["g"]["value"], answer["numbers"]) == (round(9.81 + k, 2), {"arm.m": str(2 + k)})
         assert answer["instances"][0]["parameters"] == {"m": 2 + k}
     with closing(sqlite3.connect(path)) as connection:
         ((form,),) = connection.execute("SELECT content FROM summary_forms").fetchall()
