@@ -27,13 +27,13 @@ import substructures
 from benchmarks.http import cpu_seconds, serving
 from benchmarks.report import keep, options
 from benchmarks.store import sizes
-from service.content.summaries import PartContent, part_content, tree_summary
+from service.content.summaries import PartContent, part_content
+from service.content.tree_content import TreeContent, tree_summary
 from service.database.connections import Database
 from service.database.packed import pack
 from service.messages.viewer import ANYBODY
 from service.operations import trees
 from service.operations.catalogue import PartSubmission, submit
-from service.operations.trees import TreeContent
 from service.schemas.entries import PLAIN
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.client import Client
@@ -124,7 +124,8 @@ def tree_content(shipped: Sequence[str], database: Database) -> TreeContent:
     model, digests = couple(spec, parts), {name: part.definition.digest for name, part in parts.items()}
     mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
     figures = model.program.digest, len(model.program), model.dof, model.joints, mass
-    return TreeContent("cell", spec.canonical(), pack(model.program), *figures, tree_summary(spec, model), digests)
+    made = tree_summary(spec, model), digests, pack(model.program)
+    return TreeContent("cell", spec.canonical(), *figures, *made)
 
 
 def fill_trees(database: Database, count: int) -> None:

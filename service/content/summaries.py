@@ -1,4 +1,4 @@
-"""What is stored of trees and parts beside their programs; made where they are computed, which takes its time."""
+"""What is stored of parts beside their programs; made where they are computed, which takes its time."""
 
 from __future__ import annotations
 
@@ -12,18 +12,8 @@ from service.database.packed import pack, unpack
 from substructures.documents import read_json, write_json
 from substructures.part.mass import mass_at_defaults
 from substructures.part.part import Part
-from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model
 
 UNKNOWN = "unknown"  # software
-
-
-def tree_summary(spec: TreeSpec, model: Model) -> bytes:
-    """Canonical JSON: the summary of the model, with gravity and instances as they were given."""
-    given = read_json(spec.canonical())
-    shown = {"gravity": given.get("gravity", [0, 0, 0]), "instances": given.get("instances", [])}
-    shown |= {"loads": given["loads"]} if "loads" in given else {}
-    return write_json({**model.summary(), **shown})
 
 
 @dataclass(frozen=True, slots=True)

@@ -10,7 +10,8 @@ neither SQLAlchemy's JSON nor its DATETIME type; times are UTC as ``2026-01-31T1
         |  '--< aliases --< history   '--< part_uses >-- parts
         '--< search_terms
     tree_names --< trees --< tree_parts >-- parts
-                     '------------------- programs
+                     |'------------------ programs
+                     '------------------- summary_forms
 """
 
 from __future__ import annotations
@@ -209,6 +210,13 @@ tree_names = Table(
     Index("ix_tree_names_number", "number", unique=True),
 )
 
+summary_forms = Table(  # what summaries of trees of one shape have in common
+    "summary_forms",
+    metadata,
+    _text("digest", primary_key=True),
+    _text("content"),  # JSON with holes
+)
+
 trees = Table(
     "trees",
     metadata,
@@ -218,10 +226,11 @@ trees = Table(
     _text("spec"),  # references pinned to digests
     _text("program", ForeignKey("programs.digest")),
     _number("dof"),
-    _text("summary"),  # what Model.load needs beside the program, with gravity and instances as shown
+    _text("summary_values"),  # of what Model.load needs beside the program, with gravity and instances as shown
+    _text("summary_form", ForeignKey("summary_forms.digest"), nullable=True),  # NULL: the values are all of it
     _text("created"),
     _number("based_on", nullable=True),  # the revision that was changed
-    Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of ``summary``
+    Column("summary_digest", Text, nullable=False, server_default=""),  # sha256 of both together
     _default("author", ""),
     _default("note", ""),
     _default("joints", ""),

@@ -14,6 +14,7 @@ from typing import Protocol
 from service.content.derivation import software
 from service.content.integrity import checked, digest_of
 from service.content.summaries import PartContent
+from service.content.tree_content import TreeSummary
 from service.database.connections import Connection, Database
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
@@ -82,9 +83,8 @@ def tree_anew(
     parts = {each: [digest, programs[digest]] for each, digest in digests.items()}
     item = {"tree": read_json(tree.spec.encode()), "parts": parts, "nodes": max_nodes}
     outcome = compute("renew-tree", item, blobs)
-    told, summary = outcome.summary, outcome.files["summary"]
-    made = {each: told[each] for each in ("program", "dof", "joints", "mass")}
-    made |= {"summary": summary.decode(), "summary_digest": digest_of(summary)}
+    told, summary = outcome.summary, TreeSummary.of_files(outcome.files)
+    made = {each: told[each] for each in ("program", "dof", "joints", "mass")} | summary.columns()
     return CoupledAnew(replace(tree, **made), outcome.files["program"], told["nodes"], digests)
 
 

@@ -6,11 +6,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from service.content.integrity import checked, digest_of
-from service.content.summaries import UNKNOWN, PartContent, float_of
+from service.content.integrity import digest_of, missing
+from service.content.tree_content import TreeContent
 from service.database.connections import Connection
-from service.database.packed import unpack
-from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import NAMED, pinned_spec
 from service.jobs.kinds.shapes import SHARE
 from service.jobs.worker import Worker
@@ -31,39 +29,6 @@ from substructures.documents.tables import with_points
 from substructures.errors import InvalidDocument, among
 from substructures.part.parameters import counted
 from substructures.tree.document import TreeSpec
-
-
-@dataclass(frozen=True, slots=True)
-class TreeContent:
-    """What is stored of a coupled tree: canonical document, packed program with its digest and length, degrees of
-    freedom, joints, mass in kg if it is known, the summary as JSON.
-
-    ``parts``: the digest of the part that every instance is; ``inline``: those that the tree brings along;
-    ``software``: that coupled it, empty for that of this process.
-    """
-
-    name: str
-    spec: bytes
-    program: bytes
-    program_digest: str
-    nodes: int
-    dof: int
-    joints: str
-    mass: float | None
-    summary: bytes
-    parts: Mapping[str, str]
-    inline: Sequence[PartContent] = ()
-    software: str = ""
-
-    @classmethod
-    def of_outcome(cls, outcome: Outcome) -> TreeContent:
-        """What a work of the kind ``assemble`` has made. Raises Refused for a program that is not what it is called."""
-        files, told = outcome.files, outcome.summary
-        inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
-        figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
-        made = files["summary"], told["parts"], inline, told.get("software", UNKNOWN)
-        checked("the program of a tree", told["program"], unpack(files["program"]))
-        return cls(told["name"], files["spec"], files["program"], *figures, *made)
 
 
 @dataclass(frozen=True, slots=True)
@@ -234,7 +199,8 @@ def _coupled(
     if faults:
         raise InvalidDocument(faults)
     given = {**item, **store.work_limits, **members, SHARE: f"owner {viewer.owner}"}
-    return TreeContent.of_outcome(worker("assemble", given, store.blobs(blobs)))
+    outcome = worker("assemble", given, store.blobs(blobs))
+    return TreeContent.of_files(outcome.summary, outcome.files)
 
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:
@@ -268,11 +234,15 @@ def store(
         raise StaleError(f"'{name}' was changed meanwhile")
     for part in coupled.inline:
         catalogue.store_part(connection, part)
-    content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
-    texts = coupled.spec.decode(), coupled.program_digest, coupled.dof, coupled.summary.decode()
-    whom = viewer.key, whose.owner, whose.visibility, entry.note or ""
-    figures = coupled.joints, coupled.mass, coupled.software
-    tree = trees.Tree(name, latest + 1, digest, *texts, now(), base, digest_of(coupled.summary), *whom, *figures)
+    if coupled.program is not None:
+        content.put_program(connection, coupled.program_digest, coupled.program, coupled.nodes)
+    elif not content.has_program(connection, coupled.program_digest):
+        raise missing("a program", coupled.program_digest)
+    spec = coupled.spec.decode()
+    figures = {name: getattr(coupled, name) for name in ("dof", "joints", "mass", "software")}
+    whom = {"author": viewer.key, "owner": whose.owner, "visibility": whose.visibility, "note": entry.note or ""}
+    more: dict[str, Any] = {"created": now(), "based_on": base, **figures, **whom, **coupled.summary.columns()}
+    tree = trees.Tree(name, latest + 1, digest, spec, coupled.program_digest, **more)
     trees.add_revision(connection, tree, coupled.parts)
     audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)
     return tree, True

@@ -12,8 +12,8 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
 
 from service.content.improvement import AS_IT_WAS, Improvement, improvement
-from service.content.integrity import digest_of
 from service.content.summaries import PartContent
+from service.content.tree_content import TreeSummary
 from service.database.connections import Connection, Database
 from service.database.packed import unpack
 from service.messages.viewer import Viewer
@@ -49,7 +49,7 @@ class TreeProgram:
     digest: str
     nodes: int
     dof: int
-    summary: bytes
+    summary: TreeSummary
     software: str
 
 
@@ -128,8 +128,7 @@ def put_tree(
     """Write what a job coupled over the program ``before``, in all revisions of this document that have it."""
     content.put_program(connection, made.digest, made.program, made.nodes)
     for tree in trees.with_program(connection, name, digest, before):
-        summary = made.summary.decode()
-        coupled = replace(tree, program=made.digest, dof=made.dof, summary=summary)
-        trees.replace_model(connection, replace(coupled, summary_digest=digest_of(made.summary)), made.software)
+        coupled = replace(tree, program=made.digest, dof=made.dof, **made.summary.columns())
+        trees.replace_model(connection, coupled, made.software)
         figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
         audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

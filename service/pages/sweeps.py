@@ -67,7 +67,7 @@ def _form(whole: Table, query: dict[str, str]) -> Html:
 
 
 def _rows(shown: Table, path: str, query: dict[str, str], may_write: bool) -> Html:
-    columns = {name: each[:ROWS].tolist() for name, each in shown.columns.items()}
+    columns = {name: each.tolist() for name, each in shown.rows(0, ROWS).columns.items()}
     rows: list[list[Content]] = []
     for values in zip(*columns.values(), strict=True):
         cells: list[Content] = [_cell(x) for x in values]

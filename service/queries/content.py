@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, update
+from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, union_all, update
 
 from service.content.derivation import software
 from service.content.integrity import checked, missing, reading
 from service.database.packed import unpack
 from service.database.seals import seal
-from service.database.tables import parts, programs, trees
+from service.database.tables import parts, programs, summary_forms, trees
 from service.queries.common import insert_missing, now
 from service.queries.jobs.uploads import get_upload
 from service.queries.searching.formulas import FormulaRow, packed
@@ -47,9 +47,22 @@ def put_program(connection: Connection, digest: str, content: bytes, nodes: int)
     insert_missing(connection, programs, [row])
 
 
+def has_program(connection: Connection, digest: str) -> bool:
+    """Whether a program is stored."""
+    return connection.execute(_HAS_PROGRAM, {"digest": digest}).first() is not None
+
+
+def stored_of(connection: Connection, digests: Collection[str]) -> list[str]:
+    """Those of these digests that programs or forms of summaries are stored under."""
+    if not digests:
+        return []
+    found = (select(table.c.digest).where(table.c.digest.in_(digests)) for table in (programs, summary_forms))
+    return list(connection.execute(union_all(*found)).scalars())
+
+
 def get_program(connection: Connection, digest: str) -> bytes | None:
     """A program's canonical bytes. Raises Refused (``damaged-content``)."""
-    content = connection.execute(select(programs.c.content).where(programs.c.digest == digest)).scalar()
+    content = connection.execute(_PROGRAM, {"of_digest": digest}).scalar()
     return None if content is None else _unpacked(digest, content)
 
 
@@ -126,7 +139,7 @@ def get_row(connection: Connection, digest: str) -> Mapping[str, Any]:
 
 def get_recipe(connection: Connection, digest: str) -> str | None:
     """What a part that is a published tree was coupled of."""
-    return connection.execute(select(parts.c.recipe).where(parts.c.digest == digest)).scalar()
+    return connection.execute(_RECIPE, {"of_digest": digest}).scalar()
 
 
 def stale_parts(connection: Connection) -> list[str]:
@@ -150,7 +163,7 @@ def count_parts(connection: Connection) -> tuple[int, int]:
 
 def get_definition(connection: Connection, digest: str) -> bytes | None:
     """The definition of a part as stored. Raises Refused (``damaged-content``)."""
-    text = connection.execute(select(parts.c.definition).where(parts.c.digest == digest)).scalar()
+    text = connection.execute(_DEFINITION, {"of_digest": digest}).scalar()
     return None if text is None else checked("a definition", digest, text.encode())
 
 
@@ -164,6 +177,10 @@ def get_blob(connection: Connection, digest: str) -> bytes | None:
 
 
 # Built once: to build a statement takes longer than to execute it.
+_PROGRAM = select(programs.c.content).where(programs.c.digest == bindparam("of_digest"))
+_DEFINITION = select(parts.c.definition).where(parts.c.digest == bindparam("of_digest"))
+_RECIPE = select(parts.c.recipe).where(parts.c.digest == bindparam("of_digest"))
+_HAS_PROGRAM = select(programs.c.nodes).where(programs.c.digest == bindparam("digest"))
 _PROGRAM_OF = select(parts.c.program, parts.c.software).where(parts.c.digest == bindparam("digest"))
 _STORED = (
     select(*(parts.c[name] for name in (*SEALED, "definition", "recipe", "seal")), programs.c.content)

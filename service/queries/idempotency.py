@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from datetime import timedelta
 
-from sqlalchemy import ColumnElement, Connection, delete, select, update
+from sqlalchemy import Connection, bindparam, delete, select, update
 
 from service.database.tables import idempotency
 from service.queries.common import insert_missing, now
@@ -41,42 +41,47 @@ def claim(connection: Connection, wanted: Claim, fingerprint: str) -> Entry | No
 
 def renew(connection: Connection, held: Claim) -> bool:
     """Let a claim begin anew; False when it is no longer one."""
-    return bool(connection.execute(update(idempotency).where(_in_flight(held)).values(created=now())).rowcount)
+    return bool(connection.execute(_RENEW, {**_held(held), "its_created": now()}).rowcount)
 
 
 def find(connection: Connection, principal: str, key: str) -> Entry | None:
     """What is there under a key."""
-    columns = select(*(idempotency.c[name] for name in Entry.__slots__))
-    found = connection.execute(columns.where(_is(principal, key))).first()
+    found = connection.execute(_FIND, {"of_principal": principal, "of_key": key}).first()
     return None if found is None else Entry(*found)
 
 
 def finish(connection: Connection, held: Claim, answer: tuple[int, str, bytes | None]) -> bool:
     """Keep the answer (status, headers, body); False when the claim is no longer ours."""
     status, headers, body = answer
-    kept = (
-        update(idempotency)
-        .where(_in_flight(held))
-        .values(status=status, headers=headers, body=body, size=len(body or b""))
-    )
-    return bool(connection.execute(kept).rowcount)
+    kept = {"its_status": status, "its_headers": headers, "its_body": body, "its_size": len(body or b"")}
+    return bool(connection.execute(_FINISH, {**_held(held), **kept}).rowcount)
 
 
 def release(connection: Connection, held: Claim) -> None:
     """Give a claim up, so that the request can be sent again."""
-    connection.execute(delete(idempotency).where(_in_flight(held)))
+    connection.execute(_RELEASE, _held(held))
 
 
 def forget(connection: Connection, answered: timedelta, in_flight: timedelta) -> None:
     """Drop answers older than ``answered`` and claims older than ``in_flight``, whose server must have died."""
-    is_claim = idempotency.c.status.is_(None)
-    connection.execute(delete(idempotency).where(idempotency.c.created < now(-answered), ~is_claim))
-    connection.execute(delete(idempotency).where(idempotency.c.created < now(-in_flight), is_claim))
+    connection.execute(_OLD_ANSWERS, {"before": now(-answered)})
+    connection.execute(_OLD_CLAIMS, {"before": now(-in_flight)})
 
 
-def _in_flight(held: Claim) -> ColumnElement[bool]:
-    return _is(held.principal, held.key) & (idempotency.c.owner == held.owner) & idempotency.c.status.is_(None)
+def _held(held: Claim) -> dict[str, str]:
+    return {"of_principal": held.principal, "of_key": held.key, "of_owner": held.owner}
 
 
-def _is(principal: str, key: str) -> ColumnElement[bool]:
-    return (idempotency.c.principal == principal) & (idempotency.c.key == key)
+# Built once: to build a statement takes longer than to execute it.
+_IS = (idempotency.c.principal == bindparam("of_principal")) & (idempotency.c.key == bindparam("of_key"))
+_IS_CLAIM, _IS_OLD = idempotency.c.status.is_(None), idempotency.c.created < bindparam("before")
+_IN_FLIGHT = _IS & (idempotency.c.owner == bindparam("of_owner")) & _IS_CLAIM
+_FIND = select(*(idempotency.c[name] for name in Entry.__slots__)).where(_IS)
+_RENEW = update(idempotency).where(_IN_FLIGHT).values(created=bindparam("its_created"))
+_FINISH = (
+    update(idempotency)
+    .where(_IN_FLIGHT)
+    .values({name: bindparam(f"its_{name}") for name in ("status", "headers", "body", "size")})
+)
+_RELEASE = delete(idempotency).where(_IN_FLIGHT)
+_OLD_ANSWERS, _OLD_CLAIMS = (delete(idempotency).where(_IS_OLD, which) for which in (~_IS_CLAIM, _IS_CLAIM))

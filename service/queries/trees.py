@@ -10,18 +10,20 @@ from sqlalchemy import Connection, Row, RowMapping, Select, bindparam, delete, f
 
 from service.content.derivation import software
 from service.content.integrity import checked
+from service.content.tree_content import summary_text
 from service.database.seals import seal
-from service.database.tables import parts, tree_names, tree_parts, trees
+from service.database.tables import parts, summary_forms, tree_names, tree_parts, trees
 from service.messages.references import Reference
 from service.messages.refusals import NotDerived
 from service.messages.viewer import ANYBODY, PUBLIC, Viewer
+from service.queries.common import insert_missing
 from service.queries.owners import seen_by, visible
 
 
 @dataclass(frozen=True, slots=True)
 class Tree:
-    """A revision of a tree; ``spec`` (references pinned) and ``summary`` are JSON. ``is_derived``: this server has
-    coupled it, with ``software``, and stored it as it is.
+    """A revision of a tree; ``spec`` (references pinned) and ``summary`` are JSON, that stored as values and ``form``.
+    ``is_derived``: this server has coupled it, with ``software``, and stored it as it is.
     """
 
     name: str
@@ -30,9 +32,11 @@ class Tree:
     spec: str
     program: str
     dof: int
-    summary: str
     created: str
     based_on: int | None
+    summary_values: str
+    summary_form: str | None
+    form: str | None
     summary_digest: str
     author: str
     owner: str
@@ -51,6 +55,11 @@ class Tree:
         return cls(*values)
 
     @property
+    def summary(self) -> str:
+        """What Model.load needs beside the program, with gravity and instances as shown."""
+        return summary_text(self.summary_values, self.form, self.spec)
+
+    @property
     def is_public(self) -> bool:
         """Whether others see it."""
         return self.visibility == PUBLIC
@@ -63,11 +72,19 @@ def latest_revision(connection: Connection, name: str) -> int:
 
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
     """Store a new latest revision, coupled here, and which part every instance is; the name is locked."""
+    _put_form(connection, tree)
     row = {name: value for name, value in asdict(tree).items() if name in _COLUMNS}
     connection.execute(_NEW, _sealed(connection, row))
     shown = {f"its_{name}": getattr(tree, name) for name in _NARROW}
     connection.execute(_NEW_LATEST, {"of_name": tree.name, "its_latest": tree.revision, **shown})
     _put_parts(connection, tree.name, tree.revision, parts)
+
+
+def _put_form(connection: Connection, tree: Tree, replace: bool = False) -> None:
+    if tree.form:
+        insert_missing(connection, summary_forms, [{"digest": tree.summary_form, "content": tree.form}])
+        if replace:  # what is there may be damaged
+            connection.execute(_FORM_AGAIN, {"of_digest": tree.summary_form, "its_content": tree.form})
 
 
 def _put_parts(connection: Connection, name: str, revision: int, parts: Mapping[str, str]) -> None:
@@ -164,7 +181,9 @@ def replace_model(connection: Connection, tree: Tree, made_by: str = "") -> None
     ``made_by``: the software that did, if not that of this process.
     """
     chosen = (trees.c.name == tree.name) & (trees.c.revision == tree.revision)
-    names = ("program", "dof", "joints", "mass", "summary", "summary_digest", "software", "seal")
+    summary = "summary_values", "summary_form", "summary_digest"
+    names = ("program", "dof", "joints", "mass", *summary, "software", "seal")
+    _put_form(connection, tree, replace=True)
     row = _sealed(connection, {**asdict(tree), "software": made_by})
     connection.execute(update(trees).where(chosen).values({name: row[name] for name in names}))
     shown = {name: getattr(tree, name) for name in _NARROW}
@@ -214,8 +233,13 @@ def count_revisions(connection: Connection) -> tuple[int, int]:
 
 
 def _all() -> Select[Any]:
-    columns = [(tree_names if name in _OWNED else trees).c[name] for name in Tree.__slots__ if name not in _MADE]
-    return select(*columns).join_from(trees, tree_names, tree_names.c.name == trees.c.name)
+    columns: list[Any] = [
+        summary_forms.c.content if name == "form" else (tree_names if name in _OWNED else trees).c[name]
+        for name in Tree.__slots__
+        if name not in _MADE
+    ]
+    found = select(*columns).join_from(trees, tree_names, tree_names.c.name == trees.c.name)
+    return found.join(summary_forms, summary_forms.c.digest == trees.c.summary_form, isouter=True)
 
 
 _OWNED, _MADE = ("owner", "visibility"), ("is_derived",)
@@ -236,6 +260,11 @@ _LATEST = _NAMED.where(_IS_LATEST)
 LATEST = _all().where(_IS_LATEST, _VISIBLE)
 _LATEST_NUMBER = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name"))
 _NEW, _NEW_PART = insert(trees), insert(tree_parts)
+_FORM_AGAIN = (
+    update(summary_forms)
+    .where(summary_forms.c.digest == bindparam("of_digest"))
+    .values(content=bindparam("its_content"))
+)
 _NARROW = ("created", "dof", "joints", "mass")  # what searches read of the latest revision
 _NEW_LATEST = (
     update(tree_names)

@@ -21,12 +21,13 @@ from time import monotonic
 
 from service.database.connections import set_clock
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Outcome, Work
-from service.jobs.kinds.shapes import SHARE
+from service.jobs.kinds.shapes import KNOWN, SHARE
 from service.messages.refusals import Refused, problem
 from service.queries.attempts import Attempt
 from service.queries.common import is_conflict, is_outage
 from service.queries.jobs import jobs, queue
 from service.queue.backlog import GATHER, Backlog
+from service.queue.known import Known
 from service.queue.mirroring import WithMirrors
 from service.queue.retention import sweep
 from service.queue.rounds import Ended, Round, lock_owned, play, put_back_all
@@ -52,7 +53,7 @@ class Supervisor:
         self._lease = timedelta(seconds=self._limits.lease_seconds)
         self._running: dict[str, tuple[Attempt, float]] = {}  # by id, with the time of the start
         self._ended: dict[str, Ended] = {}
-        self._backlog = Backlog()
+        self._backlog, self._known = Backlog(), Known()
         self._fractions: dict[str, float] = {}
         self._played = 0.0
         self._due: dict[str, float] = {}
@@ -186,6 +187,9 @@ class Supervisor:
         round_ = Round(self._owner, self._lease, ended, free, take_over, alone, ahead, self._store.usage.take)
         with self._store.database.write() as connection:
             played = play(connection, round_)
+        if ended:
+            with self._store.database.read() as connection:
+                self._known.note(connection, ended)
         self._take_over_at_once, self._played = False, monotonic()
         for each in ended:
             del self._ended[each.attempt.id]
@@ -209,7 +213,8 @@ class Supervisor:
         try:
             blobs = {digest: self._store.blob(digest) for digest in read_json(attempt.blobs.encode())}
             budget = Budget(limits.job_cpu_seconds, limits.job_memory_bytes)
-            item = read_json(attempt.item.encode()) | {SHARE: f"job {attempt.job}"}
+            told = {SHARE: f"job {attempt.job}", KNOWN: self._known.of(attempt.job)}
+            item = read_json(attempt.item.encode()) | told
             engine.start(Work(attempt.id, attempt.kind, item, blobs, budget))
         except Refused as error:
             self._end(attempt, Outcome(problem=problem(error)))

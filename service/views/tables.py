@@ -33,7 +33,7 @@ def chosen_media(accept: str) -> str:
 
 def rows_view(table: Table, start: int, stop: int) -> dict[str, Any]:
     """Some rows of a table."""
-    columns = {name: each[start:stop].tolist() for name, each in table.columns.items()}
+    columns = {name: each.tolist() for name, each in table.rows(start, stop).columns.items()}
     items = [dict(zip(columns, values, strict=True)) for values in zip(*columns.values(), strict=True)]
     return {"columns": list(columns), "items": items, "count": table.count, **table.about}
 

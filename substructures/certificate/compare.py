@@ -17,7 +17,7 @@ from flint import arb, ctx
 from substructures.certificate.linear import Ball
 from substructures.certificate.outputs import Outputs, Values
 from substructures.certificate.slopes import stored_gradient
-from substructures.certificate.states import State, draws
+from substructures.certificate.states import WITHOUT_DEFAULTS, State, draws
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed
 from substructures.expr.operations import Output
@@ -71,7 +71,7 @@ def compare(
         tried += 1
         if not comparison.open:
             break
-    return Compared(comparison.result(), sorted(comparison.left_out), tried > 1)
+    return Compared(comparison.result(), sorted(comparison.left_out), tried > WITHOUT_DEFAULTS)
 
 
 @dataclass

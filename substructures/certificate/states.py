@@ -22,6 +22,8 @@ from substructures.expr.syntax import MEASURES
 State = dict[str, Any]
 #: what is positive in the first state; everything else has both signs
 POSITIVE = frozenset(("parameter", "inertia"))
+#: sets of states that do not depend on defaults
+WITHOUT_DEFAULTS = 2
 #: operations and functions of expressions that are analytic, and one function on all sides of where they have no value
 ANALYTIC = frozenset(
     ("int", "rat", "sym", "add", "sub", "mul", "neg", "div", "powi", "sin", "cos", "tan", "atan", "exp")
@@ -81,12 +83,13 @@ def _texts(document: Plain) -> Iterator[str]:
 def draws(kinds: Mapping[str, str], defaults: Mapping[str, Any], count: int) -> Iterator[list[State]]:
     """Sets of states, one after the other while elements are left that are not finite; ``kinds``: of all symbols.
 
-    Everything is of the order of one, every other state with some negative parameters; then parameters have their
-    ``defaults`` (balls), or are positive; then coordinates, velocities and inputs are small, too. ``count``: of a set
-    (:func:`states_needed`).
+    Everything is of the order of one, every other state with some negative parameters; then all of these are positive;
+    then :data:`WITHOUT_DEFAULTS` sets are over, and parameters have their ``defaults`` (balls), or are positive; then
+    coordinates, velocities and inputs are small, too. ``count``: of a set (:func:`states_needed`).
     """
     source = random.Random(0)  # noqa: S311 -- the same states for everybody
     yield _signed(source, kinds, {}, 1, count, True)
+    yield _signed(random.Random(1), kinds, {}, 1, count)  # noqa: S311 -- likewise
     yield _signed(source, kinds, defaults, 1, count)
     yield _signed(source, kinds, defaults, 16, count)
 

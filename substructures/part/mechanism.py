@@ -127,13 +127,14 @@ def mechanism(definition: Definition) -> Mechanism:
 
 def _scope(definition: Definition, layout: Topology) -> Scope:
     scope = Scope(Graph())
+    aside = Scope(Graph(), faults=scope.faults)  # formulas have the same order whatever the defaults are
     for name, parameter in sorted(definition.parameters.items()):
         scope.declare(name, "parameter", si_unit(parameter.unit))
         if parameter.value is not None:
-            scope.read(parameter.value, f"/parameters/{name}/value", no_names)
+            aside.read(parameter.value, f"/parameters/{name}/value", no_names)
     for name, given in sorted(definition.inputs.items()):
         if given.default is not None:
-            scope.read(given.default, f"/inputs/{name}/default", no_names)
+            aside.read(given.default, f"/inputs/{name}/default", no_names)
     for a in layout.movers:
         scope.symbols[layout.joints[a].coordinate] = _coordinate(layout.joints[a])
     return scope

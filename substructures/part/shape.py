@@ -1,4 +1,4 @@
-"""The shape of a definition: what is left of it without words, and without the values of its parameters."""
+"""The shape of a definition: what is left of it without words, and without values of parameters and inputs."""
 
 from __future__ import annotations
 
@@ -25,7 +25,8 @@ WORDS = (
 
 
 def shape_of(definition: Definition) -> dict[str, Any]:
-    """The definition as plain data without words and values of parameters, which have their SI units alone.
+    """The definition as plain data without words, defaults of inputs, and values of parameters, which have their SI
+    units alone.
 
     Numbers that stand in bodies, joints and loads stay: formulas are made of them.
     """
@@ -36,10 +37,10 @@ def shape_of(definition: Definition) -> dict[str, Any]:
 
 
 def without_descriptions(plain: dict[str, Any]) -> dict[str, Any]:
-    """A definition or tree whose parameters and inputs have no descriptions."""
-    kinds = [kind for kind in ("parameters", "inputs") if kind in plain]
-    return plain | {kind: {name: _without_words(x) for name, x in plain[kind].items()} for kind in kinds}
-
-
-def _without_words(given: dict[str, Any]) -> dict[str, Any]:
-    return {field: x for field, x in given.items() if field != "description"}
+    """A definition or tree whose parameters and inputs have no descriptions, and inputs no defaults."""
+    left = {"parameters": ("description",), "inputs": ("description", "default")}
+    return plain | {
+        kind: {name: {field: x for field, x in each.items() if field not in out} for name, each in plain[kind].items()}
+        for kind, out in left.items()
+        if kind in plain
+    }

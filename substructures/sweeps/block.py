@@ -161,15 +161,16 @@ def _fitting(plan: Plan, block: Block, refusals: Refusals, finite: list[int]) ->
     return block if fits.all() else block.take(np.flatnonzero(fits))
 
 
-def joined(plan: Plan, blocks: Sequence[Block]) -> Block:
-    """One block in the order of rows, of those that are to be kept."""
+def joined(plan: Plan, blocks: list[Block]) -> Block:
+    """One block in the order of rows, of those that are to be kept; takes the blocks, so that none is there twice."""
     if not blocks:
         return Block(np.zeros(0, dtype=np.int64), {n: np.zeros(0) for n in (*plan.sampler.names, *plan.columns.names)})
     rows = np.concatenate([block.rows for block in blocks])
-    order = np.argsort(rows, kind="stable")
-    names = blocks[0].columns
-    whole = Block(rows, {name: np.concatenate([block.columns[name] for block in blocks]) for name in names})
-    whole = whole.take(order)
+    columns = [dict(block.columns) for block in blocks]
+    blocks.clear()
+    whole = Block(rows, {name: np.concatenate([each.pop(name) for each in columns]) for name in tuple(columns[0])})
+    if (np.diff(rows) < 0).any():
+        whole = whole.take(np.argsort(rows, kind="stable"))
     keep = plan.document.keep
     return whole if keep is None or len(whole.rows) <= keep else whole.take(best(whole, plan.document.pareto, keep))
 

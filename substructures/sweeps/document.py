@@ -71,12 +71,16 @@ class SimulationColumn(MotionColumn):
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8
 
 
+#: no field of a column is called so: pointers to faults pass it over
+OF_QUANTITY = "column of a quantity"
+
+
 def _kind(given: Any) -> str | None:
     if isinstance(given, str):
         return "text"
     if isinstance(given, dict):
-        return str(given["analysis"])[:80] if "analysis" in given else "quantity"
-    return "quantity" if isinstance(given, QuantityColumn) else getattr(given, "analysis", None)
+        return str(given["analysis"])[:80] if "analysis" in given else OF_QUANTITY
+    return OF_QUANTITY if isinstance(given, QuantityColumn) else getattr(given, "analysis", None)
 
 
 KINDS = (
@@ -90,7 +94,7 @@ Column = Annotated[
     | Annotated[EquilibriumColumn, Tag("equilibrium")]
     | Annotated[ReachColumn, Tag("reach")]
     | Annotated[SimulationColumn, Tag("simulation")]
-    | Annotated[QuantityColumn, Tag("quantity")],
+    | Annotated[QuantityColumn, Tag(OF_QUANTITY)],
     Discriminator(_kind, custom_error_type="unknown-column", custom_error_message=KINDS),
 ]
 

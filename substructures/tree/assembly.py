@@ -171,7 +171,7 @@ def _inputs(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope | None = Non
     """All inputs of loads: of the tree, and those that the definitions declare; ``scope``: notes faults of defaults."""
     for name, given in sorted(spec.inputs.items()):
         if scope is not None and given.default is not None:
-            scope.read(given.default, f"/inputs/{name}/default", no_names)
+            Scope(Graph(), faults=scope.faults).read(given.default, f"/inputs/{name}/default", no_names)
     return described_inputs(spec.inputs) | {
         tree_name(instance.name, name): each
         for instance in spec.instances

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from service.content.derivation import software
-from service.content.summaries import tree_summary
+from service.content.tree_content import summary_text, tree_summary
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Work
 from service.jobs.kinds import expand, resolve, submission
 from service.jobs.kinds.library import StoredTree, StoredVersion
@@ -43,7 +43,9 @@ class MemoryLibrary:
         spec = spec.model_copy(update={"instances": pinned})
         model = couple(spec, parts)
         self.blobs[model.program.digest] = model.program.to_bytes()
-        texts = spec.canonical().decode(), tree_summary(spec, model).decode()
+        document = spec.canonical().decode()
+        made = tree_summary(spec, model)
+        texts = document, summary_text(made.values, made.form, document)
         self._trees[spec.name] = StoredTree(spec.name, spec.digest, model.program.digest, *texts)
 
     def file(self, given: Mapping[str, Any]) -> Mapping[str, Any]:

@@ -14,7 +14,6 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.cli.main import main
-from service.content.integrity import digest_of
 from service.database.packed import pack, unpack
 from service.operations.verification import verify_all
 from service.settings import Settings
@@ -23,6 +22,7 @@ from substructures.expr.program import Program
 from .conftest import HAND, PENDULUM, copied, make_client
 from .fake_engine import FakeEngine, finished, running, submitted
 from .seals import seal_again
+from .whole_summaries import put_whole_summary, whole_summary
 
 Damage = Callable[[sqlite3.Connection], None]
 
@@ -140,6 +140,9 @@ def test_a_damaged_part_is_refused_by_name(template: Path, tmp_path: Path, damag
         (wrong_tree, "damaged-content"),
         (other_tree, "damaged-content"),
         (lambda c: other_summary(c), "damaged-content"),
+        (lambda c: other_values(c), "damaged-content"),
+        (lambda c: one_value_less(c), "damaged-content"),
+        (lambda c: other_form(c), "damaged-content"),
         (gone_tree_program, "missing-content"),
     ],
 )
@@ -181,15 +184,28 @@ def wrong_formula(connection: sqlite3.Connection, table: str) -> None:
 
 
 def other_summary(connection: sqlite3.Connection) -> None:
-    connection.execute("""UPDATE trees SET summary = replace(summary, '"joints":"R"', '"joints":"P"')""")
+    connection.execute("""UPDATE summary_forms SET content = replace(content, '"joints":"R"', '"joints":"P"')""")
+
+
+def other_values(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE trees SET summary_values = replace(summary_values, '9.81', '9.82')")
+
+
+def one_value_less(connection: sqlite3.Connection) -> None:
+    connection.execute("UPDATE trees SET summary_values = substr(summary_values, instr(summary_values, char(10)) + 1)")
+
+
+def other_form(connection: sqlite3.Connection) -> None:
+    connection.execute("PRAGMA foreign_keys=OFF")
+    connection.execute("UPDATE trees SET summary_form = 'sha256:0'")
 
 
 def with_its_digest(connection: sqlite3.Connection, before: str, after: str) -> None:
     """Another summary, as an older version may have written it."""
-    (summary,) = connection.execute("SELECT summary FROM trees").fetchone()
+    summary = whole_summary(connection)
     wrong = summary.replace(before, after)
     assert wrong != summary
-    connection.execute("UPDATE trees SET summary = ?, summary_digest = ?", (wrong, digest_of(wrong.encode())))
+    put_whole_summary(connection, wrong)
 
 
 def other_axes(connection: sqlite3.Connection) -> None:

@@ -120,7 +120,7 @@ def test_jobs_take_it() -> None:
     stored = {**TREE, "instances": [{"name": "cart", "substructure": "cart"}]}
     library = MemoryLibrary([instance["definition"]], [stored])
     (assembled,) = outcomes(library, "assemble", {"items": [stored]})
-    assert read_json(assembled.files["summary"])["driven"] == ["cart.z"]
+    assert read_json(assembled.files["form"])["driven"] == ["cart.z"]
     asked = {"quantities": ["metric", "drive_forces"], "q": [[0.1], [0.2]], "qdd": [[0], [0]], "t": 0.1}
     made = outcomes(library, "evaluate", {"items": [{"tree": "shaken", "request": asked}]})
     assert joined(made, "drive_forces").shape == (2, 1)

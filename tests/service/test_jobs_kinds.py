@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from service.content.summaries import PartContent, part_content
+from service.content.tree_content import TreeContent, summary_text
 from service.database.packed import unpack
 from service.jobs.kinds import KINDS, expand, run, submission
 from service.settings import Limits
@@ -40,7 +41,9 @@ def test_assemble_gives_what_coupling_gives(library: MemoryLibrary) -> None:
     digest = library.parts["pendulum"].definition.digest
     assert {i.substructure for i in spec.instances} == {f"pendulum@{digest}"}
     assert outcome.summary["parts"] == {"arm": digest, "hand": digest}
-    stored = Model.load(read_json(outcome.files["summary"]), program)
+    content = TreeContent.of_files(outcome.summary, outcome.files)
+    text = summary_text(content.summary.values, content.summary.form, outcome.files["spec"].decode())
+    stored = Model.load(read_json(text.encode()), program)
     assert stored.coordinates == model.coordinates
 
 

@@ -4,15 +4,22 @@ from __future__ import annotations
 
 import re
 from copy import deepcopy
+from dataclasses import replace
 from typing import Any
 
 import pytest
+from fastapi.testclient import TestClient
 
+from service.jobs.engines.engine import Outcome, Work
 from service.jobs.kinds import run
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.shapes import SHARE
+from service.store.store import Store
 from substructures import Definition, Part, catalogue, derive
 from substructures.tree import model
+
+from .conftest import TREE
+from .fake_engine import FakeEngine, finished, items, running, submitted
 
 ITEM: dict[str, Any] = {"nodes": 100_000}
 
@@ -77,11 +84,41 @@ def test_a_program_is_read_once_for_all_parts_that_have_it() -> None:
     assert [part.parameters for part in read] == [one.parameters, other.parameters]
 
 
+def test_what_is_stored_is_not_sent_again(filled: TestClient, store: Store) -> None:
+    """A program and the form of its summaries leave the runner once; an item that wrongly counts on it fails alone."""
+    sent: list[tuple[str, frozenset[str]]] = []
+
+    class Noting(FakeEngine):
+        def compute(self, work: Work) -> Outcome:
+            lost = "sha256:" + 64 * "0"
+            outcome = super().compute(work)
+            if work.item["tree"]["name"] == "t4":
+                outcome = replace(outcome, summary={**outcome.summary, "program": lost})
+            sent.append((work.item["tree"]["name"], frozenset(outcome.files) & {"program", "form"}))
+            return outcome
+
+    trees = [{**TREE, "name": f"t{k}", "parameters": {"g": {"value": 9 + k}}} for k in range(6)]
+    with running(store, Noting(slots=1)):
+        first = finished(filled, submitted(filled, {"kind": "assemble", "items": trees[:1]}))
+        job = submitted(filled, {"kind": "assemble", "items": trees[1:]})
+        assert first["state"] == "succeeded"
+        finished(filled, job)
+    by_name = dict(sent)
+    assert by_name["t0"] == by_name["t1"] == {"program", "form"}  # each job for itself
+    assert by_name["t5"] == frozenset()
+    told = items(filled, job)
+    assert [each["state"] for each in told] == [*["succeeded"] * 3, "failed", "succeeded"]
+    assert told[3]["problem"]["code"] == "missing-content"
+    for k in (0, 1, 5):
+        assert filled.get(f"/v1/trees/t{k}").json()["parameters"]["g"]["value"] == 9 + k
+
+
 def _files(arm: Part, hand: Part, share: str | None = None) -> tuple[dict[str, Any], dict[str, bytes]]:
     """What comes of an item, without the time that it took."""
     item, blobs = _item(arm, hand, **({} if share is None else {SHARE: share}))
     outcome = run("assemble", item, blobs, lambda _: None)
     assert outcome.problem is None
     files = dict(outcome.files)
-    files["summary"] = re.sub(rb'"seconds":\{[^}]*\}', b"", files["summary"])
+    files["summary"] = re.sub(rb'\{"couple":[^}]*\}', b"", files["summary"])
+    files["summary.digests"] = files["summary.digests"].partition(b" ")[2]  # of the times, too
     return dict(outcome.summary), files

@@ -112,7 +112,7 @@ def test_all_is_derived_anew(path: Path, store: Store, caplog: pytest.LogCapture
     assert caplog.text == ""
 
 
-@pytest.mark.parametrize("path", [OLD[-1]], indirect=True)
+@pytest.mark.parametrize("path", ["0016"], indirect=True)
 def test_what_was_withdrawn_stays_so(path: Path) -> None:
     """Up to schema 0016 the columns had other names."""
     with closing(sqlite3.connect(path)) as connection, connection:

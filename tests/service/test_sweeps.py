@@ -202,6 +202,8 @@ CHANGES: tuple[tuple[dict[str, Any], str, str], ...] = (
     ({"samples": {"of": {"arm.m": {"uniform": [1, 2], "count": 10**7}}}}, "/keep", "missing"),
     ({"template": {"name": "pair"}}, "/template/instances", "missing"),
     ({"columns": {}}, "/columns", "too_short"),
+    ({"columns": {"x": {"quantity": "gravity", "unit": "kg"}}}, "/columns/x/unit", "extra-forbidden"),
+    ({"columns": {"x": {"analysis": "reach", "unit": "kg"}}}, "/columns/x/unit", "extra-forbidden"),
     ({"on_invalid": "refuse"}, "/on_invalid", "extra-forbidden"),
     ({"labels": {"a": "b c"}}, "/labels", "bad-label"),
 )

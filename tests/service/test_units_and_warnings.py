@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable
-from hashlib import sha256
 from io import BytesIO
 from pathlib import Path
 from typing import Any
@@ -12,14 +11,18 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-from sqlalchemy import select, update
+from sqlalchemy import update
 
 from service.cli.main import main
+from service.content.integrity import digest_of
 from service.content.summaries import part_content
+from service.content.tree_content import TreeSummary
 from service.database.tables import trees
+from service.messages.references import Reference
 from service.messages.viewer import ANYBODY
 from service.operations import catalogue, exchange
 from service.operations.verification import verify_all
+from service.queries.trees import resolve
 from service.store.store import Store
 from substructures import Definition, Part, derive
 from substructures.formats.arrays import as_answer, read_npz
@@ -273,10 +276,13 @@ def test_trees_of_old_accept_what_is_declared(filled: TestClient, store: Store) 
     """As an older version left it: only what occurs in formulas is noted."""
     _tree(filled, _pendulum(parameters=PENDULUM["parameters"] | {"idle": {}}, inputs={"wind": {}}))
     with store.database.write() as connection:
-        summary = json.loads(connection.execute(select(trees.c.summary).where(trees.c.name == "made")).scalar_one())
+        tree = resolve(connection, ANYBODY, Reference("made"))
+        assert tree is not None
+        summary = json.loads(tree.summary)
         del summary["inputs"], summary["parameters"]["a.idle"]
         text = json.dumps(summary)
-        older = {"summary": text, "summary_digest": f"sha256:{sha256(text.encode()).hexdigest()}"}
+        older = TreeSummary(text, digest_of(text.encode())).columns()
+        del older["form"]
         connection.execute(update(trees).where(trees.c.name == "made").values(**older))
     store.caches.models._entries.clear()
     found = _evaluated(filled, "made", parameters={"a.idle": 1}, inputs={"a.wind": 1})

@@ -13,7 +13,6 @@ import pytest
 
 from service.app import open_store
 from service.content.improvement import AS_IT_WAS, MORE, SHORTER
-from service.content.integrity import digest_of
 from service.database.packed import pack, unpack
 from service.jobs.kinds.requested import renewed
 from service.messages.viewer import Viewer
@@ -28,6 +27,7 @@ from substructures.expr.program import Program
 from .conftest import HAND, SLIDER, copied, make_client
 from .fake_engine import FakeEngine, finished, items, running, submitted
 from .seals import seal_again
+from .whole_summaries import put_whole_summary, whole_summary
 
 
 def longer(content: bytes) -> Program:
@@ -152,13 +152,12 @@ def poor(template: Path, tmp_path: Path) -> Path:
     """A database with a tree that has no output nonlinear_effects."""
     copied(template, tmp_path / "store.db")
     with closing(sqlite3.connect(tmp_path / "store.db")) as connection:
-        program, summary = connection.execute("SELECT program, summary FROM trees").fetchone()
+        (program,) = connection.execute("SELECT program FROM trees").fetchone()
         (content,) = connection.execute("SELECT content FROM programs WHERE digest = ?", (program,)).fetchone()
         put(connection, "trees", program, poorer(content))
-        told = json.loads(summary)
+        told = json.loads(whole_summary(connection))
         del told["operations"]["nonlinear_effects"]
-        text = json.dumps(told)
-        connection.execute("UPDATE trees SET summary = ?, summary_digest = ?", (text, digest_of(text.encode())))
+        put_whole_summary(connection, json.dumps(told))
         connection.commit()
     seal_again(tmp_path / "store.db")
     return tmp_path / "store.db"

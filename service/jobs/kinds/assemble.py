@@ -7,13 +7,14 @@ from functools import partial
 
 from service.content.cache import Cache
 from service.content.derivation import software
-from service.content.summaries import part_content, tree_summary
+from service.content.summaries import part_content
+from service.content.tree_content import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import ENTRY, Blobs, ItemProgress, Kind, admitted, parted, stored_definition
 from service.jobs.kinds.library import Library, StoredVersion
-from service.jobs.kinds.shapes import shapes_of
+from service.jobs.kinds.shapes import KNOWN, shapes_of
 from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -143,8 +144,8 @@ def _pin(instance: Instance, version: StoredVersion | None) -> Instance:
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
-    """Files ``program`` (packed), ``spec``, ``summary``; of every inline definition ``<instance>.program``,
-    ``.content``. Raises InvalidDocument, TooLarge.
+    """Files ``spec``, those of the summary, ``program`` (packed) unless it is known; of every inline definition
+    ``<instance>.program``, ``.content``. Raises InvalidDocument, TooLarge.
     """
     given, parts = tree_parts(item, blobs)
     spec = _named(given, parts) if item.get(NAMED) else given
@@ -153,8 +154,10 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     check_constraints(model)
     check_contacts(model)
     progress(0.9)
-    program = _packed.once(model.program.digest, lambda: pack(model.program))
-    files = {"program": program, "spec": spec.canonical(), "summary": tree_summary(spec, model)}
+    known = item.get(KNOWN, ())
+    files = {"spec": spec.canonical(), **tree_summary(spec, model).files(known)}
+    if model.program.digest not in known:
+        files["program"] = _packed.once(model.program.digest, lambda: pack(model.program))
     for instance in given.instances:
         if instance.definition is not None:
             content = part_content(parts[instance.name]).files()

@@ -13,6 +13,7 @@ from service.jobs.kinds.decoded import CAPACITY
 from substructures.tree.shape import CertifiedProgram, KnownShapes
 
 SHARE = "share"  # field of an item: on whose behalf it is computed
+KNOWN = "known"  # likewise: digests of what need not be sent, for it is stored
 _known: Cache[CertifiedProgram] = Cache(CAPACITY, lambda shape: len(shape.program))
 
 

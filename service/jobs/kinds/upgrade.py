@@ -11,7 +11,8 @@ from typing import Any
 from service.content.derivation import derived_part, software
 from service.content.improvement import improvement
 from service.content.integrity import reading
-from service.content.summaries import part_content, tree_summary
+from service.content.summaries import part_content
+from service.content.tree_content import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
@@ -50,7 +51,8 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
-    """Files ``program``, and ``content`` of a part or ``summary`` of a tree, where they are others than what is stored.
+    """Files ``program``, and ``content`` of a part or ``summary``, ``form`` of a tree, where they are others than what
+    is stored.
 
     Raises VerificationFailed, TooLarge, Refused for damaged content.
     """
@@ -78,7 +80,7 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     told = {"name": name, "digest": digest, "program": model.program.digest, "nodes": len(model.program)}
     told["software"] = software()
     figures = {"dof": model.dof, "before": found.before, "after": found.after, "outcome": found.outcome}
-    files = {"program": pack(model.program), "summary": tree_summary(spec, model)} if found.is_one else {}
+    files = {"program": pack(model.program), **tree_summary(spec, model).files()} if found.is_one else {}
     return Outcome({**told, **figures}, files)
 
 

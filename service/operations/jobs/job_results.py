@@ -9,6 +9,7 @@ from typing import Any
 from service.content.improvement import Improvement
 from service.content.integrity import checked
 from service.content.summaries import UNKNOWN, PartContent
+from service.content.tree_content import TreeContent, TreeSummary
 from service.database.connections import Connection
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
@@ -67,7 +68,7 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
 
 
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
-    coupled = trees.TreeContent.of_outcome(outcome)
+    coupled = TreeContent.of_files(outcome.summary, outcome.files)
     tree, _ = trees.store(connection, viewer, coupled, _entry(item), item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 
@@ -87,7 +88,7 @@ def _upgraded(connection: Connection, viewer: Viewer, item: Mapping[str, Any], o
     if found.is_one and "tree" in item:
         checked("the program of a tree", told["program"], unpack(files["program"]))
         figures = told["program"], told["nodes"], told["dof"]
-        made = TreeProgram(files["program"], *figures, files["summary"], told.get("software", UNKNOWN))
+        made = TreeProgram(files["program"], *figures, TreeSummary.of_files(files), told.get("software", UNKNOWN))
         put_tree(connection, viewer, told["name"], told["digest"], item["program"], made, found)
     elif found.is_one:
         put_part(connection, viewer, item["substructure"], item["program"], PartContent.of_files(files), found)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
@@ -34,6 +34,26 @@ QUANTILES = (0.0, 0.05, 0.25, 0.5, 0.75, 0.95, 1.0)
 Column = NDArray[Any]
 
 
+class _Taken(Mapping[str, Column]):
+    """Some rows of columns, which are taken when they are asked for: of a page no more than what it shows."""
+
+    def __init__(self, columns: Mapping[str, Column], places: NDArray[Any]) -> None:
+        self.columns, self.places = columns, places
+
+    def __getitem__(self, name: str) -> Column:
+        return self.columns[name][self.places]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def __len__(self) -> int:
+        return len(self.columns)
+
+    def take(self, places: NDArray[Any]) -> _Taken:
+        """Some of these."""
+        return _Taken(self.columns, self.places[places])
+
+
 @dataclass(frozen=True)
 class Table:
     """Columns by name, the first ones the row and the choices; ``about``: how far the sweep is."""
@@ -45,7 +65,7 @@ class Table:
     @property
     def count(self) -> int:
         """How many rows it has."""
-        return len(self.columns[ROW])
+        return len(self.columns.places if isinstance(self.columns, _Taken) else self.columns[ROW])
 
     @property
     def weight(self) -> int:
@@ -59,7 +79,19 @@ class Table:
 
     def take(self, places: NDArray[Any]) -> Table:
         """Some of its rows."""
-        return replace(self, columns={name: each[places] for name, each in self.columns.items()})
+        columns = self.columns
+        return replace(self, columns=columns.take(places) if isinstance(columns, _Taken) else _Taken(columns, places))
+
+    def rows(self, start: int, stop: int) -> Table:
+        """Those in places from ``start`` to before ``stop``."""
+        return self.take(np.arange(min(start, self.count), min(stop, self.count)))
+
+    def only(self, names: Sequence[str]) -> Table:
+        """Some of its columns."""
+        columns = self.columns
+        if isinstance(columns, _Taken):
+            return replace(self, columns=_Taken({name: columns.columns[name] for name in names}, columns.places))
+        return replace(self, columns={name: columns[name] for name in names})
 
 
 _tables: Cache[Table] = Cache(CAPACITY, lambda table: table.weight)
@@ -150,7 +182,7 @@ def chosen(table: Table, where: str, sort: str, columns: Sequence[str]) -> Table
     for name in columns:
         _require(table, name, "/query/columns")
     wanted = [ROW, *(name for name in columns if name != ROW)] if columns else list(table.columns)
-    return replace(table, columns={name: table.columns[name] for name in wanted})
+    return table.only(wanted)
 
 
 def _require(table: Table, name: str, pointer: str) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from service.content.derivation import derived_part
-from service.content.summaries import part_content, tree_summary
+from service.content.summaries import part_content
+from service.content.tree_content import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
@@ -26,15 +27,15 @@ def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 
 def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
-    """Files ``program`` (packed), ``summary`` of a stored document; ``parts``: the digests of definition and program of
-    every instance. Raises as :func:`substructures.tree.model.couple_shape`."""
+    """Files ``program`` (packed), ``summary``, ``form`` of a stored document; ``parts``: the digests of definition and
+    program of every instance. Raises as :func:`substructures.tree.model.couple_shape`."""
     spec = TreeSpec.stored(item["tree"])
     parts = {name: part_of(definition, program, blobs) for name, (definition, program) in item["parts"].items()}
     model = couple_shape(spec, parts, item["nodes"])
     mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
     told = {"program": model.program.digest, "nodes": len(model.program)}
     told |= {"dof": model.dof, "joints": model.joints, "mass": mass}
-    return Outcome(told, {"program": pack(model.program), "summary": tree_summary(spec, model)})
+    return Outcome(told, {"program": pack(model.program), **tree_summary(spec, model).files()})
 
 
 RENEWED: Mapping[str, Renewed] = {"renew-part": _part, "renew-tree": _tree}
