@@ -142,7 +142,7 @@ def test_jobs_take_it() -> None:
     stored = {**TREE, "instances": [{"name": "g", "substructure": "table"}]}
     library = MemoryLibrary([instance["definition"]], [stored])
     (assembled,) = outcomes(library, "assemble", {"items": [stored]})
-    assert read_json(assembled.files["summary"])["ignored"] == ["g.turn"]
+    assert read_json(assembled.files["form"])["ignored"] == ["g.turn"]
     asked = {"quantities": ["metric", "ignored_rates"], "q": [[0.1], [0.4]]}
     made = outcomes(library, "evaluate", {"items": [{"tree": "governor", "request": asked}]})
     np.testing.assert_allclose(joined(made, "ignored_rates"), [[2 / 0.21], [2 / 0.36]])
