@@ -9,7 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from substructures.errors import InvalidArgument, among
-from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, signature
+from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, has_time, signature
 from substructures.export.packed import Indices, packed
 from substructures.expr.graph import Graph
 from substructures.expr.hoist import hoisted
@@ -99,7 +99,8 @@ class Function:
         """Symbols of the arguments: those of the quantity, ``x`` where it has further symbols."""
         found = {*signature(self.quantity), *self.interface.always, *(["x"] if self.further.names else [])}
         found |= {WORK} if WORK in self.interface.vectors and self.quantity != PREPARE else set()
-        found -= set() if self.interface.has_time else {"t"}
+        if not self.interface.has_time and not has_time(self.program.symbols):
+            found.discard("t")
         return tuple(symbol for symbol in (*ORDER, WORK) if symbol in found)
 
     @cached_property

@@ -13,13 +13,11 @@ from scipy.special import mathieu_a, mathieu_b
 
 from substructures import (
     ClosedMotion,
-    ConstrainedMotion,
     Event,
     Geodesic,
     Integrator,
     InvalidDocument,
     InvalidInput,
-    KnifeEdge,
     Model,
     couple,
     equilibria,
@@ -221,7 +219,6 @@ def test_what_takes_no_given_motion_says_so_at_the_beginning(lift: Model, hoop: 
         lambda: routh(lift),
         lambda: steady_motions(hoop),
         lambda: simulate(lift, [0.1], (0, 1), kind=Geodesic()),
-        lambda: simulate(lift, [0.1], (0, 1), kind=ConstrainedMotion(constraints=(KnifeEdge("p.tip", [1, 0, 0]),))),
     ]
     for call in calls:
         with pytest.raises(InvalidDocument, match=r"the motion of 'base.[za]' is given") as caught:

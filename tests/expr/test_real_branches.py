@@ -48,8 +48,8 @@ def test_sympy(partial: Program) -> None:
 def test_octave(partial: Program, tmp_path: Path) -> None:
     (tmp_path / "model_any.m").write_bytes(files(alone(partial), "matlab", 1000)["model_any.m"])
     script = (
-        "f = model_any(0, [-1.5; 2], [], [], []); disp(isreal(f)); disp(isnan(f)'); "
-        "f = model_any(0, [0.5; 2], [], [], []); printf('%.17g ', f);"
+        "f = model_any([-1.5; 2], [], [], []); disp(isreal(f)); disp(isnan(f)'); "
+        "f = model_any([0.5; 2], [], [], []); printf('%.17g ', f);"
     )
     run = subprocess.run(
         [str(OCTAVE), "--no-gui", "--norc", "--eval", script], cwd=tmp_path, capture_output=True, text=True, timeout=60

@@ -164,7 +164,7 @@ def test_a_loop_state_as_plain_data() -> None:
         ((SimulationRequest, ClosedRequest, RollingRequest), simulate, {"model", "progress", "folder", "bearings"}),
         ((LoopRequest,), loop_state, {"model", "folder"}),
         ((VelocityConstraints,), quasi_velocity_equations, {"model", "near"}),
-        ((SensitivityRequest,), sensitivities, {"model", "progress", "folder"}),
+        ((SensitivityRequest,), sensitivities, {"model", "progress", "folder", "form"}),
     ],
 )
 def test_bodies_and_functions_have_the_same_fields_and_defaults(
