@@ -166,7 +166,7 @@ def test_functions_in_c_pass_their_own_test(name: str, tmp_path: Path) -> None:
     with zipfile.ZipFile(io.BytesIO(found.data)) as files:
         files.extractall(tmp_path)
     text = (tmp_path / "tied.h").read_text()
-    arguments = "double t, const double *q, const double *u, const double *x, const double *p"
+    arguments = "const double *q, const double *u, const double *x, const double *p"
     assert f"void tied_velocity_dynamics({arguments}" in text
     assert "v.s." in text
     gcc = tool("gcc")
