@@ -72,8 +72,8 @@ def model(tree: Plain) -> Model:
 
 
 def mechanism(seed: int, laws: bool = True) -> Plain:
-    """One on which only gravity and its own joints act, these where they have laws."""
-    kind = Kind(3, bool(seed % 2), laws=laws, springs=0)
+    """One on which only gravity and its own joints act, these where they have laws; accelerations are determined."""
+    kind = Kind(3, bool(seed % 2), laws=laws, springs=0, massive=True)
     return {**random_definition(np.random.default_rng(seed), kind), "loads": []}
 
 

@@ -11,6 +11,7 @@ import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
 from service.app import open_store
+from service.content.tree_content import summary_text
 from service.database.connections import Database
 from service.database.migrate import upgrade
 from service.database.tables import metadata, search_terms
@@ -322,7 +323,7 @@ def test_only_what_is_seen_is_found(store: Store, client: TestClient) -> None:
 
 
 #: what columns of older stores are called now
-SINCE = {"yanked": "withdrawn_at", "yank_reason": "withdrawal_reason"}
+SINCE = {"yanked": "withdrawn_at", "yank_reason": "withdrawal_reason", "summary": "summary_values"}
 
 
 @pytest.mark.parametrize("kind", KINDS)
@@ -338,6 +339,8 @@ def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -
             metadata.tables[name]
             for name in ("programs", "parts", "substructures", "versions", "tree_names", "trees", "tree_parts")
         ]
+        with new.database.write() as connection:
+            put_whole(connection)
         with new.database.read() as connection, engine.begin() as old:
             for table in tables:
                 there = sa.Table(table.name, sa.MetaData(), autoload_with=old)
@@ -356,6 +359,16 @@ def test_an_older_store_is_as_if_it_were_made_today(kind: str, tmp_path: Path) -
             client = make_client(opened)
             assert {query: names(client, query) for query in PARTS} == PARTS
             assert {query: names(client, query, "trees") for query in TREES} == TREES
+
+
+def put_whole(connection: sa.Connection) -> None:
+    """Summaries of trees in one part, as older versions stored them."""
+    trees, forms = metadata.tables["trees"], metadata.tables["summary_forms"]
+    columns = trees.c.name, trees.c.revision, trees.c.spec, trees.c.summary_values, forms.c.content
+    both = trees.outerjoin(forms, trees.c.summary_form == forms.c.digest)
+    for name, revision, spec, values, form in connection.execute(sa.select(*columns).select_from(both)).all():
+        whole = {"summary_values": summary_text(values, form, spec), "summary_form": None}
+        connection.execute(sa.update(trees).where(trees.c.name == name, trees.c.revision == revision).values(whole))
 
 
 def terms_of(connection: sa.Connection) -> list[Any]:
