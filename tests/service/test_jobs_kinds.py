@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import pytest
@@ -9,6 +10,7 @@ import pytest
 from service.content.summaries import PartContent, part_content
 from service.content.tree_content import TreeContent, summary_text
 from service.database.packed import unpack
+from service.jobs import kinds
 from service.jobs.kinds import KINDS, expand, run, submission
 from service.settings import Limits
 from substructures.documents import read_json, write_json
@@ -263,3 +265,17 @@ def test_units_are_checked_before_anything_is_queued(library: MemoryLibrary) -> 
     assert made.summary["warnings"] == []
     tree["gravity"] = [0, {"value": 1, "unit": "N"}, 0]
     assert faults(library, "assemble", {"items": [tree]}) == {("/gravity/1", "unit-mismatch")}
+
+
+@pytest.mark.parametrize("error", [MemoryError, SystemError])
+def test_what_the_process_does_not_outlive_is_no_problem_of_the_item(
+    error: type[Exception], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Whoever watches the process tells why it ended: an allocation in a library may fail as a SystemError."""
+
+    def broken(*_: Any) -> Any:
+        raise error("error return without exception set")
+
+    monkeypatch.setitem(kinds._KINDS, "derive", replace(kinds._KINDS["derive"], run=broken))
+    with pytest.raises(error):
+        run("derive", {}, {}, lambda _: None)

@@ -102,14 +102,15 @@ def resolve(kind: str, item: ItemDocument, library: Library) -> tuple[ItemDocume
 def run(kind: str, item: ItemDocument, blobs: Mapping[str, bytes], progress: ItemProgress) -> Outcome:
     """Compute a resolved item, or what a request needs; what fails on its own account becomes a problem document.
 
-    Raises MemoryError.
+    Raises MemoryError, and SystemError: what the interpreter makes of allocations that fail in libraries, after which
+    the process is not to be trusted.
 
     Blobs are compared with their digests whenever they are read.
     """
     checked = CheckedBlobs(blobs)
     try:
         return REQUESTED[kind](item, checked) if kind in REQUESTED else _KINDS[kind].run(item, checked, progress)
-    except MemoryError:
+    except (MemoryError, SystemError):
         raise
     except TimeoutError as error:  # what would take too long is not begun
         return failed(Refused(503, "took-too-long", str(error)))
