@@ -52,6 +52,15 @@ def test_the_second_request_needs_no_thread(warm: TestClient, threads: list[obje
     assert other.json()["forces"] != first.json()["forces"]
 
 
+def test_other_methods_are_refused(warm: TestClient) -> None:
+    """Also where the answer to a POST is at hand."""
+    warm.post(URL, json=STATE)
+    assert warm.post(URL, json=STATE).status_code == 200
+    for method in ("PUT", "PATCH", "DELETE"):
+        answer = warm.request(method, URL, json=STATE)
+        assert (answer.status_code, answer.headers["allow"]) == (405, "POST")
+
+
 @pytest.mark.parametrize(
     ("url", "body", "headers"),
     [
