@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from typing import Any
 
 import pytest
@@ -111,11 +113,28 @@ def test_contacts_that_are_none_are_refused_with_the_tree(
     assert (fault["pointer"], fault["code"]) == (pointer, code), fault
 
 
-@pytest.mark.parametrize("path", ["publish", "linearisations", "forward_dynamics", "export?target=fmu"])
+@pytest.mark.parametrize("version", ["3.0", "2.0"])
+def test_an_fmu_has_contacts(client: TestClient, version: str) -> None:
+    assert stored(client, FLOOR).status_code == 201
+    found = client.get(f"/v1/trees/bouncy/export?target=fmu&fmi={version}")
+    assert found.status_code == 200, found.text
+    packed = zipfile.ZipFile(io.BytesIO(found.content))
+    assert "sources/contacts.c" in packed.namelist()
+    assert "contact.floor.gap" in packed.read("modelDescription.xml").decode()
+
+
+def test_an_fmu_with_two_tangents_is_refused(client: TestClient) -> None:
+    assert stored(client, FLOOR | {"friction": 0.5}).status_code == 201
+    found = client.get("/v1/trees/bouncy/export?target=fmu")
+    fault = found.json()["errors"][0]
+    assert (found.status_code, fault["code"], fault["pointer"]) == (422, "not-supported", "/query/target")
+
+
+@pytest.mark.parametrize("path", ["publish", "linearisations", "forward_dynamics", "export?target=simulink"])
 def test_what_would_pass_through_the_floor_says_so(client: TestClient, path: str) -> None:
     assert stored(client, FLOOR).status_code == 201
     address = f"/v1/trees/bouncy/{path}"
-    is_read = path in ("forward_dynamics", "export?target=fmu")
+    is_read = path in ("forward_dynamics", "export?target=simulink")
     found = client.get(address) if is_read else client.post(address, json={} if path == "publish" else {"q": [1]})
     assert found.status_code == 422
     fault = found.json()["errors"][0]
