@@ -11,7 +11,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from contact_models import BALL, G, block, of
+from closed_trees import tree_model
+from contact_models import BALL, PLACED, G, block, of
 from run_code import STRICT, tool
 
 from substructures import Model, couple, derive, simulate
@@ -51,6 +52,16 @@ def hopping() -> Model:
     return couple({**tree, "contacts": [contact]}, {"h": derive("planar-hopper")})
 
 
+def shaken() -> Model:
+    """A ball on a plate whose motion is given: it lifts off by itself and comes down again."""
+    slide = {"type": "prismatic", "coordinate": "s", "axis": [0, 0, 1], **PLACED}
+    plate = {"name": "floor", "bodies": [{"name": "plate", "parent": "base", "joint": slide, "mass": 1}]}
+    contact = {"name": "plate", "point": "b.body", "plane": "f.plate", "restitution": "0.5"}
+    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "ball"}]
+    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": {"f.s": "0.05*sin(20*t)"}, "contacts": [contact]}
+    return tree_model(tree, {"floor": plate, "ball": BALL})
+
+
 def tilted(turn: float, width: float, height: float) -> list[float]:
     """A block on its right lower corner."""
     radius, alpha = math.hypot(width, height), math.atan2(width, height)
@@ -74,6 +85,7 @@ MOTIONS: dict[str, tuple[Any, list[float], list[float], float, float]] = {
         0.6,
         1e-7,
     ),
+    "shaken": (shaken, [0], [1], 0.6, 1e-6),
     "hopper": (hopping, [0, 1, 0, 0.1, 0], [0.3, 0, 0, 0, 0], 1.5, 1e-6),
 }
 

@@ -27,8 +27,8 @@ static double rest_of(int i)
     return REST * fmin(FMU_REST_VELOCITY[i], FAST);
 }
 
-/* what a gap that has just opened is for indicators, so that it is not closed at once: above the rounding of gaps, and
-   little beside v^2 / 2 */
+/* what a gap that opens with a velocity is for indicators at first, so that it is not closed at once: above the rounding
+   of gaps, and little beside v^2 / 2 */
 static double rebound_of(double v)
 {
     return fmin(1e-13, fmax(1e-3 * v * v, 1e-14));
@@ -323,8 +323,9 @@ int contacts_decide(Contacts *c, const Given *at, double *x)
 {
     Seen s;
     double start[2 * N];
-    int touch[K], stopped[K], closed[K], still[K], some[K], comes = 0, count, k = 0;
+    int touch[K], stopped[K], closed[K], still[K], some[K], was[K], comes = 0, count, k = 0;
     memcpy(start, x, sizeof start);
+    for (int i = 0; i < K; ++i) was[i] = c->mode[i] >= STICK;
     count = touching(c, at, x, touch, stopped, &comes, &s);
     for (int i = 0; i < K && !c->has_begun; ++i)
         if (c->mode[i] == OPEN && s.acts[i] > 0.0 && s.gap[i] < -BELOW) return CONTACTS_BELOW;
@@ -348,7 +349,8 @@ int contacts_decide(Contacts *c, const Given *at, double *x)
     }
     for (int i = 0; i < K; ++i) {
         double v = velocity(&s, x, i, 0);
-        c->offset[i] = c->mode[i] != OPEN || s.gap[i] > TOUCHING ? 0.0 : v <= rest_of(i) ? SLOW : rebound_of(v) - s.gap[i];
+        double least = was[i] && !comes ? c->margin : v <= rest_of(i) ? SLOW : rebound_of(v);
+        c->offset[i] = c->mode[i] == OPEN && s.gap[i] <= TOUCHING ? least - s.gap[i] : 0.0;
     }
     return memcmp(start, x, sizeof start) != 0;
 }

@@ -19,6 +19,7 @@ typedef struct {
     double scale[FMU_CONTACTS];
     double offset[FMU_CONTACTS]; /* of a gap that has just opened */
     int is_decided, has_begun;
+    double margin; /* offset of a gap that lifts off: above the errors of the first steps of whoever integrates */
     double energy; /* changed by impacts so far */
     double impacts, last; /* how many, and when the last one was */
 } Contacts;

@@ -27,6 +27,9 @@ void state_reset(State *s)
     fmu_start(s->v + AT_Q, s->v + AT_V, s->v + AT_U, s->v + AT_P);
     s->v[AT_TOLERANCE] = FMU_TOLERANCE;
     s->phase = PHASE_NEW;
+#if FMU_CONTACTS > 0
+    s->contacts.margin = 1e-9;
+#endif
 }
 
 int state_write(State *s, size_t at, double value)
@@ -335,6 +338,7 @@ int state_advance(State *s, double to, const char **why)
     int wrong = 0;
     *why = "the accelerations are not finite, or the tolerance needs too small steps";
 #if FMU_CONTACTS > 0
+    s->contacts.margin = 1e-11;
     wrong = !s->contacts.is_decided && state_decide(s, why) < 0;
 #endif
     if (!wrong && to > s->v[AT_T] && FMU_NQ > 0)
