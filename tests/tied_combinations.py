@@ -86,7 +86,7 @@ motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity c
 floor (`contacts`). **no**: the request is refused with the code `has-closures`, `has-driven`, `has-ignored`,
 `has-velocity-constraints` or `has-contacts`, and told what to take in its place. Formulas of the tree itself (`metric`,
 `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
-velocity constraints and contacts. In a tree of several kinds the `no` of one is the `no` of all.
+velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the `no` of all.
 """
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from service.models.binding import DEFAULTS, Parameters, bound, bound_names
+from substructures.analysis.motion.contacts.exporting import contact_laws, contact_programs
 from substructures.errors import InvalidArgument
 from substructures.export import (
     TARGETS,
@@ -20,6 +21,7 @@ from substructures.export import (
     interface_of_model,
     interface_of_part,
 )
+from substructures.export.contacts import CONTACTS
 from substructures.export.exported import check_name
 from substructures.export.rounding import read_ranges
 from substructures.export.stages import staged
@@ -149,6 +151,9 @@ def tree_package(
         # with velocity constraints the motion is one in independent velocities
         motion = VELOCITY_DYNAMICS if request.target == FMU and sources.model.velocity_constraints else FORWARD
         names = tuple(dict.fromkeys((motion, *names)))
+    laws = contact_laws(sources.model) if request.target == FMU else ()
+    if laws:
+        names, others = (CONTACTS, *names), {**others, **contact_programs(sources.model)}
     request.require_motion(names)
     interface = _left(interface_of_model(sources.model, reference, digest), request)
 
@@ -159,7 +164,7 @@ def tree_package(
     words = glossary(*document(), model=sources.model.program) if request.target in WITH_STEPS else None
     name, flags = prefix(request.name, called), (request.together, request.packed)
     exported = exported_model(sources, interface, names, name, numbers, *flags, words, others)
-    return _package(exported, request, limit)
+    return _package(replace(exported, contacts=laws), request, limit)
 
 
 def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:

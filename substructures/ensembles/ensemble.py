@@ -13,7 +13,8 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
 from substructures.analysis.motion.judges import AlongMotion, Condition, MotionStates, conditions
-from substructures.analysis.motion.problems.kinds import ConstrainedMotion
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion
 from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
@@ -21,6 +22,8 @@ from substructures.ensembles.columns import MotionColumn, MotionColumns, statist
 from substructures.ensembles.constrained import accelerations, kept_gaps
 from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
 from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
+from substructures.ensembles.one_by_one import OneByOne
+from substructures.ensembles.result import TOLD, Ensemble, Failure
 from substructures.errors import InvalidArgument
 from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.numbers.states import StateInput
@@ -29,82 +32,11 @@ from substructures.tree.model import Model
 METHODS = ("DOP853", "RK45", "RK23")
 #: states of a part of the members, which are in memory together
 STATES = 400_000
-#: failures that are told one by one
-TOLD = 100
 WHY = {
     TOO_SMALL: "the steps became too small: a singular position, a law with a jump, or stiff equations (simulate the "
     "member with the method Radau)",
 }
 DEFAULT, NO_VALUES, NO_COLUMNS = Integrator(), dict[str, Any](), dict[str, MotionColumn]()
-
-
-@dataclass(frozen=True)
-class Failure:
-    """A member that has no motion up to the end: its number, when it ended [s], and why."""
-
-    member: int
-    t: float
-    message: str
-
-
-@dataclass(frozen=True)
-class Ensemble:
-    """``count`` = M motions at the times ``t`` (K,).
-
-    ``columns`` (M,) by name, not a number for members that failed, and their ``statistics``. ``violation`` (M,): the
-    largest of all conditions in units of what is allowed, so that a motion is right up to 1; not a number where it
-    failed or nothing could be checked. ``checks``: of each condition the largest violation relative to its scale, and
-    how many members violate it. ``q``, ``qd`` (M, K, n) [rad, m; per s] where they are asked for. ``steps``: of all.
-    """
-
-    coordinates: tuple[str, ...]
-    count: int
-    t: Array
-    columns: Mapping[str, Array]
-    statistics: Mapping[str, Mapping[str, Any]]
-    violation: Array
-    checks: tuple[Mapping[str, Any], ...]
-    failures: tuple[Failure, ...]
-    failed: int
-    steps: int
-    evaluations: int
-    q: Array | None = None
-    qd: Array | None = None
-    cancelled: bool = False
-
-    def __repr__(self) -> str:
-        names = ", ".join(self.columns) or "none"
-        right = int((self.violation <= 1).sum())
-        return f"Ensemble of {self.count}: {right} right, {self.failed} failed; columns: {names}"
-
-    @property
-    def is_right(self) -> bool | None:
-        """True when all members are right, False when any violates a necessary condition, None otherwise."""
-        if (self.violation > 1).any():
-            return False
-        return True if (self.violation <= 1).all() and self.count and not self.cancelled else None
-
-    def summary(self) -> dict[str, Any]:
-        """As plain data and arrays."""
-        states = {} if self.q is None else {"q": self.q, "qd": self.qd}
-        return {
-            "coordinates": list(self.coordinates),
-            "count": self.count,
-            "t": self.t,
-            "is_right": self.is_right,
-            "right": int((self.violation <= 1).sum()),
-            "wrong": np.flatnonzero(self.violation > 1)[:TOLD],
-            "failed": self.failed,
-            "failures": [vars(each) for each in self.failures],
-            "checks": [dict(each) for each in self.checks],
-            "columns": dict(self.columns),
-            "statistics": dict(self.statistics),
-            "violation": self.violation,
-            "steps": self.steps,
-            "evaluations": self.evaluations,
-            "cancelled": self.cancelled,
-            **states,
-        }
 
 
 def simulate_ensemble(
@@ -119,7 +51,8 @@ def simulate_ensemble(
     grid: OutputGrid = EVEN,
     integrator: Integrator = DEFAULT,
     states: bool | None = None,
-    kind: ConstrainedMotion | None = None,
+    kind: ConstrainedMotion | TreeMotion | None = None,
+    events: Sequence[Event] = (),
 ) -> Ensemble:
     """Motions over a ``span`` [s] from M starts: q'' = g^-1 (Q - Gamma q' q'); with constraints g* v' + bias = forces.
 
@@ -128,8 +61,8 @@ def simulate_ensemble(
     numbers of each motion at the times of ``grid``; ``states``: whether q and qd are in the result (by default where
     there are no columns). ``integrator``: an explicit method, DOP853, RK45 or RK23, its tolerances and drift limit.
     ``kind``: velocity constraints (default: those of the tree, and all closures, onto which positions are moved first),
-    with ``v`` (p,) or (M, p) or by name in place of ``qd``, in quasi-velocities that describe the first member.
-
+    with ``v`` (p,) or (M, p) or by name in place of ``qd``, in quasi-velocities that describe the first member; or
+    TreeMotion with contacts. With these or ``events`` members move one by one, as by ``simulate``: see ``happened``.
     Each has its own steps, the same bits whatever others there are. Raises InvalidInput (``/q``, ...), MissingValue.
 
     >>> from substructures import couple, derive
@@ -140,13 +73,30 @@ def simulate_ensemble(
     Ensemble of 3: 3 right, 0 failed; columns: angle
     """
     sources = Sources(model) if isinstance(model, Model) else model
+    _require_explicit(integrator)
+    times = OutputTimes(span, grid)
+    members = read_members(sources.model, q, qd, parameters, inputs, times.span, kind)
+    keeps = not columns if states is None else states
+    run = _Run(members, times, integrator, MotionColumns.read(sources, columns), keeps)
+    return run.one_by_one(kind, events).run() if _acts(sources.model, kind, events) else run.run()
+
+
+def _require_explicit(integrator: Integrator) -> None:
+    """Raises InvalidArgument (``/method``)."""
     if integrator.method not in METHODS:
         message = f"members are integrated by {', '.join(METHODS)}; for stiff equations simulate them one by one"
         raise InvalidArgument.at("/method", "not-supported", message)
-    times = OutputTimes(span, grid)
-    members = read_members(sources.model, q, qd, parameters, inputs, times.span, kind)
-    read = MotionColumns.read(sources, columns)
-    return _Run(members, times, integrator, read, not columns if states is None else states).run()
+
+
+def _acts(model: Model, kind: ConstrainedMotion | TreeMotion | None, events: Sequence[Event]) -> bool:
+    """Whether something happens on the way that lanes do not follow."""
+    return bool(events or model.contacts or (isinstance(kind, TreeMotion) and kind != TreeMotion()))
+
+
+def _grid(times: OutputTimes) -> Array:
+    """The times of results, with the start before them."""
+    grid, start = np.asarray(times.grid(), dtype=np.float64), times.span[0]
+    return grid if len(grid) and grid[0] == start else np.concatenate([[start], grid])
 
 
 @dataclass
@@ -165,9 +115,15 @@ class _Run:
     steps: int = 0
     evaluations: int = 0
 
+    def one_by_one(self, kind: ConstrainedMotion | TreeMotion | None, events: Sequence[Event]) -> OneByOne:
+        """The same members, each as it moves alone."""
+        tree = kind if isinstance(kind, TreeMotion) else TreeMotion()
+        grid = _grid(self.times)
+        return OneByOne(self.members, self.times, grid, self.integrator, self.columns, self.keeps, tree, events)
+
     def run(self) -> Ensemble:
         """All members, or those up to where whoever watches the progress says that it is enough."""
-        members, settings, grid = self.members, self._settings(), self._grid()
+        members, settings, grid = self.members, self._settings(), _grid(self.times)
         integrals = self._integrals()
         size = max(settings.lanes, STATES // len(grid))
         is_cancelled = False
@@ -190,12 +146,6 @@ class _Run:
         how = self.integrator
         tolerances = how.relative_tolerance, how.absolute_tolerance
         return LaneSettings(str(how.method), *tolerances, how.max_step or np.inf, how.max_steps)
-
-    def _grid(self) -> Array:
-        """The times of results, with the start before them."""
-        times = np.asarray(self.times.grid(), dtype=np.float64)
-        start = self.times.span[0]
-        return times if len(times) and times[0] == start else np.concatenate([[start], times])
 
     def _told(self, begin: int) -> Callable[[int], bool]:
         progress, count = self.integrator.progress, self.members.count

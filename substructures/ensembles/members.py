@@ -14,12 +14,11 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.nonholonomic.solved import ACCELERATION as QUASI_ACCELERATION
 from substructures.analysis.equations.nonholonomic.solved import RATES, solved
-from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
-from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
+from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions, state_names
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion, usual_kind
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Table
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_kernel
-from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.documents import escape
@@ -39,7 +38,8 @@ Given = Mapping[str, Any]
 class Members:
     """``count`` = M motions from ``start`` (M, 2n), x = (q, q'); ``varied``: values (M,) of parameters and constant
     inputs that are not the same for all; ``conditions``: what is, as of the first member; ``equations``: of motions
-    with constraints in p quasi-velocities, where ``start`` is (M, n+p), x = (q, v).
+    with constraints in p quasi-velocities, where ``start`` is (M, n+p), x = (q, v); ``first``: what is given of the
+    first member.
     """
 
     model: Model
@@ -47,7 +47,19 @@ class Members:
     start: Array
     varied: Mapping[str, Array]
     conditions: Conditions
+    first: Start
     equations: QuasiVelocities | None = None
+
+    def start_of(self, k: int) -> Start:
+        """What is given of a member of a tree without constraints."""
+        own = {name: float(x[k]) for name, x in self.varied.items()}
+        q, qd = np.hsplit(self.start[k], [self.model.dof])
+        return Start(
+            q,
+            qd,
+            {name: own.get(name, x) for name, x in self.first.parameters.items()},
+            {name: own.get(name, x) for name, x in self.first.inputs.items()},
+        )
 
     @property
     def zero(self) -> frozenset[str]:
@@ -74,7 +86,7 @@ def read_members(
     parameters: Given,
     inputs: Given,
     span: tuple[float, float],
-    kind: ConstrainedMotion | None = None,
+    kind: ConstrainedMotion | TreeMotion | None = None,
 ) -> Members:
     """Check what is given: (n,) or (M, n) of ``q`` and ``qd``, or by name; numbers or (M,) of the others; ``kind``: of
     motions with constraints, whose quasi-velocities at the start are (p,) or (M, p), or by name.
@@ -82,7 +94,7 @@ def read_members(
     Raises InvalidInput (pointers ``/q``, ``/parameters/name``, ``/v/name``, ...) and MissingValue.
     """
     require_moving(model, "ensembles")
-    kind = usual_kind(model, kind)
+    kind = usual_kind(model, None if isinstance(kind, TreeMotion) else kind)
     given = with_input_defaults(model, inputs)
     _require_no_tables(given)
     numbers = {name: x for name, x in given.items() if not isinstance(x, str)}
@@ -103,10 +115,10 @@ def read_members(
     )
     conditions = read_conditions(model, begin, span, DYNAMICS)
     if kind is None:
-        return Members(model, count, start, varied, conditions)
+        return Members(model, count, start, varied, conditions, begin)
     values, (q, velocities) = {**conditions.values, **varied, "t": span[0]}, np.hsplit(start, [model.dof])
     equations, start = constrained_start(model, kind, values, q, None if qd is None else velocities)
-    return Members(model, count, start, varied, conditions, equations)
+    return Members(model, count, start, varied, conditions, begin, equations)
 
 
 def _require_no_tables(inputs: Given) -> None:

@@ -9,6 +9,7 @@ from functools import cached_property
 from typing import Any
 
 from substructures.errors import InvalidArgument, among
+from substructures.export.contacts import ContactLaw
 from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, has_time, signature
 from substructures.export.packed import Indices, packed
 from substructures.expr.graph import Graph
@@ -139,7 +140,7 @@ class Function:
 class Exported:
     """Functions under one name. ``form``: compact or expanded; ``precision``: double or, in C, single; ``ranges``:
     lowest and highest values that the bound of its rounding is for; ``standard``: of C, c99 or c89; ``warnings``
-    (pointer, code, message): what those who use them must know.
+    (pointer, code, message): what those who use them must know; ``contacts``: of the function CONTACTS.
     """
 
     name: str
@@ -150,6 +151,7 @@ class Exported:
     standard: str = "c99"
     ranges: Mapping[str, tuple[float, float]] = field(default_factory=dict)
     warnings: tuple[Mapping[str, str], ...] = ()
+    contacts: tuple[ContactLaw, ...] = ()
 
     @property
     def real(self) -> str:

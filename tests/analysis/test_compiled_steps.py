@@ -14,14 +14,13 @@ from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.analysis.closed.reductions import Projected
-from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
 from substructures.analysis.motion.integrators.steppers import scipy_stepper, within
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Interpolation
 from substructures.analysis.motion.right_hand_side import RightHandSide
-from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.simulate import Table
 from substructures.compile import target
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from typing import Any
 
 import pytest
@@ -60,6 +62,29 @@ def test_contacts_of_a_tree_are_in_its_simulations(client: TestClient, address: 
     assert "<h2>Contacts</h2>" in client.get("/trees/bouncy").text
 
 
+def test_every_member_of_an_ensemble_has_contacts(client: TestClient, address: str) -> None:
+    body = BODY | {"q": [[1], [-1], [2]], "relative_tolerance": 1e-10, "absolute_tolerance": 1e-12}
+    found = client.post(f"{address}/ensembles", json=body)
+    assert found.status_code == 200, found.text
+    answer = found.json()
+    assert (answer["one_by_one"], answer["right"], answer["failed"]) == (True, 2, 1)
+    assert [failure["member"] for failure in answer["failures"]] == [1]
+    alone = client.post(f"{address}/simulations", json=BODY).json()
+    assert answer["q"][0] == alone["q"]
+    hits = [event for event in alone["events"] if event["kind"] == "impact"]
+    assert answer["impacts"][0] == len(hits)
+    assert answer["energy_change"][0] == pytest.approx(sum(hit["energy_change"] for hit in hits), rel=1e-12)
+    told = answer["events"][0]
+    assert (told["member"], told["name"], told["kind"], told["t"]) == (0, "floor", "impact", hits[0]["t"])
+    bounce = {"name": "bounce", "quantity": "b.z", "direction": "falling", "reset": {"b.z'": "-b.z'"}}
+    jumps = client.post(
+        f"{address}/ensembles", json=BODY | {"contacts": [], "events": [bounce], "q": [[1], [2]]}
+    ).json()
+    assert (jumps["is_right"], jumps["impacts"]) == (True, [0, 0])
+    plain = client.post(f"{address}/ensembles", json={"q": [[1], [2]], "span": [0, 1]}).json()
+    assert plain["one_by_one"] is False
+
+
 @pytest.mark.parametrize(
     ("contact", "more", "pointer", "code"),
     [
@@ -88,13 +113,29 @@ def test_contacts_that_are_none_are_refused_with_the_tree(
     assert (fault["pointer"], fault["code"]) == (pointer, code), fault
 
 
-@pytest.mark.parametrize("path", ["publish", "linearisations", "ensembles", "forward_dynamics", "export?target=fmu"])
+@pytest.mark.parametrize("version", ["3.0", "2.0"])
+def test_an_fmu_has_contacts(client: TestClient, version: str) -> None:
+    assert stored(client, FLOOR).status_code == 201
+    found = client.get(f"/v1/trees/bouncy/export?target=fmu&fmi={version}")
+    assert found.status_code == 200, found.text
+    packed = zipfile.ZipFile(io.BytesIO(found.content))
+    assert "sources/contacts.c" in packed.namelist()
+    assert "contact.floor.gap" in packed.read("modelDescription.xml").decode()
+
+
+def test_an_fmu_with_two_tangents_is_refused(client: TestClient) -> None:
+    assert stored(client, FLOOR | {"friction": 0.5}).status_code == 201
+    found = client.get("/v1/trees/bouncy/export?target=fmu")
+    fault = found.json()["errors"][0]
+    assert (found.status_code, fault["code"], fault["pointer"]) == (422, "not-supported", "/query/target")
+
+
+@pytest.mark.parametrize("path", ["publish", "linearisations", "forward_dynamics", "export?target=simulink"])
 def test_what_would_pass_through_the_floor_says_so(client: TestClient, path: str) -> None:
     assert stored(client, FLOOR).status_code == 201
     address = f"/v1/trees/bouncy/{path}"
-    body: dict[str, Any] = {"q": [1], "span": [0, 1]} if path == "ensembles" else {"q": [1]}
-    is_read = path in ("forward_dynamics", "export?target=fmu")
-    found = client.get(address) if is_read else client.post(address, json={} if path == "publish" else body)
+    is_read = path in ("forward_dynamics", "export?target=simulink")
+    found = client.get(address) if is_read else client.post(address, json={} if path == "publish" else {"q": [1]})
     assert found.status_code == 422
     fault = found.json()["errors"][0]
     assert (fault["code"], "'floor'" in fault["message"]) == ("has-contacts", True), fault
@@ -117,7 +158,19 @@ def test_what_would_pass_through_the_floor_says_so(client: TestClient, path: str
         ("simulations", {"friction": "loaded"}, "/friction", "not-supported"),
         ("simulations", {"prescribed": {"b.z": "t"}}, "/contacts", "extra-forbidden"),
         ("sensitivities", {"of_start": True}, "/contacts", "not-supported"),
-        ("ensembles", {}, "/contacts", "extra-forbidden"),
+        ("ensembles", {"contacts": [FLOOR | {"point": "b.bdy"}]}, "/contacts/0/point", "unknown-frame"),
+        (
+            "ensembles",
+            {"columns": {"x": {"expression": "b.z", "take": "integral"}}},
+            "/columns/x/take",
+            "not-supported",
+        ),
+        (
+            "ensembles",
+            {"constraints": [{"type": "linear", "name": "c", "expression": "b.z'"}]},
+            "/contacts",
+            "not-supported",
+        ),
     ],
 )
 def test_where_there_are_none(

@@ -11,10 +11,13 @@ from service.models.source import Source
 from service.schemas.analyses.ensembles import EnsembleRequest
 from substructures.analysis.from_fields import reduced_kind
 from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.ensembles.ensemble import Ensemble, simulate_ensemble
+from substructures.ensembles.one_by_one import UNTIED
 from substructures.ensembles.sampled import with_samples
+from substructures.errors import InvalidArgument
 from substructures.quantities.numbers.states import longest
 
 #: fields that say in which velocities motions with constraints are
@@ -23,11 +26,15 @@ QUASI_VELOCITIES = ("constraints", "velocities", "independent", "v")
 
 def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) -> Ensemble:
     model = source.model
-    fields = {name: x for name, x in arguments(request).items() if name in QUASI_VELOCITIES}
-    kind = reduced_kind(model, fields)
-    given = with_samples(model, request.samples, request.members(), kind)
-    if kind is not None:
-        kind = replace(kind, v=given["v"])
+    asked = arguments(request)
+    fields = {name: x for name, x in asked.items() if name in QUASI_VELOCITIES}
+    constrained = reduced_kind(model, fields)
+    given = with_samples(model, request.samples, request.members(), constrained)
+    kind: ConstrainedMotion | TreeMotion = TreeMotion(contacts=asked.get("contacts", ()))
+    if constrained is not None:
+        if request.contacts:
+            raise InvalidArgument.at("/contacts", "not-supported", UNTIED)
+        kind = replace(constrained, v=given["v"])
     states = not request.columns if request.states is None else request.states
     times = len(OutputTimes(request.span, request.grid()).grid())
     check_size(source, longest(given), len(request.columns) + 1 + 2 * model.dof * times * states)
@@ -43,7 +50,8 @@ def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) 
     )
     q = given.pop("q")
     given.pop("v")
-    how: dict[str, Any] = {"columns": request.columns, "grid": request.grid(), "states": states, "kind": kind}
+    how: dict[str, Any] = {"columns": request.columns, "grid": request.grid(), "states": states}
+    how |= {"kind": kind, "events": asked.get("events", ())}
     return simulate_ensemble(source.sources, q, request.span, integrator=integrator, **how, **given)
 
 

@@ -6,7 +6,17 @@ from typing import Annotated, Any, Literal
 
 from pydantic import Field, SkipValidation, model_validator
 
-from service.schemas.analyses.motions import Reals, Seconds, Span, WithQuasiVelocities, checked
+from service.schemas.analyses.motions import (
+    MAX_CONTACTS,
+    MAX_EVENTS,
+    Contact,
+    Event,
+    Reals,
+    Seconds,
+    Span,
+    WithQuasiVelocities,
+    checked,
+)
 from service.schemas.measured import SECONDS, WithUnits
 from service.schemas.numbers import StateColumns, ValueColumns
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
@@ -37,6 +47,12 @@ class EnsembleRequest(WithQuasiVelocities):
     step: Seconds | None = Field(None, description="s")
     count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] | None = None
     columns: dict[Name, MotionColumn] = Field(default_factory=dict, max_length=MOST_COLUMNS)
+    events: Annotated[tuple[Event, ...], Field(max_length=MAX_EVENTS)] = Field(
+        (), description="of every member, which is computed by itself then, as with contacts"
+    )
+    contacts: Annotated[tuple[Contact, ...], Field(max_length=MAX_CONTACTS)] = Field(
+        (), description="points that do not pass through planes, with impacts and Coulomb's friction"
+    )
     states: bool | None = Field(None, description="whether q and qd are in the answer (default: without columns)")
     method: Literal["DOP853", "RK45", "RK23"] = "DOP853"
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8

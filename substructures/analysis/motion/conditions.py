@@ -30,6 +30,8 @@ RESERVED = frozenset(
     ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
 ) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction"}
 RESERVED |= {"contact_forces", POWERS, *REACTIONS}
+#: what the equations of motion of a tree are made of
+DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from substructures.analysis.equations.formulas import ModelFormulas, require_mov
 from substructures.analysis.equations.nonholonomic.positions import closed_positions, start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges import AlongMotion, MotionStates, judge
@@ -29,7 +29,6 @@ from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.second_run import accurate, halves, second_run
-from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.variation import Variation
 from substructures.analysis.verdict import Check

@@ -11,7 +11,7 @@ import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
-from substructures.analysis.motion.conditions import Conditions, read_conditions
+from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.contacts.contact_run import ContactRun, again, integrate_contacts, with_contacts
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
@@ -44,7 +44,6 @@ WHY_NOT = {
     "exact": "joints that stick exactly need steps of any size",
     "loaded": "friction by the load of joints is iterated",
 }
-DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 SINGULAR = (
     "the metric is singular or not positive definite at the start: a massless body, or a joint at a singular angle "
     "(spherical and free joints: pitch = +-pi/2); change masses, inertias or the start"

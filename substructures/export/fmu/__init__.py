@@ -14,6 +14,7 @@ from uuid import UUID
 
 from substructures.export.archive import archive
 from substructures.export.c_files import c_core
+from substructures.export.contacts import require_planar
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu import model
 from substructures.export.fmu.binaries import libraries
@@ -22,6 +23,7 @@ from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
 from substructures.export.fmu.variables import Layout, layout_of
 
 _SHARED = ("simulation.h", "simulation.c", "fmi.h")
+_OF_CONTACTS = ("contacts.h", "contacts.c", "complementarity.h", "complementarity.c")
 
 
 def _differentiated(layout: Layout) -> tuple[Function, tuple[tuple[str, ...], tuple[str, ...]]]:
@@ -44,10 +46,11 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
         tangent("dynamics_tangent", [motion], layout.interface, *by),
         tangent("outputs_tangent", layout.outputs, layout.interface, OF_ALL),
     )
+    require_planar(exported.contacts)
     core = Exported(f"{exported.name}_core", exported.interface, (*exported.functions, *tangents), exported.form)
     sources = c_core(core, limit)
     runtime = files(__package__) / "runtime"
-    for name in (*_SHARED, f"fmi{version[0]}.c"):
+    for name in (*_SHARED, *(_OF_CONTACTS if exported.contacts else ()), f"fmi{version[0]}.c"):
         sources[name] = (runtime / name).read_bytes()
     sources["model.c"] = model.source(layout, core, tangents).encode()
     told = hashlib.sha256(b"".join(sources[name] for name in sorted(sources)) + repr(layout.variables).encode())

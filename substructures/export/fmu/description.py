@@ -35,7 +35,9 @@ def description3(layout: Layout, token: str) -> bytes:
     root = _root(layout, "3.0", {"instantiationToken": token})
     for kind in ("ModelExchange", "CoSimulation"):
         more = {_STEPS: "true"} if kind == "CoSimulation" else {}
-        told = {"modelIdentifier": layout.exported.name, **dict.fromkeys(_ABILITIES, "true"), **more}
+        if layout.exported.contacts and kind == "ModelExchange":
+            more = {"needsCompletedIntegratorStep": "true"}
+        told = {"modelIdentifier": layout.exported.name, **dict.fromkeys(_abilities(layout), "true"), **more}
         Tree.SubElement(root, kind, told)
     _units(root, layout.variables)
     Tree.SubElement(Tree.SubElement(root, "LogCategories"), "Category", {"name": "logStatusError"})
@@ -53,15 +55,18 @@ def description3(layout: Layout, token: str) -> bytes:
     for name, chosen in _structure(layout.variables):
         for each in chosen:
             Tree.SubElement(structure, name, {"valueReference": str(each.at)})
+    for each in layout.variables:
+        if each.role == "indicator":
+            Tree.SubElement(structure, "EventIndicator", {"valueReference": str(each.at)})
     return text(root)
 
 
 def description2(layout: Layout, token: str, sources: Sequence[str]) -> bytes:
     """``modelDescription.xml`` of version 2.0, where every number is a variable."""
-    root = _root(layout, "2.0", {"guid": token, "numberOfEventIndicators": "0"})
+    root = _root(layout, "2.0", {"guid": token, "numberOfEventIndicators": str(2 * len(layout.exported.contacts))})
     for kind in ("ModelExchange", "CoSimulation"):
         more = {_STEPS: "true"} if kind == "CoSimulation" else {}
-        told = {"modelIdentifier": layout.exported.name, **{_NAMES[a]: "true" for a in _ABILITIES}, **more}
+        told = {"modelIdentifier": layout.exported.name, **{_NAMES[a]: "true" for a in _abilities(layout)}, **more}
         files = Tree.SubElement(Tree.SubElement(root, kind, told), "SourceFiles")
         for source in sources:
             Tree.SubElement(files, "File", {"name": source})
@@ -85,6 +90,11 @@ def description2(layout: Layout, token: str, sources: Sequence[str]) -> bytes:
         for each in chosen:
             Tree.SubElement(group, "Unknown", {"index": str(number[each.at])})
     return text(root)
+
+
+def _abilities(layout: Layout) -> Sequence[str]:
+    """Derivatives of the formulas are not those of a motion with contacts."""
+    return _ABILITIES[:-1] if layout.exported.contacts else _ABILITIES
 
 
 def build_description(layout: Layout, sources: Sequence[str]) -> bytes:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from math import prod
 
+from substructures.export.contacts import CONTACTS
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu.tangents import directions
 from substructures.export.fmu.variables import TOLERANCE, Layout
@@ -22,6 +23,13 @@ _DECLARATIONS = (
     f"void fmu_dynamics_tangent({_TANGENT}, const double *d, double *dx);",
     f"void fmu_outputs_tangent({_OF_ALL}, const double *d, double *y);",
 )
+_SEEN = "double *gap, double *rows, double *rate, double *bias, double *acts, double *metric"
+_DECLARATIONS_OF_CONTACTS = (
+    "extern const int FMU_IS_LINE[];",
+    "extern const double FMU_RESTITUTION[], FMU_FRICTION[], FMU_REST_VELOCITY[];",
+    "/* (k), (k, 3, n), (k, 3), (k, 3), (k), (n, n): along the normal and two tangents */",
+    f"void fmu_contacts({_OF_STATE}, {_SEEN});",
+)
 
 
 def header(layout: Layout, token: str) -> str:
@@ -32,9 +40,10 @@ def header(layout: Layout, token: str) -> str:
     sizes["V"] = layout.begins["v"]
     sizes["NY"] = layout.size - layout.begins["y"]
     lines = ["#ifndef SUBSTRUCTURES_MODEL_H", "#define SUBSTRUCTURES_MODEL_H", "", f'#define FMU_TOKEN "{token}"']
-    lines += [f"#define FMU_TOLERANCE {TOLERANCE!r}", "enum {"]
+    lines += [f"#define FMU_TOLERANCE {TOLERANCE!r}", f"#define FMU_CONTACTS {len(layout.exported.contacts)}", "enum {"]
     lines += [f"    FMU_{name} = {size}," for name, size in sizes.items()]
-    return "\n".join([*lines, "};", "", *_DECLARATIONS, "", "#endif", ""])
+    more = _DECLARATIONS_OF_CONTACTS if layout.exported.contacts else ()
+    return "\n".join([*lines, "};", "", *_DECLARATIONS, *more, "", "#endif", ""])
 
 
 def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) -> str:
@@ -61,7 +70,26 @@ def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) 
     lines += _function(head, "t q v qdd u p d dx", body)
     head = f"fmu_outputs_tangent({_OF_ALL}, const double *d, double *y)"
     lines += _function(head, "t q qd qdd u p d y", _tangent(layout, core, of_outputs, "y"))
-    return "\n".join(lines)
+    return "\n".join([*lines, *_contacts(layout, core)])
+
+
+def _contacts(layout: Layout, core: Exported) -> list[str]:
+    """Numbers of contacts, and what is seen of them."""
+    laws = layout.exported.contacts
+    if not laws:
+        return []
+    seen = next(each for each in layout.exported.functions if each.quantity == CONTACTS)
+    numbers: dict[str, list[float | int]] = {
+        "int FMU_IS_LINE": [int(law.is_line) for law in laws],
+        "double FMU_RESTITUTION": [law.restitution for law in laws],
+        "double FMU_FRICTION": [law.friction for law in laws],
+        "double FMU_REST_VELOCITY": [law.rest_velocity for law in laws],
+    }
+    lines = [f"const {name}[] = {{{', '.join(map(repr, values))}}};" for name, values in numbers.items()]
+    results = [{"when": "acts", "mass": "metric"}.get(name, name) for name in seen.program.outputs]
+    called = f"{core.called(seen)}({', '.join([*_arguments(seen, {'qd': 'v', 'qdd': 'v'}), *results])});"
+    head = f"fmu_contacts({_OF_STATE}, {_SEEN})"
+    return [*lines, "", *_function(head, "t q v u p", [called])]
 
 
 def _dynamics(layout: Layout, core: Exported) -> list[str]:

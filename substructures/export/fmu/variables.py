@@ -1,6 +1,6 @@
 """The variables of a model for simulators, in the order in which their values stand in an instance.
 
-time | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | outputs
+time | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | contacts | outputs
 
 Of a tree v are the velocities of all coordinates, and q'' is der(v); with velocity constraints v are those of the
 independent ones, der(q) = T(q) v the velocities of all, and q'' stands behind.
@@ -14,8 +14,10 @@ from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from math import isfinite, prod
+from typing import Literal
 
 from substructures.errors import InvalidArgument, MissingValue, TooLarge
+from substructures.export.contacts import CONTACTS, OF_ALL, OF_EACH
 from substructures.export.exported import Exported, Function
 from substructures.export.interface import Interface, Vector
 from substructures.quantities.quantity import FORWARD, FRAMES, OUTPUTS, VELOCITY_DYNAMICS, Array
@@ -26,6 +28,10 @@ MOST = 100_000
 TOLERANCE = 1e-8
 #: what gives accelerations: of a tree, and with velocity constraints
 MOTIONS, PRIME = (FORWARD, VELOCITY_DYNAMICS), "'"
+
+
+#: an output that changes at events alone; what is zero there
+Role = Literal["", "discrete", "indicator"]
 
 
 @dataclass(frozen=True)
@@ -42,6 +48,7 @@ class Variable:
     start: float | None = None
     of: int | None = None
     description: str = ""
+    role: Role = ""
 
     @property
     def size(self) -> int:
@@ -51,6 +58,8 @@ class Variable:
     @property
     def variability(self) -> str:
         """As modelDescription.xml says it."""
+        if self.role == "discrete":
+            return "discrete"
         return "tunable" if self.causality == "parameter" else "continuous"
 
     def elements(self) -> Iterator[Variable]:
@@ -77,7 +86,7 @@ class Layout:
     @property
     def outputs(self) -> Sequence[Function]:
         """All functions but that of the accelerations."""
-        return [each for each in self.exported.functions if each.quantity not in MOTIONS]
+        return [each for each in self.exported.functions if each.quantity not in (*MOTIONS, CONTACTS)]
 
     @cached_property
     def motion(self) -> Function:
@@ -107,7 +116,7 @@ class Layout:
         n, p, found, at = len(vectors["q"]), len(self.velocities), dict[str, int](), 0
         for symbol, size in (
             ("t", 1), ("q", n), ("v", p), ("dq", n), ("dv", p), ("qdd", 0 if self.is_tree else n),
-            ("u", len(vectors["u"])), ("p", len(vectors["p"])), ("s", 2), ("y", 0),
+            ("u", len(vectors["u"])), ("p", len(vectors["p"])), ("s", 2), ("c", len(self._contacts())), ("y", 0),
         ):  # fmt: skip
             found[symbol] = at
             at += size
@@ -159,6 +168,7 @@ class Layout:
         found.append(Variable("solver_step", begins["s"], "parameter", "s", start=0.0, description=told))
         told = "relative tolerance of adaptive steps in co-simulation, where the importer gives none"
         found.append(Variable("solver_tolerance", begins["s"] + 1, "parameter", start=TOLERANCE, description=told))
+        found += self._contacts(begins["c"])
         found += self._outputs({each.name for each in found})
         for each in found:
             if not _NAME.fullmatch(each.name):
@@ -166,6 +176,18 @@ class Layout:
                 raise InvalidArgument.at("/target", "bad-name", message)
         if found[-1].at + found[-1].size > MOST:
             raise TooLarge("the outputs of an FMU (in numbers)", found[-1].at + found[-1].size, MOST)
+        return found
+
+    def _contacts(self, begin: int = 0) -> list[Variable]:
+        """What contacts do, as an instance has it."""
+        told = [(f"{each.name}.{name}", unit) for each in self.exported.contacts for name, unit in OF_EACH.items()]
+        told += OF_ALL.items() if self.exported.contacts else ()
+        found = list[Variable]()
+        for i, (name, unit) in enumerate(told):
+            member = name.rpartition(".")[2]
+            role: Role = "discrete" if name in OF_ALL else "indicator" if member.startswith("indicator") else ""
+            causality = "local" if role == "indicator" else "output"
+            found.append(Variable(f"contact.{name}", begin + i, causality, unit, role=role))
         return found
 
     def _outputs(self, taken: set[str]) -> Iterator[Variable]:
@@ -198,7 +220,7 @@ def layout_of(exported: Exported) -> Layout:
         raise InvalidArgument.at("/target", "not-a-tree", message)
     if not len(exported.interface.vectors["q"]):
         raise InvalidArgument.at("/target", "no-coordinates", "nothing moves: there is nothing to be simulated")
-    others = (each for each in exported.functions if each.quantity != VELOCITY_DYNAMICS)
+    others = (each for each in exported.functions if each.quantity not in (VELOCITY_DYNAMICS, CONTACTS))
     further = next((each for each in others if each.further.names), None)
     if further is not None:
         message = f"'{further.quantity}' depends on more than states, inputs and parameters: it is no output of an FMU"

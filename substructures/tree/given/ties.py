@@ -101,7 +101,7 @@ TAKES_CONSTRAINTS = (
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
     "velocity_dynamics",
 )
-TAKES_CONTACTS = ("simulations",)
+TAKES_CONTACTS = ("simulations", "ensembles")
 #: with the kind of motion that has them
 TIES = {
     "velocity_constraints": (TAKES_CONSTRAINTS, "ConstrainedMotion"),

@@ -104,8 +104,10 @@ EXPORT FMI(Status) FMI(EnterContinuousTimeMode)(void *instance)
 EXPORT FMI(Status) FMI(CompletedIntegratorStep)(void *instance, FMI(Boolean) no_return, FMI(Boolean) *event,
                                                 FMI(Boolean) *ends)
 {
-    (void)instance, (void)no_return;
-    *event = *ends = 0;
+    (void)no_return;
+    /* in event mode the state comes back to closed contacts */
+    *event = state_drifted(&((Model *)instance)->s);
+    *ends = 0;
     return FMI(OK);
 }
 
@@ -137,8 +139,9 @@ EXPORT FMI(Status) FMI_RATES(void *instance, double rates[], size_t n)
 
 EXPORT FMI(Status) FMI(GetEventIndicators)(void *instance, double indicators[], size_t n)
 {
-    (void)indicators;
-    return n ? say(instance, FMI(Error), "there are no event indicators") : FMI(OK);
+    Model *m = instance;
+    if (n != FMU_INDICATORS) return say(m, FMI(Error), "the wrong number of event indicators");
+    return state_indicators(&m->s, indicators) ? say(m, FMI(Discard), "the accelerations are not finite") : FMI(OK);
 }
 
 EXPORT FMI(Status) FMI(GetContinuousStates)(void *instance, double x[], size_t n)

@@ -148,9 +148,12 @@ EXPORT fmi2Status fmi2GetDirectionalDerivative(fmi2Component c, const fmi2ValueR
 
 EXPORT fmi2Status fmi2NewDiscreteStates(fmi2Component c, fmi2EventInfo *info)
 {
-    (void)c;
+    Model *m = c;
+    const char *why;
     memset(info, 0, sizeof *info);
-    return fmi2OK;
+    int found = state_decide(&m->s, &why);
+    info->valuesOfContinuousStatesChanged = found > 0;
+    return found < 0 ? say(m, fmi2Error, why) : fmi2OK;
 }
 
 EXPORT fmi2Status fmi2SetRealInputDerivatives(fmi2Component c, const fmi2ValueReference references[], size_t n,
@@ -170,11 +173,11 @@ EXPORT fmi2Status fmi2GetRealOutputDerivatives(fmi2Component c, const fmi2ValueR
 EXPORT fmi2Status fmi2DoStep(fmi2Component c, fmi2Real at, fmi2Real step, fmi2Boolean no_return)
 {
     Model *m = c;
+    const char *why;
     (void)no_return;
     if (!(step > 0.0)) return say(m, fmi2Error, "the step has to be positive");
     m->s.v[AT_T] = at;
-    if (state_advance(&m->s, at + step))
-        return say(m, fmi2Error, "the accelerations are not finite, or the tolerance needs too small steps");
+    if (state_advance(&m->s, at + step, &why)) return say(m, fmi2Error, why);
     return fmi2OK;
 }
 

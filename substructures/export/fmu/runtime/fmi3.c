@@ -309,16 +309,19 @@ EXPORT fmi3Status fmi3UpdateDiscreteStates(fmi3Instance instance, fmi3Boolean *a
                                            fmi3Boolean *nominals, fmi3Boolean *values, fmi3Boolean *has_event,
                                            fmi3Float64 *event)
 {
-    (void)instance;
-    *again = *ends = *nominals = *values = *has_event = false;
+    Model *m = instance;
+    const char *why;
+    int found = state_decide(&m->s, &why);
+    *again = *ends = *nominals = *has_event = false;
+    *values = found > 0;
     *event = 0.0;
-    return fmi3OK;
+    return found < 0 ? say(m, fmi3Error, why) : fmi3OK;
 }
 
 EXPORT fmi3Status fmi3GetNumberOfEventIndicators(fmi3Instance instance, size_t *n)
 {
     (void)instance;
-    *n = 0;
+    *n = FMU_INDICATORS;
     return fmi3OK;
 }
 
@@ -346,13 +349,13 @@ EXPORT fmi3Status fmi3DoStep(fmi3Instance instance, fmi3Float64 at, fmi3Float64 
                              fmi3Boolean *event, fmi3Boolean *ends, fmi3Boolean *early, fmi3Float64 *reached)
 {
     Model *m = instance;
+    const char *why;
     (void)no_return;
     *event = *ends = *early = false;
     *reached = at;
     if (!(step > 0.0)) return say(m, fmi3Error, "the step has to be positive");
     m->s.v[AT_T] = at;
-    if (state_advance(&m->s, at + step))
-        return say(m, fmi3Error, "the accelerations are not finite, or the tolerance needs too small steps");
+    if (state_advance(&m->s, at + step, &why)) return say(m, fmi3Error, why);
     *reached = m->s.v[AT_T];
     return fmi3OK;
 }

@@ -2,7 +2,7 @@
  *
  * All numbers of an instance stand in one array, in the order of the variables of modelDescription.xml:
  *
- *     t | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | outputs
+ *     t | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | contacts | outputs
  *
  * v: velocities of all coordinates, FMU_NA is 0 then and q'' is der(v); or, with velocity constraints, of the
  * independent ones.
@@ -13,6 +13,9 @@
 #include <stddef.h>
 
 #include "model.h"
+#if FMU_CONTACTS > 0
+#include "contacts.h"
+#endif
 
 enum {
     AT_T = 0,
@@ -27,7 +30,11 @@ enum {
     AT_P = AT_U + FMU_NU,
     AT_STEP = AT_P + FMU_NP,
     AT_TOLERANCE = AT_STEP + 1,
-    AT_Y = AT_TOLERANCE + 1,
+    /* of each contact its gap, its force along the normal and the tangent, and its event indicators; then the energy
+       that impacts have changed, their number, and when the last one was */
+    AT_C = AT_TOLERANCE + 1,
+    AT_Y = AT_C + (FMU_CONTACTS ? 5 * FMU_CONTACTS + 3 : 0),
+    FMU_INDICATORS = 2 * FMU_CONTACTS,
     VALUES = AT_Y + FMU_NY,
     STATES = FMU_NQ + FMU_NV
 };
@@ -41,6 +48,9 @@ typedef struct {
     int has_rates;    /* der(q), der(v), q'' belong to the state */
     int has_outputs;
     int phase;
+#if FMU_CONTACTS > 0
+    Contacts contacts;
+#endif
 } State;
 
 void state_reset(State *s);
@@ -54,7 +64,14 @@ int state_read(State *s, size_t at, double *value);
 /* derivatives of values in the direction of others; 0, or 1 for those that have none */
 int state_tangent(State *s, const unsigned *unknowns, size_t n_unknowns, const unsigned *knowns, size_t n_knowns,
                   const double *seed, double *found);
-/* to a later time with constant inputs; 0, or 1 where accelerations are not finite or steps become too small */
-int state_advance(State *s, double to);
+/* 0, 1 where the state has changed, or less than 0 where there is no way on, which ``why`` tells */
+int state_decide(State *s, const char **why);
+/* 1 where the state has to be decided about again */
+int state_drifted(State *s);
+/* 0, or 1 where a value cannot be had */
+int state_indicators(State *s, double *found);
+/* to a later time with constant inputs; 0, or 1 where accelerations are not finite, steps become too small, or contacts know
+   no way on, which ``why`` tells */
+int state_advance(State *s, double to, const char **why);
 
 #endif

@@ -1,0 +1,224 @@
+"""FMUs with contacts: simulated by FMPy they hit, stick, slip and lift off where our own simulations do."""
+
+from __future__ import annotations
+
+import math
+import subprocess
+import zipfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from closed_trees import tree_model
+from contact_models import BALL, PLACED, G, block, of
+from run_code import STRICT, tool
+
+from substructures import Model, couple, derive, simulate
+from substructures.analysis.motion.contacts.exporting import contact_laws, contact_programs
+from substructures.errors import InvalidArgument, TooLarge
+from substructures.export import Exported, exported_model, files, interface_of_model
+from substructures.export.contacts import CONTACTS
+from substructures.quantities.numbers.evaluation import Sources
+
+fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
+from fmpy.validation import validate_fmu  # noqa: E402
+from fmu_instances import instance  # noqa: E402
+
+TARGETS = {"3.0": "fmu", "2.0": "fmu2"}
+KINDS = ("ModelExchange", "CoSimulation")
+IMPACTS = ("contact.impacts", "contact.impact_energy", "contact.last_impact")
+
+
+def exported_of(model: Model) -> Exported:
+    interface = interface_of_model(model, "demo", "sha256:1")
+    names = (CONTACTS, "forward_dynamics", "kinetic_energy", "potential_energy")
+    made = exported_model(Sources(model), interface, names, "demo", packed=True, others=contact_programs(model))
+    return replace(made, contacts=contact_laws(model))
+
+
+def feet(friction: str) -> list[dict[str, str]]:
+    return [{"name": c, "point": f"b.{c}", "type": "point_line", "friction": friction} for c in "lr"]
+
+
+def bouncing() -> Model:
+    return of("b", BALL, [0, 0, -G], contacts=[{"name": "floor", "point": "b.body", "restitution": "0.8"}])
+
+
+def hopping() -> Model:
+    contact = {"name": "foot", "point": "h.foot", "type": "point_line", "friction": "0.7"}
+    tree = {"name": "hop", "gravity": [0, 0, "-9.81"], "instances": [{"name": "h", "substructure": "planar-hopper"}]}
+    return couple({**tree, "contacts": [contact]}, {"h": derive("planar-hopper")})
+
+
+def shaken() -> Model:
+    """A ball on a plate whose motion is given: it lifts off by itself and comes down again."""
+    slide = {"type": "prismatic", "coordinate": "s", "axis": [0, 0, 1], **PLACED}
+    plate = {"name": "floor", "bodies": [{"name": "plate", "parent": "base", "joint": slide, "mass": 1}]}
+    contact = {"name": "plate", "point": "b.body", "plane": "f.plate", "restitution": "0.5"}
+    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "ball"}]
+    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": {"f.s": "0.05*sin(20*t)"}, "contacts": [contact]}
+    return tree_model(tree, {"floor": plate, "ball": BALL})
+
+
+def tilted(turn: float, width: float, height: float) -> list[float]:
+    """A block on its right lower corner."""
+    radius, alpha = math.hypot(width, height), math.atan2(width, height)
+    return [radius * math.sin(alpha) - radius * math.sin(alpha - turn), radius * math.cos(alpha - turn), turn]
+
+
+#: model, q, q', end, and how near states are: by our own steps, and by those of FMPy
+MOTIONS: dict[str, tuple[Any, list[float], list[float], float, float]] = {
+    "ball": (bouncing, [1], [0], 3, 1e-7),
+    "rocking": (
+        lambda: of("b", block(0.2, 0.5), [0, 0, -G], contacts=feet("2")),
+        tilted(0.2, 0.2, 0.5),
+        [0] * 3,
+        2,
+        1e-5,
+    ),
+    "sliding": (
+        lambda: of("b", block(0.2, 0.1), [0, 0, -G], contacts=feet("0.3")),
+        [0, 0.3, 0.2],
+        [1, 0, 0],
+        0.6,
+        1e-7,
+    ),
+    "shaken": (shaken, [0], [1], 0.6, 1e-6),
+    "hopper": (hopping, [0, 1, 0, 0.1, 0], [0.3, 0, 0, 0, 0], 1.5, 1e-6),
+}
+
+
+@pytest.fixture(scope="module")
+def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    folder, found = tmp_path_factory.mktemp("fmu"), dict[tuple[str, str], tuple[Model, Path]]()
+
+    def get(name: str, version: str) -> tuple[Model, Path]:
+        if (name, version) not in found:
+            model, path = MOTIONS[name][0](), folder / f"{name}{version[0]}.fmu"
+            path.write_bytes(files(exported_of(model), TARGETS[version], 10**6)["demo.fmu"])
+            found[name, version] = model, path
+        return found[name, version]
+
+    return get
+
+
+@pytest.mark.parametrize("version", TARGETS)
+@pytest.mark.parametrize("name", MOTIONS)
+def test_it_moves_as_here(made: Any, name: str, version: str) -> None:
+    """States at all times, the number and the energy of the impacts, and the time of the last one."""
+    model, path = made(name, version)
+    _, q, qd, end, near = MOTIONS[name]
+    assert validate_fmu(str(path)) == []
+    start = dict(zip(model.coordinates, q, strict=True))
+    start |= {f"{c}_d": x for c, x in zip(model.coordinates, qd, strict=True)}
+    ours = simulate(model, q, (0, end), qd=qd)
+    hits = [event for event in ours.events if event.kind == "impact"]
+    assert ours.is_right
+    expected = np.hstack([ours.q, ours.qd])
+    for kind in KINDS:
+        found = fmpy.simulate_fmu(
+            str(path), fmi_type=kind, start_values=start, stop_time=end, output_interval=end / 100,
+            relative_tolerance=1e-10, output=[*start, *IMPACTS, "kinetic_energy", "potential_energy"],
+        )  # fmt: skip
+        at = [np.flatnonzero(np.abs(found["time"] - t) < 1e-9)[-1] for t in ours.t]
+        shown = np.stack([found[each][at] for each in start], axis=1)
+        assert np.abs(shown - expected).max() <= (near if kind == "ModelExchange" else 5e-8)
+        count, energy, last = (found[name][-1] for name in IMPACTS)
+        assert count == len(hits)
+        assert energy == pytest.approx(sum(hit.energy_change for hit in hits), rel=1e-6)
+        assert last == pytest.approx(hits[-1].t, abs=1e-6)
+        if name == "ball":
+            # nothing else takes energy
+            whole = found["kinetic_energy"] + found["potential_energy"] - found["contact.impact_energy"]
+            assert np.ptp(whole) <= 1e-7 * whole[0]
+
+
+@pytest.mark.parametrize("kind", KINDS)
+def test_each_impact_is_when_it_is(made: Any, kind: str) -> None:
+    """t_k = sqrt(2 h/g) (1 + 2 (e + e^2 + ...)), and 1 - e^2 of the energy is gone each time."""
+    _, path = made("ball", "3.0")
+    found = fmpy.simulate_fmu(
+        str(path), fmi_type=kind, start_values={"b.z": 1.0}, stop_time=3.0, output_interval=0.05,
+        relative_tolerance=1e-10, output=IMPACTS,
+    )  # fmt: skip
+    times = np.unique(found["contact.last_impact"])[1:]
+    expected = math.sqrt(2 / G) * (1 + 2 * np.cumsum(0.8 ** np.arange(6)) - 2)
+    np.testing.assert_allclose(times, expected, rtol=0, atol=1e-6)
+    np.testing.assert_allclose(found["contact.impact_energy"][-1], -2 * G * (1 - 0.8**12), rtol=1e-6)
+
+
+def test_a_rocking_block_comes_to_rest(made: Any) -> None:
+    """Impacts accumulate, and it stands on both corners."""
+    model, path = made("rocking", "3.0")
+    start = dict(zip(model.coordinates, MOTIONS["rocking"][1], strict=True))
+    for kind in KINDS:
+        found = fmpy.simulate_fmu(
+            str(path), fmi_type=kind, start_values=start, stop_time=4.0, output_interval=0.04,
+            relative_tolerance=1e-10,
+            output=["b.z", "b.phi", "b.phi_d", "contact.l.normal_force", "contact.r.normal_force"],
+        )  # fmt: skip
+        z, phi, rate, *forces = list(found[-1])[1:]
+        assert np.abs([z - 0.5, phi, rate]).max() <= 1e-5
+        assert forces == pytest.approx([G, G], rel=1e-4)
+
+
+def test_states_are_kept_with_what_contacts_do(made: Any) -> None:
+    model, path = made("sliding", "3.0")
+    _, q, qd, *_ = MOTIONS["sliding"]
+    start = dict(zip([*model.coordinates, *(f"{c}_d" for c in model.coordinates)], [*q, *qd], strict=True))
+    names = [*start, *IMPACTS]
+    with instance(path, **start) as (one, at):
+        one.doStep(0.0, 0.2)
+        kept = one.getFMUState()
+        one.doStep(0.2, 0.4)
+        first = one.getFloat64([at[s] for s in names])
+        one.setFMUState(one.deserializeFMUState(one.serializeFMUState(kept)))
+        one.doStep(0.2, 0.4)
+        assert one.getFloat64([at[s] for s in names]) == first
+        one.freeFMUState(kept)
+        with pytest.raises(Exception, match="fmi3SetFloat64"):
+            one.setFloat64([at["contact.impacts"]], [1.0])
+        with pytest.raises(Exception, match="fmi3GetDirectionalDerivative"):
+            one.getDirectionalDerivative([at["der(b.z_d)"]], [at["b.z"]], [1.0], 1)
+
+
+def test_fixed_steps_end_at_impacts_too(made: Any) -> None:
+    _, path = made("ball", "3.0")
+    with instance(path, **{"b.z": 1.0, "solver_step": 0.01}) as (one, at):
+        one.doStep(0.0, 1.0)
+        z, last = one.getFloat64([at["b.z"], at["contact.last_impact"]])
+    fall = math.sqrt(2 / G)
+    assert last == pytest.approx(fall, abs=1e-9)
+    assert z == pytest.approx(0.8 * G * fall * (1 - fall) - G / 2 * (1 - fall) ** 2, abs=1e-9)
+
+
+def test_a_start_below_the_plane_is_refused(made: Any) -> None:
+    _, path = made("ball", "3.0")
+    with instance(path, **{"b.z": -1.0}) as (one, _), pytest.raises(Exception, match="fmi3DoStep"):
+        one.doStep(0.0, 0.1)
+
+
+def test_what_an_fmu_does_not_follow_is_refused() -> None:
+    rough = of("b", BALL, [0, 0, -G], contacts=[{"name": "floor", "point": "b.body", "friction": "0.5"}])
+    with pytest.raises(InvalidArgument, match="rubs in two directions"):
+        files(exported_of(rough), "fmu", 10**6)
+    many = [{"name": f"c{i}", "point": "b.body"} for i in range(17)]
+    with pytest.raises(TooLarge, match="contacts of an FMU"):
+        files(exported_of(of("b", BALL, [0, 0, -G], contacts=many)), "fmu", 10**6)
+
+
+@pytest.mark.parametrize("compiler", ["gcc", "clang"])
+@pytest.mark.parametrize("version", TARGETS)
+def test_the_sources_compile_without_a_warning(made: Any, version: str, compiler: str, tmp_path: Path) -> None:
+    with zipfile.ZipFile(made("sliding", version)[1]) as packed:
+        for name in packed.namelist():
+            if name.startswith("sources/"):
+                (tmp_path / Path(name).name).write_bytes(packed.read(name))
+    for each in sorted(tmp_path.glob("*.c")):
+        done = subprocess.run(
+            [tool(compiler), *STRICT, "-fPIC", "-c", str(each), "-o", str(tmp_path / "one.o")],
+            capture_output=True, text=True, check=False,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr[:2000]
