@@ -15,7 +15,7 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any, Protocol
 
-from substructures.documents import read_json, write_json
+from substructures.documents import write_json
 from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.bind import bind
@@ -163,7 +163,7 @@ def shape_digest(
 
     Words and values of parameters are not in it; of the tree's own there is whether they have one.
     """
-    plain: dict[str, Any] = read_json(spec.canonical())
+    plain = spec.plain()
     if "parameters" in plain:
         plain["parameters"] = {
             name: {**each, "value": each.get("value") is not None} for name, each in plain["parameters"].items()
