@@ -70,7 +70,7 @@ def test_rows_are_what_their_trees_are() -> None:
 def test_ranges_do_not_matter() -> None:
     sweep = Sweep(CRANE)
     whole = sweep.rows()
-    parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))])
+    parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))], 120)
     assert parts.rows.tolist() == whole.rows.tolist()
     assert all(np.array_equal(parts.columns[name], x) for name, x in whole.columns.items())
 
