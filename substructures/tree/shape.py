@@ -2,8 +2,9 @@
 
 g, Gamma, Q and all other outputs are identities in the symbols and are compared with the documents at random values of
 all symbols, so that neither depends on the values of parameters (notation.md, section 6). What does, plausibility and
-warnings, is found for every tree. Numbers that parameters of instances are bound to are values, too: symbols of the
-shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they make formulas shorter.
+warnings, is found for every tree. Numbers that parameters of instances are bound to, and numbers of placements, are
+values, too: symbols of the shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they
+make formulas shorter.
 """
 
 from __future__ import annotations
@@ -24,9 +25,10 @@ from substructures.expr.hoist import hoisted
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 from substructures.expr.units.unit_check import Notice
+from substructures.part.definition import Parameter, Placement
 from substructures.part.part import Part
 from substructures.part.shape import without_descriptions
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import Instance, TreeSpec
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128
@@ -105,20 +107,39 @@ def _found(
 
 
 def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
-    """The tree in which parameters that are bound to numbers are free, and these numbers in SI by ``instance.name``.
+    """The tree in which parameters that are bound to numbers are free and numbers of placements are parameters of its
+    own, and these numbers in SI by name: ``instance.parameter``, ``instance.position.x``, ``instance.rpy.x``.
 
     >>> p = {"name": "p", "substructure": "x", "parameters": {"l": 2, "m": "m0", "k": 0}}
     >>> free, numbers = without_numbers(TreeSpec.read({"name": "t", "instances": [p]}))
     >>> free.instances[0].parameters, numbers
     ({'m': 'm0', 'k': 0}, {'p.l': Fraction(2, 1)})
     """
-    instances, numbers = [], dict[str, Fraction]()
+    instances, numbers, parameters = [], dict[str, Fraction](), dict(spec.parameters)
     for each in spec.instances:
         own = {name: x for name, given in each.parameters.items() if (x := _value(given)) is not None}
-        numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
         left = {name: given for name, given in each.parameters.items() if name not in own}
-        instances.append(each.model_copy(update={"parameters": left}) if own else each)
-    return (spec.model_copy(update={"instances": tuple(instances)}) if numbers else spec), numbers
+        placement, places = places_of(each)
+        parameters |= {f"{each.name}.{name}": place for name, place in places.items()}
+        own |= {name: x for name, place in places.items() if (x := _value(place.value)) is not None}
+        numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
+        instances.append(each.model_copy(update={"parameters": left, "placement": placement}) if own else each)
+    made = {"instances": tuple(instances), "parameters": parameters}
+    return (spec.model_copy(update=made) if numbers else spec), numbers
+
+
+def places_of(instance: Instance) -> tuple[Placement, dict[str, Parameter]]:
+    """The placement of an instance with names in the places of its numbers, and what these names stand for, by the rest
+    of the name: ``position.x``. No name of a document has two dots.
+    """
+    found: dict[str, Parameter] = {}
+    vectors: dict[str, tuple[Any, ...]] = {}
+    for vector, unit in (("position", "m"), ("rpy", "rad")):
+        given = {f"{vector}.{axis}": x for axis, x in zip("xyz", getattr(instance.placement, vector), strict=True)}
+        own = {name: Parameter(value=in_si(x), unit=unit) for name, x in given.items() if _value(x) is not None}
+        vectors[vector] = tuple(f"{instance.name}.{name}" if name in own else x for name, x in given.items())
+        found |= own
+    return (instance.placement.model_copy(update=vectors) if found else instance.placement), found
 
 
 def _value(given: Any) -> Fraction | None:

@@ -142,6 +142,41 @@ def test_numbers_that_make_formulas_shorter_belong_to_the_shape() -> None:
     assert (known.hits, len(known)) == (1, 4)
 
 
+def _placed(z: Any, roll: Any) -> dict[str, Any]:
+    tree = _tree()
+    tree["instances"][1]["placement"] = {"position": [0, 0, z], "rpy": [roll, 0, 0]}
+    return tree
+
+
+@pytest.mark.parametrize(("arm", "hand"), [("scara", "parallel-gripper"), ("planar-2r", "simple-pendulum")])
+def test_numbers_of_placements_are_put_in_as_documents_say(arm: str, hand: str) -> None:
+    """Against the document with these numbers, and as lean as coupled with them as fractions, which stay."""
+    parts, known = {"arm": shipped_part(arm), "hand": shipped_part(hand)}, Shapes()
+    definitions = {name: part.definition for name, part in parts.items()}
+    for z, roll in ((0.11, 0.3), ({"value": 270, "unit": "mm"}, "-0.7"), ({"value": -1.5, "unit": "cm"}, 2)):
+        spec = TreeSpec.read(_placed(z, roll))
+        stored = couple_shape(spec, parts, known=known)
+        assert stored.numbers.keys() == {"hand.position.z", "hand.rpy.x"} <= stored.effective
+        model = stored.with_numbers()
+        assert not stored.numbers.keys() & {*model.parameters, *model.effective}
+        certify_tree(spec, definitions, model.summary(), model.program)
+        assert _said(model) == _said(couple(spec, parts))
+    assert (known.hits, len(known)) == (2, 1)
+    structural = [_placed(z, roll) for z, roll in ((0, 0), (1, 0), (0.2, 0), (0, "pi/2"), (0.2, "pi/2"))]
+    for tree in structural:
+        couple(tree, parts, known=known)
+    assert (known.hits, len(known)) == (2, 1 + len(structural))
+
+
+def test_a_wrong_place_put_in_is_found() -> None:
+    parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
+    spec = TreeSpec.read(_placed(0.2, 0.3))
+    stored = couple_shape(spec, parts)
+    wrong = replace(stored, numbers={**stored.numbers, "hand.rpy.x": Fraction(31, 100)}).with_numbers()
+    with pytest.raises(VerificationFailed):
+        certify_tree(spec, {name: part.definition for name, part in parts.items()}, wrong.summary(), wrong.program)
+
+
 def test_where_numbers_cannot_be_put_in_the_tree_is_coupled_with_them() -> None:
     """1/(k - 2) at 2 is refused with its place, and at 3 it is a number."""
     document = _document("simple-pendulum")
