@@ -4,14 +4,15 @@ g, Gamma, Q and all other outputs are identities in the symbols and are compared
 all symbols, so that neither depends on the values of parameters (notation.md, section 6). What does, plausibility and
 warnings, is found for every tree. Numbers that parameters of instances are bound to, and numbers of placements, are
 values, too: symbols of the shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they
-make formulas shorter.
+make formulas shorter. Names of instances are names of symbols alone: a program is that of other names, too.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Protocol
@@ -32,17 +33,36 @@ from substructures.tree.document import Instance, TreeSpec
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128
+#: members of a tree whose formulas have names of instances in their symbols alone
+NAMELESS = frozenset(("gravity", "parameters", "inputs", "instances"))
 #: operations that have a value whatever their operands are
 TOTAL = frozenset(("add", "sub", "mul", "neg", "int", "rat", "sym", "sin", "cos"))
 
 
 @dataclass(frozen=True)
 class CertifiedProgram:
-    """The program of a shape, what its certificate says of the formulas, and what is to be told of them."""
+    """The program of a shape, what its certificate says of the formulas, and what is to be told of them.
+
+    ``instances``: the names in its symbols, in the order of the document that it was made of.
+    """
 
     program: Program
     certificate: Mapping[str, Any]
     notices: Sequence[Notice] = ()
+    instances: tuple[str, ...] = ()
+
+    def called(self, instances: tuple[str, ...]) -> CertifiedProgram:
+        """That of the tree whose instances have these names: an identity holds whatever its symbols are called."""
+        names = dict(zip(self.instances, instances, strict=True))
+
+        def name(text: str) -> str:
+            """Of a symbol: arm.q1, tau.arm.q1."""
+            effort = "tau." if text.startswith("tau.") else ""
+            instance, dot, rest = text.removeprefix(effort).partition(".")
+            return f"{effort}{names.get(instance, instance) if dot else instance}{dot}{rest}"
+
+        symbols = tuple(replace(symbol, name=name(symbol.name)) for symbol in self.program.symbols)
+        return replace(self, program=replace(self.program, symbols=symbols), instances=instances)
 
     @cached_property
     def _is_total(self) -> bool:
@@ -96,14 +116,22 @@ def _found(
 ) -> tuple[CertifiedProgram, bool]:
     if known is None:
         return make(spec, values)
-    key = shape_digest(spec, parts, group, values)
+    key, names = shape_digest(spec, parts, group, values), tuple(each.name for each in spec.instances)
     found = known.get(key)
-    if found is not None:
-        return found, True
-    found, is_shared = make(spec, values)
-    if is_shared:
-        known.put(key, found)
-    return found, is_shared
+    if found is None:
+        found, is_shared = make(spec, values)
+        found = replace(found, instances=names)
+        if is_shared:
+            known.put(key, found)
+        return found, is_shared
+    if found.instances != names:
+        key = f"{key} {' '.join(names)}"
+        renamed = known.get(key)
+        if renamed is None:
+            renamed = found.called(names)
+            known.put(key, renamed)
+        return renamed, True
+    return found, True
 
 
 def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
@@ -182,7 +210,9 @@ def shape_digest(
     (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.model.couple`;
     ``constants``: the parameters that numbers are put in for.
 
-    Words and values of parameters are not in it; of the tree's own there is whether they have one.
+    Words and values of parameters are not in it; of the tree's own there is whether they have one. Names of instances
+    are not in it either where nothing but mounts and expressions has them: their numbers are, and how they sort among
+    the other names, as symbols do, and with them the random values that a certificate takes.
     """
     plain = spec.plain()
     if "parameters" in plain:
@@ -195,7 +225,35 @@ def shape_digest(
         for each in plain.get("instances", ())
     ]
     left = {name: x for name, x in plain.items() if name != "name"} | {"instances": instances}
-    return hashlib.sha256(write_json([without_descriptions(left), group, sorted(constants)])).hexdigest()
+    told = [without_descriptions(left), group, sorted(constants)]
+    names = [each["name"] for each in instances]
+    if names and left.keys() <= NAMELESS:
+        others = ("t", "tau.", *left.get("parameters", ()), *left.get("inputs", ()))
+        named = {*(f"{name}." for name in names), *others}
+        told = _numbered([*told, sorted(named)], names)
+        for each in told[0]["instances"]:
+            del each["name"]
+    return hashlib.sha256(write_json(told)).hexdigest()
+
+
+def _numbered(plain: Any, names: Sequence[str]) -> Any:
+    """Plain data with the numbers of instances, ``#0.``, in the places of their ``names`` before dots."""
+    numbers = {name: f"#{k}" for k, name in enumerate(names)}
+    before_dots = re.compile(rf"(?<![\w.])(?:{'|'.join(sorted(map(re.escape, names)))})(?=\.)")
+
+    def text(given: str) -> str:
+        """With the numbers."""
+        return before_dots.sub(lambda found: numbers[found.group()], given)
+
+    def value(given: Any) -> Any:
+        """Of any kind."""
+        if isinstance(given, str):
+            return text(given)
+        if isinstance(given, dict):
+            return {text(name): value(x) for name, x in given.items()}
+        return [value(x) for x in given] if isinstance(given, (list, tuple)) else given
+
+    return value(plain)
 
 
 def limited(result: Program, max_nodes: int) -> Program:

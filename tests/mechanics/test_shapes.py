@@ -168,6 +168,49 @@ def test_numbers_of_placements_are_put_in_as_documents_say(arm: str, hand: str) 
     assert (known.hits, len(known)) == (2, 1 + len(structural))
 
 
+@pytest.mark.parametrize("bound", [{}, {"m": 0.7}, {"m": "2*{0}.m1 + m/3"}], ids=["free", "number", "expression"])
+def test_names_of_instances_are_names_of_symbols_alone(bound: dict[str, Any]) -> None:
+    """Formulas, certificate and all else are those of the slow way; others are names that sort otherwise."""
+    arm, hand, known = shipped_part("planar-2r"), shipped_part("simple-pendulum"), Shapes()
+    names = [
+        ("arm", "hand"),
+        ("b", "h1"),
+        ("d", "l"),
+        ("b", "h1"),
+        ("c", "h"),
+        ("arm", "hand"),
+        ("h", "arm"),
+        ("b", "u"),
+    ]
+    for first, second in names:
+        given = {name: x.format(first) if isinstance(x, str) else x for name, x in bound.items()}
+        tree = _tree(**given) | {"gravity": [0, f"-g*{second}.l/{first}.l1", "-g"]}
+        tree["instances"][0]["name"] = first
+        tree["instances"][1] |= {"name": second, "at": f"{first}.flange", "placement": {"position": [0, 0, 0.3]}}
+        parts = {first: arm, second: hand}
+        assert _said(couple(tree, parts, known=known)) == _said(couple(tree, parts))
+    assert len([key for key in known if " " not in key]) == 3
+    assert known.hits == 5 + 1  # five trees of the first shape, and one time a renamed program
+
+
+def test_names_of_instances_that_mean_another_tree_belong_to_the_shape() -> None:
+    """Other hosts, other instances in expressions, and names that loads have."""
+    part, known = shipped_part("planar-2r"), Shapes()
+    a, b, c = ({"name": name, "substructure": "x"} for name in "abc")
+    at_a, at_b = {"at": "a.flange"}, {"at": "b.flange"}
+    push = {"type": "force", "name": "a", "to": "a.flange", "vector": [1, 0, 0]}
+    trees: list[dict[str, Any]] = [
+        {"instances": [a, b | at_a, c | at_a]},
+        {"instances": [a, b | at_a, c | at_b]},
+        {"instances": [a, b | at_a | {"parameters": {"l1": "a.l1"}}, c | at_a]},
+        {"instances": [a, b | at_a | {"parameters": {"l1": "c.l1"}}, c | at_a]},
+        {"instances": [a, b | at_a, c | at_a], "loads": [push]},
+    ]
+    for tree in trees:
+        couple({"name": "t", "gravity": [0, 0, -9.81], **tree}, dict.fromkeys("abc", part), known=known)
+    assert (known.hits, len(known)) == (0, len(trees))
+
+
 def test_a_wrong_place_put_in_is_found() -> None:
     parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
     spec = TreeSpec.read(_placed(0.2, 0.3))
