@@ -3,9 +3,9 @@
 python -m benchmarks.shapes [--quick] [--json FILE]
 
 POST: a server in a process of its own with one worker, on an SQLite file; median wall time. A new shape has its hand
-mounted elsewhere; a known one has an arm with other numbers. Items: CPU time of the work of an item of the kind
-``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the items; and
-of as many with numbers bound in instances.
+where another expression says; a known one has an arm with other numbers. Items: CPU time of the work of an item of the
+kind ``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the
+items; and of as many with numbers bound in instances, with the hand elsewhere, and with other names of instances.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ def varied(name: str, k: int) -> dict[str, Any]:
 
 def tree(name: str, arm: str, hand: str, place: float = 0) -> dict[str, Any]:
     """A hand on an arm."""
-    placement = {"placement": {"position": [0, 0, place]}} if place else {}
+    placement = {"placement": {"position": [0, 0, f"{place}/1"]}} if place else {}
     instances = [
         {"name": "arm", "substructure": arm},
         {"name": "hand", "substructure": hand, "at": "arm.flange", **placement},
@@ -109,6 +109,29 @@ def bound_items(items: Sequence[dict[str, Any]], hand: Part) -> list[dict[str, A
     return found
 
 
+def elsewhere(items: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The first item with its hand at other places, as many as there are items."""
+    found = []
+    for k in range(len(items)):
+        item = deepcopy(items[0])
+        item["tree"]["name"] = f"elsewhere-{k}"
+        item["tree"]["instances"][1]["placement"] = {"position": [0, 0, round(0.1017 + 0.0013 * k, 5)]}
+        found.append(item)
+    return found
+
+
+def named(items: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The first item with other names of its instances, as many as there are items."""
+    found = []
+    for k in range(len(items)):
+        item = deepcopy(items[0])
+        item["tree"]["name"] = f"named-{k}"
+        arm, hand = item["tree"]["instances"]
+        arm["name"], hand["name"], hand["at"] = f"arm{k}", f"hand{k}", f"arm{k}.flange"
+        found.append(item)
+    return found
+
+
 def jobs(count: int, figures: dict[str, float]) -> None:
     """So many arms with as many hands."""
     parts = [[derive(Definition.read(varied(name, k))) for k in range(count)] for name in (ARM, HAND)]
@@ -117,6 +140,9 @@ def jobs(count: int, figures: dict[str, float]) -> None:
     fast, _ = worked(items, blobs, **{SHARE: "benchmark"})
     bound, _ = worked(bound_items(items, parts[1][0]), blobs, **{SHARE: "benchmark"})
     figures |= {"item_slow_ms": slow, "item_ms": fast, "item_bound_ms": bound, "item_bytes": size, "items": len(items)}
+    for name, others in (("elsewhere", elsewhere(items)), ("named", named(items))):
+        figures[f"item_{name}_ms"], _ = worked(others, blobs, **{SHARE: "benchmark"})
+        print(f"as many {name}: an item {figures[f'item_{name}_ms']:.2f} ms")
     total = f"{fast * len(items) / 1e3:.1f} s of CPU, slow {slow * len(items) / 1e3:.0f} s"
     print(f"{len(items):,} trees of one shape: {total}; an item {fast:.2f} ms, slow {slow:.1f} ms; {size:,.0f} bytes")
     print(f"as many with numbers bound in instances: {bound * len(items) / 1e3:.1f} s of CPU, an item {bound:.2f} ms")

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 from typing import Any
 
+from service.content.cache import Cache
 from service.database.connections import Connection
 from service.jobs.kinds.decoded import marks_of
 from service.jobs.kinds.kind import ENTRY
@@ -38,13 +39,18 @@ class StoreLibrary:
     """Reads in one transaction, so that all items of a submission see the same state; answers are remembered."""
 
     def __init__(
-        self, connection: Connection, viewer: Viewer, sources: Sequence[str] = (), file: Reader = document_of
+        self,
+        connection: Connection,
+        viewer: Viewer,
+        sources: Sequence[str] = (),
+        file: Reader = document_of,
+        blobs: Cache[bytes] | None = None,
     ) -> None:
-        """``sources``: settings of the instances that may be mirrored; ``file`` reads a robot file. ``private``: names
-        of what was found and is not for all.
+        """``sources``: settings of the instances that may be mirrored; ``file`` reads a robot file; ``blobs``: kept by
+        their digests. ``private``: names of what was found and is not for all.
         """
         self._connection, self._viewer = connection, viewer
-        self._sources, self.file = sources, file
+        self._sources, self.file, self._blobs = sources, file, blobs
         self.private: set[str] = set()
         self._whose: dict[str, dict[str, Ownership | None]] = {}
         self.version = lru_cache(maxsize=None)(self._version)
@@ -57,9 +63,8 @@ class StoreLibrary:
         self._note(found)
         if found is None:
             return None
-        recipe = content.get_recipe(self._connection, found.digest)
         marks = marks_of(found.certificate)
-        return StoredVersion(found.name, found.digest, found.program, found.software, recipe, marks)
+        return StoredVersion(found.name, found.digest, found.program, found.software, marks)
 
     def _tree(self, reference: str) -> StoredTree | None:
         ref = parse_reference(reference)
@@ -144,9 +149,18 @@ class StoreLibrary:
             raise InvalidDocument(faults)
         return {} if self._viewer.owner == OPEN else {"owner": self._viewer.owner}
 
+    def recipe(self, digest: str) -> str | None:
+        """What a published tree was coupled of."""
+        return content.get_recipe(self._connection, digest)
+
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""
-        return content.get_blob(self._connection, digest)
+        found = None if self._blobs is None else self._blobs.get(digest)
+        if found is None:
+            found = content.get_blob(self._connection, digest)
+            if found is not None and self._blobs is not None:
+                self._blobs.put(digest, found)
+        return found
 
     def sources(self) -> Sequence[str]:
         """Addresses of the instances that may be mirrored, without keys."""

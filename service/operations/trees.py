@@ -192,7 +192,7 @@ def _coupled(
     """What is stored of a tree; ``members``: of the item of the work."""
     with store.database.read() as connection:
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
-        item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer))
+        item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer, blobs=store.caches.blobs))
         digests = {each.name: each.digest for each in TreeSpec.stored(item["tree"]).instances}
         hidden = private_parts(connection, digests.values())
         faults = list(owners.private_parts(whose, item["tree"].get("instances", ()), digests, hidden))

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Iterator
+from itertools import accumulate
 from typing import Any
 
 from substructures.documents.numbers import REAL, RefusedNumberError, decimal, integer, not_finite
@@ -13,6 +14,8 @@ from substructures.errors import InvalidDocument
 
 # a string that is never closed runs to the end, so that scanning stays linear
 _STRING = r'"(?:[^"\\]++|\\.)*+(?:"|\\?\Z)'
+_NO_BRACKETS = re.compile(rf'(?:{_STRING}|[^"\[\]{{}}]++)++', re.DOTALL)
+_STEPS = {"[": 1, "{": 1, "]": -1, "}": -1}
 _NESTING = re.compile(_STRING + r"|[\[\]{}]", re.DOTALL)
 _WORD = re.compile(_STRING + r'|[\[\]{},:]|[^\s"\[\]{},:]+', re.DOTALL)
 _ESCAPED_SURROGATE = re.compile(r"\\u[dD][89a-fA-F]")
@@ -66,6 +69,8 @@ def _words(text: str) -> Iterator[tuple[str, int, int]]:
 
 
 def _check_nesting(text: str) -> None:
+    if max(accumulate(map(_STEPS.__getitem__, _NO_BRACKETS.sub("", text))), default=0) <= MAX_DEPTH:
+        return
     depth = 0
     for match in _NESTING.finditer(text):
         first = match.group()[0]

@@ -63,9 +63,11 @@ def plain_text(value: int | Decimal | float) -> str:
     number = Decimal(float.__repr__(value)) if isinstance(value, float) else value
     if not number.is_finite():
         not_finite(str(value))
-    if plain_digits(number) > MAX_DIGITS:
-        raise RefusedNumberError(TOO_LONG)
-    text = format(number, "f")
+    text = str(number)
+    if "E" in text.upper() or len(text) > MAX_DIGITS:
+        if plain_digits(number) > MAX_DIGITS:
+            raise RefusedNumberError(TOO_LONG)
+        text = format(number, "f")
     if "." in text:
         text = text.rstrip("0").rstrip(".")
     return "0" if text == "-0" else text

@@ -41,9 +41,10 @@ class Document(DocumentPart):
 
     @cached_property
     def _canonical(self) -> bytes:
-        return write_json(self._given())
+        return write_json(self.plain())
 
-    def _given(self) -> dict[str, Any]:
+    def plain(self) -> dict[str, Any]:
+        """Plain data of what was given, defaults left out: what :meth:`canonical` writes."""
         return self.model_dump(exclude_defaults=True, by_alias=True)
 
     def canonical(self) -> bytes:

@@ -24,10 +24,9 @@ def write_json(data: Any, keys: Callable[[dict[Any, Any]], Iterable[Any]] = sort
     ``0``; a ``float`` is written as its shortest decimal text. Raises :class:`InvalidDocument` for a value that is not
     plain data or not finite, for a lone surrogate, and for nesting deeper than ``MAX_DEPTH``.
     """
-    out: list[str] = []
-    _Writing(keys, out).value(data, [])
+    text = _Writing(keys).value(data, 0)
     try:
-        return "".join(out).encode("utf-8")
+        return text.encode("utf-8")
     except UnicodeEncodeError:
         raise InvalidDocument.at("", "encoding", SURROGATE) from None
 
@@ -49,63 +48,51 @@ class Written(dict[str, Any]):
 
 
 class _Writing:
-    """Appends texts of values to ``out``; ``path``: where a value is."""
+    """Texts of values at a ``depth``; where a fault is, is told by those that it is in."""
 
-    def __init__(self, keys: Callable[[dict[Any, Any]], Iterable[Any]], out: list[str]) -> None:
-        self._keys, self._out = keys, out
+    def __init__(self, keys: Callable[[dict[Any, Any]], Iterable[Any]]) -> None:
+        self._keys = keys
 
-    def value(self, value: Any, path: list[str | int]) -> None:
+    def value(self, value: Any, depth: int) -> str:
         """Of any kind."""
         if isinstance(value, str):
-            self._out.append(_text(value))
-        elif value is None or isinstance(value, bool):
-            self._out.append(_WORDS[value])
-        elif isinstance(value, (int, Decimal, float)):
-            self._out.append(_number(value, path))
-        elif len(path) >= MAX_DEPTH:
-            raise InvalidDocument.at(_pointer(path), "nesting", TOO_DEEP)
-        elif isinstance(value, Written) and self._keys is sorted:
-            self._out.append(value.text)
-        elif isinstance(value, (list, tuple)):
-            self._list(value, path)
-        elif isinstance(value, dict):
-            self._mapping(value, path)
-        elif type(value).__module__ == "numpy" and not isinstance(plain := value.tolist(), type(value)):
-            self.value(plain, path)
-        else:
-            message = (
-                f"{type(value).__name__} is not plain data: numbers, texts, lists, objects, NumPy's arrays of them"
-            )
-            raise InvalidDocument.at(_pointer(path), "type", message)
+            return _text(value)
+        if value is None or isinstance(value, bool):
+            return _WORDS[value]
+        if isinstance(value, (int, Decimal, float)):
+            return _number(value)
+        if depth >= MAX_DEPTH:
+            raise InvalidDocument.at("", "nesting", TOO_DEEP)
+        if isinstance(value, Written) and self._keys is sorted:
+            return value.text
+        if isinstance(value, (list, tuple)):
+            return self._list(value, depth + 1)
+        if isinstance(value, dict):
+            return self._mapping(value, depth + 1)
+        if type(value).__module__ == "numpy" and not isinstance(plain := value.tolist(), type(value)):
+            return self.value(plain, depth)
+        message = f"{type(value).__name__} is not plain data: numbers, texts, lists, objects, NumPy's arrays of them"
+        raise InvalidDocument.at("", "type", message)
 
-    def _list(self, value: Sequence[Any], path: list[str | int]) -> None:
-        path.append(0)
-        for index, item in enumerate(value):
-            self._out.append("," if index else "[")
-            path[-1] = index
-            self.value(item, path)
-        path.pop()
-        self._out.append("]" if value else "[]")
+    def _list(self, value: Sequence[Any], depth: int) -> str:
+        return f"[{','.join([self._at(index, item, depth) for index, item in enumerate(value)])}]"
 
-    def _mapping(self, value: dict[Any, Any], path: list[str | int]) -> None:
+    def _mapping(self, value: dict[Any, Any], depth: int) -> str:
         for key in value:
             if not isinstance(key, str):
-                raise InvalidDocument.at(_pointer(path), "key", f"keys are strings, not {type(key).__name__}")
-        path.append("")
-        for index, key in enumerate(self._keys(value)):
-            self._out.append(("," if index else "{") + _text(key) + ":")
-            path[-1] = key
-            self.value(value[key], path)
-        path.pop()
-        self._out.append("}" if value else "{}")
+                raise InvalidDocument.at("", "key", f"keys are strings, not {type(key).__name__}")
+        texts = [f"{_text(key)}:{self._at(key, value[key], depth)}" for key in self._keys(value)]
+        return f"{{{','.join(texts)}}}"
+
+    def _at(self, step: str | int, value: Any, depth: int) -> str:
+        try:
+            return self.value(value, depth)
+        except InvalidDocument as error:
+            raise error.below(pointer_step(step)) from None
 
 
-def _pointer(path: Iterable[str | int]) -> str:
-    return "".join(map(pointer_step, path))
-
-
-def _number(value: int | Decimal | float, path: Iterable[str | int]) -> str:
+def _number(value: int | Decimal | float) -> str:
     try:
         return plain_text(value)
     except RefusedNumberError as error:
-        raise InvalidDocument.at(_pointer(path), "number", str(error)) from None
+        raise InvalidDocument.at("", "number", str(error)) from None

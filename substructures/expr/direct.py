@@ -19,6 +19,7 @@ import numpy as np
 from substructures.expr import direct_laws
 from substructures.expr.syntax import ExpressionError, Knots, Step, decimal_number, read
 
+SHORT = 100  # characters of a decimal number
 #: a number as documents give it: exact, or an expression
 Given = int | Decimal | Fraction | str
 
@@ -61,7 +62,9 @@ def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
     1.5
     """
     if not isinstance(given, str):
-        return _float(_exact(given))
+        text = str(given)
+        is_short = len(text) <= SHORT and not text.strip("-.0123456789")
+        return np.float64(text) + 0.0 if is_short else _float(_exact(given))  # both correctly rounded, -0 is 0
     steps, known = read(given), names or {}
     if len(steps) == 1 and steps[0].op == "name":
         return _floats(_lookup(steps[0], known))
@@ -156,9 +159,10 @@ def _result(
 
 def _lookup(step: Step, names: Mapping[str, Any]) -> Any:
     name = str(step.value)
-    if name not in names:
-        raise ExpressionError(f"unknown name '{name[:80]}'", step.column, name)
-    return names[name]
+    try:
+        return names[name]
+    except KeyError:
+        raise ExpressionError(f"unknown name '{name[:80]}'", step.column, name) from None
 
 
 def _float(x: Fraction) -> np.float64:
@@ -171,6 +175,8 @@ def _float(x: Fraction) -> np.float64:
 
 def _floats(given: Any) -> Any:
     """What a name stands for; decimal numbers and fractions, one or lists of them, correctly rounded."""
+    if type(given) is np.float64:
+        return given
     found = np.asarray(given)
     return found.astype(np.float64) if found.dtype == object else found
 

@@ -160,12 +160,16 @@ class Program:
         As in the literature the total leaves out signs, symbols, constants and functions. ``per_state``: without
         operations of parameters alone, which are done once for all states.
         """
-        found = self.reachable(names)
-        varies = self.of_state if per_state else [True] * len(self)
-        counts = Counter(self.operations[i][0] for i in found if varies[i])
-        result = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
-        result["total"] = sum(counts[op] for op in ARITHMETIC)
-        return result
+        key = None if names is None else tuple(names), per_state
+        if key not in self._counts:
+            counts = Counter(self.operations[i][0] for i in self.reachable(key[0]) if not per_state or self.of_state[i])
+            told = {op: counts[op] for op in sorted(counts) if op not in ("int", "rat", "sym")}
+            self._counts[key] = told | {"total": sum(counts[op] for op in ARITHMETIC)}
+        return dict(self._counts[key])
+
+    @cached_property
+    def _counts(self) -> dict[tuple[tuple[str, ...] | None, bool], dict[str, int]]:
+        return {}
 
     @cached_property
     def of_state(self) -> list[bool]:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import Any
 
-from substructures.documents import read_json
 from substructures.part.definition import Definition
 from substructures.part.parameters import described
 
@@ -30,8 +29,7 @@ def shape_of(definition: Definition) -> dict[str, Any]:
 
     Numbers that stand in bodies, joints and loads stay: formulas are made of them.
     """
-    plain: dict[str, Any] = read_json(definition.canonical())
-    left = {name: x for name, x in plain.items() if name not in WORDS}
+    left = {name: x for name, x in definition.plain().items() if name not in WORDS}
     units = {name: x["unit"] for name, x in described(definition.parameters).items()}
     return without_descriptions(left) | {"parameters": units}
 

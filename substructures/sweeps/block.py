@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -103,7 +103,7 @@ def compute(
             continue
         refusals.ways[shape.way] = refusals.ways.get(shape.way, 0) + len(here)
         found.append(_fitting(plan, Block(numbers[here], {**own, **columns}), refusals, finite))
-    return joined(plan, found)
+    return joined(plan, found, stop - start)
 
 
 def _samples(plan: Plan, sample: Rows, start: int, stop: int) -> dict[str, Array]:
@@ -161,18 +161,28 @@ def _fitting(plan: Plan, block: Block, refusals: Refusals, finite: list[int]) ->
     return block if fits.all() else block.take(np.flatnonzero(fits))
 
 
-def joined(plan: Plan, blocks: list[Block]) -> Block:
-    """One block in the order of rows, of those that are to be kept; takes the blocks, so that none is there twice."""
-    if not blocks:
-        return Block(np.zeros(0, dtype=np.int64), {n: np.zeros(0) for n in (*plan.sampler.names, *plan.columns.names)})
-    rows = np.concatenate([block.rows for block in blocks])
-    columns = [dict(block.columns) for block in blocks]
-    blocks.clear()
-    whole = Block(rows, {name: np.concatenate([each.pop(name) for each in columns]) for name in tuple(columns[0])})
-    if (np.diff(rows) < 0).any():
-        whole = whole.take(np.argsort(rows, kind="stable"))
+def joined(plan: Plan, blocks: Iterable[Block], count: int) -> Block:
+    """One block in the order of rows, of those that are to be kept. Every block is put in its place as it comes, so
+    that none is there twice; ``count``: rows of all together, at most.
+    """
+    rows, end = np.empty(count, dtype=np.int64), 0
+    columns: dict[str, Array] = {}
+    for block in blocks:
+        start, end = end, end + len(block.rows)
+        rows[start:end] = block.rows
+        for name, x in block.columns.items():
+            whole = columns.get(name)
+            if whole is None or not np.can_cast(x.dtype, whole.dtype):
+                whole = np.empty(count, x.dtype) if whole is None else whole.astype(np.result_type(whole, x))
+                columns[name] = whole
+            whole[start:end] = x
+    found = Block(rows[:end], {name: x[:end] for name, x in columns.items()})
+    if not columns:
+        found = Block(rows[:0], {name: np.zeros(0) for name in (*plan.sampler.names, *plan.columns.names)})
+    if (found.rows[1:] < found.rows[:-1]).any():
+        found = found.take(np.argsort(found.rows, kind="stable"))
     keep = plan.document.keep
-    return whole if keep is None or len(whole.rows) <= keep else whole.take(best(whole, plan.document.pareto, keep))
+    return found if keep is None or end <= keep else found.take(best(found, plan.document.pareto, keep))
 
 
 def objectives(columns: Mapping[str, Array], pareto: Pareto) -> Array:

@@ -22,7 +22,7 @@ def front(values: Array) -> NDArray[np.int64]:
     """
     if not values.size:
         return np.arange(len(values), dtype=np.int64)
-    ranks = np.stack([np.unique(column, return_inverse=True)[1] for column in values.T], axis=1).astype(np.int64)
+    ranks = np.stack([np.unique(column, return_inverse=True)[1] for column in values.T], axis=1).astype(np.int32)
     order = np.argsort(ranks.sum(axis=1), kind="stable")
     left, kept = ranks[order], []
     numbers = order
@@ -38,7 +38,7 @@ def front(values: Array) -> NDArray[np.int64]:
     return np.sort(np.concatenate(kept))
 
 
-def _dominated(rows: NDArray[np.int64], by: NDArray[np.int64]) -> NDArray[np.bool_]:
+def _dominated(rows: NDArray[np.int32], by: NDArray[np.int32]) -> NDArray[np.bool_]:
     found = np.zeros(len(rows), dtype=np.bool_)
     for each in by:
         alive = ~found

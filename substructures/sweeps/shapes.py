@@ -24,6 +24,7 @@ from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec, read_instance
 from substructures.tree.model import Model, couple_formulas
+from substructures.tree.shape import places_of, without_numbers
 from substructures.tree.units import differing_interfaces
 
 
@@ -32,7 +33,8 @@ class Option:
     """What may stand in the place of an instance.
 
     ``fields``: of the instance in the tree document, with the parameters that are bound to expressions; ``values``: in
-    SI by the name of the parameter in the definition, of those that have a number.
+    SI by the name of the parameter in the definition, of those that have a number, and of its placement
+    (:func:`substructures.tree.shape.places_of`).
     """
 
     part: Part = field(repr=False)
@@ -47,15 +49,17 @@ def option_of(part: Part, instance: Mapping[str, Any]) -> Option:
     values = {
         name: default_number(each["value"]) for name, each in part.parameters.items() if each["value"] is not None
     }
-    for name, given in read_instance(instance).parameters.items():
+    read = read_instance(instance)
+    for name, given in read.parameters.items():
         try:
             values[name] = default_number(given)
         except InvalidInput:  # an expression in other parameters
             bound[name] = instance["parameters"][name]
             values.pop(name, None)
     fields = {**instance, "parameters": bound}
-    placed = {name: fields[name] for name in ("at", "placement", "parameters") if name in fields}
-    text = write_json([part.shape, placed])
+    placement, places = places_of(read)
+    values |= {name: default_number(each.value) for name, each in places.items()}
+    text = write_json([part.shape, read.at, placement.model_dump(), bound])
     return Option(part, fields, values, hashlib.sha256(text).hexdigest())
 
 
@@ -107,6 +111,7 @@ def couple_shape(
     parts = {instance.name: option.part for instance, option in zip(spec.instances, options, strict=True)}
     for told in differing_interfaces(spec, {name: part.definition for name, part in parts.items()}):
         raise InvalidDocument.at(told["pointer"], told["code"], told["message"])
+    spec, _ = without_numbers(spec)
     model = couple_formulas(spec, parts, max_nodes, christoffel, names)
     return Shape(Sources(model, of_parts=of_parts(spec, parts, max_nodes)))
 

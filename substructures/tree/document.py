@@ -165,10 +165,10 @@ class TreeSpec(WithTables):
         (), max_length=MAX_CONTACTS, description="points that do not pass through planes, in simulations"
     )
 
-    def _given(self) -> dict[str, Any]:
+    def plain(self) -> dict[str, Any]:
         """Gravity that was given as zero stays: it was not forgotten."""
         is_given = "gravity" in self.model_fields_set
-        return super()._given() | (self.model_dump(include={"gravity"}) if is_given else {})
+        return super().plain() | (self.model_dump(include={"gravity"}) if is_given else {})
 
     def require_free_names(self) -> None:
         """Raises InvalidDocument for parameters whose name means something else: t is the time, pi a number."""

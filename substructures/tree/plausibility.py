@@ -240,7 +240,8 @@ def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tupl
         found += _negative("mass", numbers[0], "kg", first)
     if any(x is None for x in numbers):
         return found, None
-    together = np.stack(np.broadcast_arrays(*numbers)).reshape(10, -1)
+    is_one = all(isinstance(x, float) for x in numbers)
+    together = np.array(numbers if is_one else np.broadcast_arrays(*numbers)).reshape(10, -1)
     if tensor.about != "origin":
         together[0] = 0
     return found, together
@@ -248,6 +249,8 @@ def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tupl
 
 def _negative(what: str, given: Any, unit: str, first: int) -> Iterator[tuple[str, str]]:
     if given is None:
+        return
+    if isinstance(given, float) and given >= 0:
         return
     found = np.atleast_1d(given)
     bad = np.flatnonzero(~(found >= 0))

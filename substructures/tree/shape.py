@@ -2,20 +2,22 @@
 
 g, Gamma, Q and all other outputs are identities in the symbols and are compared with the documents at random values of
 all symbols, so that neither depends on the values of parameters (notation.md, section 6). What does, plausibility and
-warnings, is found for every tree. Numbers that parameters of instances are bound to are values, too: symbols of the
-shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they make formulas shorter.
+warnings, is found for every tree. Numbers that parameters of instances are bound to, and numbers of placements, are
+values, too: symbols of the shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they
+make formulas shorter. Names of instances are names of symbols alone: a program is that of other names, too.
 """
 
 from __future__ import annotations
 
 import hashlib
+import re
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any, Protocol
 
-from substructures.documents import read_json, write_json
+from substructures.documents import write_json
 from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.bind import bind
@@ -24,23 +26,43 @@ from substructures.expr.hoist import hoisted
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 from substructures.expr.units.unit_check import Notice
+from substructures.part.definition import Parameter, Placement
 from substructures.part.part import Part
 from substructures.part.shape import without_descriptions
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import Instance, TreeSpec
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128
+#: members of a tree whose formulas have names of instances in their symbols alone
+NAMELESS = frozenset(("gravity", "parameters", "inputs", "instances"))
 #: operations that have a value whatever their operands are
 TOTAL = frozenset(("add", "sub", "mul", "neg", "int", "rat", "sym", "sin", "cos"))
 
 
 @dataclass(frozen=True)
 class CertifiedProgram:
-    """The program of a shape, what its certificate says of the formulas, and what is to be told of them."""
+    """The program of a shape, what its certificate says of the formulas, and what is to be told of them.
+
+    ``instances``: the names in its symbols, in the order of the document that it was made of.
+    """
 
     program: Program
     certificate: Mapping[str, Any]
     notices: Sequence[Notice] = ()
+    instances: tuple[str, ...] = ()
+
+    def called(self, instances: tuple[str, ...]) -> CertifiedProgram:
+        """That of the tree whose instances have these names: an identity holds whatever its symbols are called."""
+        names = dict(zip(self.instances, instances, strict=True))
+
+        def name(text: str) -> str:
+            """Of a symbol: arm.q1, tau.arm.q1."""
+            effort = "tau." if text.startswith("tau.") else ""
+            instance, dot, rest = text.removeprefix(effort).partition(".")
+            return f"{effort}{names.get(instance, instance) if dot else instance}{dot}{rest}"
+
+        symbols = tuple(replace(symbol, name=name(symbol.name)) for symbol in self.program.symbols)
+        return replace(self, program=replace(self.program, symbols=symbols), instances=instances)
 
     @cached_property
     def _is_total(self) -> bool:
@@ -94,31 +116,58 @@ def _found(
 ) -> tuple[CertifiedProgram, bool]:
     if known is None:
         return make(spec, values)
-    key = shape_digest(spec, parts, group, values)
+    key, names = shape_digest(spec, parts, group, values), tuple(each.name for each in spec.instances)
     found = known.get(key)
-    if found is not None:
-        return found, True
-    found, is_shared = make(spec, values)
-    if is_shared:
-        known.put(key, found)
-    return found, is_shared
+    if found is None:
+        found, is_shared = make(spec, values)
+        found = replace(found, instances=names)
+        if is_shared:
+            known.put(key, found)
+        return found, is_shared
+    if found.instances != names:
+        key = f"{key} {' '.join(names)}"
+        renamed = known.get(key)
+        if renamed is None:
+            renamed = found.called(names)
+            known.put(key, renamed)
+        return renamed, True
+    return found, True
 
 
 def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
-    """The tree in which parameters that are bound to numbers are free, and these numbers in SI by ``instance.name``.
+    """The tree in which parameters that are bound to numbers are free and numbers of placements are parameters of its
+    own, and these numbers in SI by name: ``instance.parameter``, ``instance.position.x``, ``instance.rpy.x``.
 
     >>> p = {"name": "p", "substructure": "x", "parameters": {"l": 2, "m": "m0", "k": 0}}
     >>> free, numbers = without_numbers(TreeSpec.read({"name": "t", "instances": [p]}))
     >>> free.instances[0].parameters, numbers
     ({'m': 'm0', 'k': 0}, {'p.l': Fraction(2, 1)})
     """
-    instances, numbers = [], dict[str, Fraction]()
+    instances, numbers, parameters = [], dict[str, Fraction](), dict(spec.parameters)
     for each in spec.instances:
         own = {name: x for name, given in each.parameters.items() if (x := _value(given)) is not None}
-        numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
         left = {name: given for name, given in each.parameters.items() if name not in own}
-        instances.append(each.model_copy(update={"parameters": left}) if own else each)
-    return (spec.model_copy(update={"instances": tuple(instances)}) if numbers else spec), numbers
+        placement, places = places_of(each)
+        parameters |= {f"{each.name}.{name}": place for name, place in places.items()}
+        own |= {name: x for name, place in places.items() if (x := _value(place.value)) is not None}
+        numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
+        instances.append(each.model_copy(update={"parameters": left, "placement": placement}) if own else each)
+    made = {"instances": tuple(instances), "parameters": parameters}
+    return (spec.model_copy(update=made) if numbers else spec), numbers
+
+
+def places_of(instance: Instance) -> tuple[Placement, dict[str, Parameter]]:
+    """The placement of an instance with names in the places of its numbers, and what these names stand for, by the rest
+    of the name: ``position.x``. No name of a document has two dots.
+    """
+    found: dict[str, Parameter] = {}
+    vectors: dict[str, tuple[Any, ...]] = {}
+    for vector, unit in (("position", "m"), ("rpy", "rad")):
+        given = {f"{vector}.{axis}": x for axis, x in zip("xyz", getattr(instance.placement, vector), strict=True)}
+        own = {name: Parameter(value=in_si(x), unit=unit) for name, x in given.items() if _value(x) is not None}
+        vectors[vector] = tuple(f"{instance.name}.{name}" if name in own else x for name, x in given.items())
+        found |= own
+    return (instance.placement.model_copy(update=vectors) if found else instance.placement), found
 
 
 def _value(given: Any) -> Fraction | None:
@@ -161,9 +210,11 @@ def shape_digest(
     (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.model.couple`;
     ``constants``: the parameters that numbers are put in for.
 
-    Words and values of parameters are not in it; of the tree's own there is whether they have one.
+    Words and values of parameters are not in it; of the tree's own there is whether they have one. Names of instances
+    are not in it either where nothing but mounts and expressions has them: their numbers are, and how they sort among
+    the other names, as symbols do, and with them the random values that a certificate takes.
     """
-    plain: dict[str, Any] = read_json(spec.canonical())
+    plain = spec.plain()
     if "parameters" in plain:
         plain["parameters"] = {
             name: {**each, "value": each.get("value") is not None} for name, each in plain["parameters"].items()
@@ -174,7 +225,35 @@ def shape_digest(
         for each in plain.get("instances", ())
     ]
     left = {name: x for name, x in plain.items() if name != "name"} | {"instances": instances}
-    return hashlib.sha256(write_json([without_descriptions(left), group, sorted(constants)])).hexdigest()
+    told = [without_descriptions(left), group, sorted(constants)]
+    names = [each["name"] for each in instances]
+    if names and left.keys() <= NAMELESS:
+        others = ("t", "tau.", *left.get("parameters", ()), *left.get("inputs", ()))
+        named = {*(f"{name}." for name in names), *others}
+        told = _numbered([*told, sorted(named)], names)
+        for each in told[0]["instances"]:
+            del each["name"]
+    return hashlib.sha256(write_json(told)).hexdigest()
+
+
+def _numbered(plain: Any, names: Sequence[str]) -> Any:
+    """Plain data with the numbers of instances, ``#0.``, in the places of their ``names`` before dots."""
+    numbers = {name: f"#{k}" for k, name in enumerate(names)}
+    before_dots = re.compile(rf"(?<![\w.])(?:{'|'.join(sorted(map(re.escape, names)))})(?=\.)")
+
+    def text(given: str) -> str:
+        """With the numbers."""
+        return before_dots.sub(lambda found: numbers[found.group()], given)
+
+    def value(given: Any) -> Any:
+        """Of any kind."""
+        if isinstance(given, str):
+            return text(given)
+        if isinstance(given, dict):
+            return {text(name): value(x) for name, x in given.items()}
+        return [value(x) for x in given] if isinstance(given, (list, tuple)) else given
+
+    return value(plain)
 
 
 def limited(result: Program, max_nodes: int) -> Program:

@@ -142,6 +142,84 @@ def test_numbers_that_make_formulas_shorter_belong_to_the_shape() -> None:
     assert (known.hits, len(known)) == (1, 4)
 
 
+def _placed(z: Any, roll: Any) -> dict[str, Any]:
+    tree = _tree()
+    tree["instances"][1]["placement"] = {"position": [0, 0, z], "rpy": [roll, 0, 0]}
+    return tree
+
+
+@pytest.mark.parametrize(("arm", "hand"), [("scara", "parallel-gripper"), ("planar-2r", "simple-pendulum")])
+def test_numbers_of_placements_are_put_in_as_documents_say(arm: str, hand: str) -> None:
+    """Against the document with these numbers, and as lean as coupled with them as fractions, which stay."""
+    parts, known = {"arm": shipped_part(arm), "hand": shipped_part(hand)}, Shapes()
+    definitions = {name: part.definition for name, part in parts.items()}
+    for z, roll in ((0.11, 0.3), ({"value": 270, "unit": "mm"}, "-0.7"), ({"value": -1.5, "unit": "cm"}, 2)):
+        spec = TreeSpec.read(_placed(z, roll))
+        stored = couple_shape(spec, parts, known=known)
+        assert stored.numbers.keys() == {"hand.position.z", "hand.rpy.x"} <= stored.effective
+        model = stored.with_numbers()
+        assert not stored.numbers.keys() & {*model.parameters, *model.effective}
+        certify_tree(spec, definitions, model.summary(), model.program)
+        assert _said(model) == _said(couple(spec, parts))
+    assert (known.hits, len(known)) == (2, 1)
+    structural = [_placed(z, roll) for z, roll in ((0, 0), (1, 0), (0.2, 0), (0, "pi/2"), (0.2, "pi/2"))]
+    for tree in structural:
+        couple(tree, parts, known=known)
+    assert (known.hits, len(known)) == (2, 1 + len(structural))
+
+
+@pytest.mark.parametrize("bound", [{}, {"m": 0.7}, {"m": "2*{0}.m1 + m/3"}], ids=["free", "number", "expression"])
+def test_names_of_instances_are_names_of_symbols_alone(bound: dict[str, Any]) -> None:
+    """Formulas, certificate and all else are those of the slow way; others are names that sort otherwise."""
+    arm, hand, known = shipped_part("planar-2r"), shipped_part("simple-pendulum"), Shapes()
+    names = [
+        ("arm", "hand"),
+        ("b", "h1"),
+        ("d", "l"),
+        ("b", "h1"),
+        ("c", "h"),
+        ("arm", "hand"),
+        ("h", "arm"),
+        ("b", "u"),
+    ]
+    for first, second in names:
+        given = {name: x.format(first) if isinstance(x, str) else x for name, x in bound.items()}
+        tree = _tree(**given) | {"gravity": [0, f"-g*{second}.l/{first}.l1", "-g"]}
+        tree["instances"][0]["name"] = first
+        tree["instances"][1] |= {"name": second, "at": f"{first}.flange", "placement": {"position": [0, 0, 0.3]}}
+        parts = {first: arm, second: hand}
+        assert _said(couple(tree, parts, known=known)) == _said(couple(tree, parts))
+    assert len([key for key in known if " " not in key]) == 3
+    assert known.hits == 5 + 1  # five trees of the first shape, and one time a renamed program
+
+
+def test_names_of_instances_that_mean_another_tree_belong_to_the_shape() -> None:
+    """Other hosts, other instances in expressions, and names that loads have."""
+    part, known = shipped_part("planar-2r"), Shapes()
+    a, b, c = ({"name": name, "substructure": "x"} for name in "abc")
+    at_a, at_b = {"at": "a.flange"}, {"at": "b.flange"}
+    push = {"type": "force", "name": "a", "to": "a.flange", "vector": [1, 0, 0]}
+    trees: list[dict[str, Any]] = [
+        {"instances": [a, b | at_a, c | at_a]},
+        {"instances": [a, b | at_a, c | at_b]},
+        {"instances": [a, b | at_a | {"parameters": {"l1": "a.l1"}}, c | at_a]},
+        {"instances": [a, b | at_a | {"parameters": {"l1": "c.l1"}}, c | at_a]},
+        {"instances": [a, b | at_a, c | at_a], "loads": [push]},
+    ]
+    for tree in trees:
+        couple({"name": "t", "gravity": [0, 0, -9.81], **tree}, dict.fromkeys("abc", part), known=known)
+    assert (known.hits, len(known)) == (0, len(trees))
+
+
+def test_a_wrong_place_put_in_is_found() -> None:
+    parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
+    spec = TreeSpec.read(_placed(0.2, 0.3))
+    stored = couple_shape(spec, parts)
+    wrong = replace(stored, numbers={**stored.numbers, "hand.rpy.x": Fraction(31, 100)}).with_numbers()
+    with pytest.raises(VerificationFailed):
+        certify_tree(spec, {name: part.definition for name, part in parts.items()}, wrong.summary(), wrong.program)
+
+
 def test_where_numbers_cannot_be_put_in_the_tree_is_coupled_with_them() -> None:
     """1/(k - 2) at 2 is refused with its place, and at 3 it is a number."""
     document = _document("simple-pendulum")

@@ -67,10 +67,23 @@ def test_rows_are_what_their_trees_are() -> None:
     assert mass[40:] - mass[:40] == pytest.approx(mass[40] - mass[0])
 
 
+def test_options_of_one_part_at_other_places_have_one_shape() -> None:
+    places = [({"value": 300, "unit": "mm"}, 0.2), (0.4, 0.7), (0.5, 0.2), (0.5, "pi/5")]
+    load = [{"substructure": "acrobot", "placement": {"position": [0, 0, z], "rpy": [0, r, 0]}} for z, r in places]
+    sweep = Sweep(CRANE, choices={"load": load})
+    found = sweep.rows()
+    assert (len(sweep.made), len(found.rows)) == (2, 160)  # pi/5 is no number
+    for k in (0, 41, 82, 123):
+        slow, condition = sweep.slow(k)
+        fast = {name: float(found.columns[name][k]) for name in slow}
+        assert not disagreement(fast, slow, condition)
+    assert len({float(x) for x in found.columns["x"][::40]}) == 3  # heights do not move it
+
+
 def test_ranges_do_not_matter() -> None:
     sweep = Sweep(CRANE)
     whole = sweep.rows()
-    parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))])
+    parts = joined(sweep.plan, [sweep.rows(a, b) for a, b in ((0, 7), (7, 55), (55, 120))], 120)
     assert parts.rows.tolist() == whole.rows.tolist()
     assert all(np.array_equal(parts.columns[name], x) for name, x in whole.columns.items())
 

@@ -74,9 +74,10 @@ def stored_definition(digest: str, library: Library) -> Definition:
         return Definition.stored(read_json(content))
 
 
-def recipe_member(version: StoredVersion) -> ItemDocument:
+def recipe_member(version: StoredVersion, library: Library) -> ItemDocument:
     """The member of an item that says what a part that is a published tree is coupled of."""
-    return {} if version.recipe is None else {"recipe": version.recipe}
+    recipe = library.recipe(version.digest)
+    return {} if recipe is None else {"recipe": recipe}
 
 
 def known_tree(item: ItemDocument, library: Library) -> StoredTree:

@@ -12,15 +12,14 @@ class StoredVersion:
     """A version of a substructure: its name, the digest of its definition, and that of its program.
 
     The blob of ``digest`` is the canonical definition (:meth:`substructures.part.definition.Definition.canonical`), the
-    blob of ``program`` the canonical program, which ``software`` derived; ``recipe``: of a published tree
-    (:mod:`service.content.derivation`); ``not_judged``: outputs that its certificate could not decide.
+    blob of ``program`` the canonical program, which ``software`` derived; ``not_judged``: outputs that its certificate
+    could not decide.
     """
 
     name: str
     digest: str
     program: str
     software: str
-    recipe: str | None = None
     not_judged: tuple[str, ...] = ()
 
 
@@ -61,6 +60,9 @@ class Library(Protocol):
 
     def may_change(self, kind: str, name: str) -> bool:
         """Whether a name belongs to whoever submits."""
+
+    def recipe(self, digest: str) -> str | None:
+        """Of a definition that is a published tree: what it was coupled of (:mod:`service.content.derivation`)."""
 
     def blob(self, digest: str) -> bytes | None:
         """The content of a definition or program."""

@@ -44,7 +44,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
         raise InvalidDocument.at(f"/{kind}", "not-owner", message)
     pinned = {kind: f"{found.name}@{found.digest}", "program": found.program, "software": software()}
     if kind == "substructure":
-        return {**item, **pinned, **recipe_member(known_part(item, library))}, (found.digest, found.program)
+        return {**item, **pinned, **recipe_member(known_part(item, library), library)}, (found.digest, found.program)
     tree = known_tree(item, library)
     parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library, is_stored=True)
     return {**item, **pinned, "parts": parts}, (tree.program, *blobs)

@@ -52,7 +52,7 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     version = known_part(item, library)
     pinned = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
-    return {**item, **pinned, **recipe_member(version)}, (version.digest, version.program)
+    return {**item, **pinned, **recipe_member(version, library)}, (version.digest, version.program)
 
 
 def _pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:

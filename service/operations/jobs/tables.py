@@ -107,8 +107,8 @@ def table_of(connection: Connection, job: Job) -> Table:
 
 def _made(connection: Connection, job: Job) -> Table:
     plan = plan_of(read_json(results.first_item(connection, job.id).encode()))
-    blocks: list[Block] = []
-    finite = rows = proven = 0
+    keys: list[str] = []
+    finite = rows = proven = kept = 0
     ways: Counter[str] = Counter()
     refused: dict[str, dict[str, Any]] = {}
     after = -1
@@ -123,11 +123,10 @@ def _made(connection: Connection, job: Job) -> Table:
             for code, each in told["refused"].items():
                 refused.setdefault(code, {**each, "rows": 0})["rows"] += each["rows"]
             ways.update(told.get("ways", {}))
-            content = results.get_file(connection, item.key, "rows")
-            if content is not None and told["kept"]:
-                arrays = rows_of(content)
-                blocks.append(Block(arrays.pop(ROW), arrays))
-    block = joined(plan, blocks)
+            if told["kept"]:
+                keys.append(item.key)
+                kept += told["kept"]
+    block = joined(plan, _blocks(connection, keys), kept)
     about: dict[str, Any] = {
         "rows": plan.rows,
         "done": rows,
@@ -137,6 +136,15 @@ def _made(connection: Connection, job: Job) -> Table:
     }
     about["ways"] = dict(ways)
     return Table(plan, {ROW: block.rows, **_choices(plan, block.rows), **block.columns}, {**about, "refused": refused})
+
+
+def _blocks(connection: Connection, keys: Sequence[str]) -> Iterator[Block]:
+    """The rows of items, one after the other."""
+    for key in keys:
+        content = results.get_file(connection, key, "rows")
+        if content is not None:
+            arrays = rows_of(content)
+            yield Block(arrays.pop(ROW), arrays)
 
 
 def _choices(plan: Plan, rows: NDArray[np.int64]) -> dict[str, Column]:
