@@ -87,7 +87,7 @@ class Sources:
         if stored is not None:
             return stored.symmetry
         definitions = () if self.judge is None else self.judge.definitions.values()
-        return "connection" if any(each.relations for each in definitions) else "christoffel"
+        return "connection" if self.model.balls or any(each.relations for each in definitions) else "christoffel"
 
     @cached_property
     def defaults(self) -> Mapping[str, float]:

@@ -23,6 +23,7 @@ from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec, read_instance
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model, couple_formulas
 from substructures.tree.units import differing_interfaces
 
@@ -108,6 +109,7 @@ def couple_shape(
     for told in differing_interfaces(spec, {name: part.definition for name, part in parts.items()}):
         raise InvalidDocument.at(told["pointer"], told["code"], told["message"])
     model = couple_formulas(spec, parts, max_nodes, christoffel, names)
+    require_chains(model.balls)
     return Shape(Sources(model, of_parts=of_parts(spec, parts, max_nodes)))
 
 

@@ -32,15 +32,17 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array
+from substructures.mechanics.balls import accelerations as in_joints
+from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
 from substructures.part.outputs import over_formulas
-from substructures.part.relations import of_coordinates
+from substructures.part.relations import of_coordinates, of_rates
 from substructures.part.topology import MOST_CHRISTOFFEL
 from substructures.tree.assembly import Assembly
 from substructures.tree.closures import closure_formulas
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
-from substructures.tree.mounted_part import PlacedPart, ratios_of
+from substructures.tree.mounted_part import PlacedPart, balls_in, balls_of, ratios_of
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
@@ -100,7 +102,7 @@ def model_outputs(
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
-    return of_coordinates(outputs, coupled.ratios)
+    return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
 
 
 def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
@@ -119,12 +121,12 @@ def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
 
 def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequence[Scalar]]:
     """Velocity forces, alone and less the gravity forces, by Newton and Euler's recursion."""
-    bias = bias_forces(coupled.placed, rates)
+    bias = bias_forces(coupled.placed, rates, second=at_constant_rates(balls_in(coupled.placed), rates))
     return {"bias": bias, "nonlinear_effects": [x - q for x, q in zip(bias, coupled.gravity, strict=True)]}
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
-    """Velocities and accelerations of all joints: the symbols, or what relations make of them."""
+    """Velocities and accelerations of all joints: the symbols, or what relations and rates of balls make of them."""
     rates: list[Expr] = []
     accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
@@ -135,7 +137,7 @@ def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
     ratios = ratios_of(over_formulas(assembly.scope.graph), assembly.mounted)
     lift = assembly.scope.graph.lift
     first, second = ([lift(x) for x in ratios.rates(some)] for some in (rates, accelerations))
-    return first, second
+    return first, [lift(x) for x in in_joints(balls_of(assembly.mounted), first, second)]
 
 
 def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:
