@@ -126,3 +126,10 @@ def turned_by(quaternion: Sequence[Scalar], half_square: Scalar) -> Matrix:
         (xy - wz, 1 - (xx + zz), yz + wx),
         (xz + wy, yz - wx, 1 - (xx + yy)),
     )
+
+
+def quaternion_rates(quaternion: Sequence[Scalar], rates: Sequence[Scalar], half: Scalar) -> list[Scalar]:
+    """Q' = 1/2 Q (0, w); ``rates``: w."""
+    w, x, y, z = quaternion
+    a, b, c = (half * rate for rate in rates)
+    return [-(x * a + y * b + z * c), w * a + y * c - z * b, w * b + z * a - x * c, w * c + x * b - y * a]

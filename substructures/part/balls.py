@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Sequence
+from fractions import Fraction
 from typing import Any, Literal, Protocol
 
 from substructures.errors import Fault
 from substructures.expr.graph import Expr, Graph
-from substructures.mechanics.balls import turned_by
-from substructures.mechanics.linear3 import Matrix
+from substructures.mechanics.balls import quaternion_rates, turned_by
+from substructures.mechanics.linear3 import Matrix, apply, transpose
 
 JointType = Literal[
     "revolute", "prismatic", "fixed", "universal", "spherical", "cylindrical", "planar", "free", "ball", "floating"
@@ -100,8 +101,18 @@ def ball_faults(definition: Defined, rates: Collection[str]) -> list[Fault]:
     return faults
 
 
-def quaternion_turn(graph: Graph, names: tuple[str, ...]) -> Matrix:
+def quaternion_turn(graph: Graph, names: Sequence[str]) -> Matrix:
     """E of the quaternion with these names: components in the axes before the joint -> in those of the body."""
     quaternion: list[Expr] = [graph.symbol(name) for name in names]
     square = graph.sum(x * x for x in quaternion)
     return turned_by(quaternion, 2 / square)
+
+
+def position_rates(graph: Graph, positions: Sequence[str], rates: Sequence[Expr]) -> list[Expr]:
+    """p' = R v and Q' = 1/2 Q (0, w) of a floating joint, of a ball joint the second alone; ``rates``: v and w."""
+    quaternion = [graph.symbol(name) for name in positions[-4:]]
+    turned = quaternion_rates(quaternion, rates[-3:], graph.number(Fraction(1, 2)))
+    if len(positions) == len(quaternion):
+        return [graph.lift(x) for x in turned]
+    back = transpose(quaternion_turn(graph, positions[-4:]))
+    return [graph.lift(x) for x in (*apply(back, (rates[0], rates[1], rates[2])), *turned)]

@@ -73,6 +73,23 @@ def test_it_is_evaluated(satellite: TestClient) -> None:
     assert short.json()["errors"][0]["code"] == "wrong-length"
 
 
+def test_it_moves(satellite: TestClient) -> None:
+    start = {"q": [0, 0, 0, 1, 0, 0, 0, 0], "qd": [0, 0, 0, 0.1, 1, 0.2, 5], "span": [0, 3], "count": 4}
+    found = satellite.post("/v1/trees/satellite/simulations", json=start)
+    assert found.status_code == 200, found.text
+    told = found.json()
+    assert told["is_right"] is True
+    assert told["positions"] == POSITIONS
+    assert np.array(told["q"]).shape == (4, 8)
+    # free fall
+    np.testing.assert_allclose(np.array(told["q"])[:, 2], -9.81 / 2 * np.arange(4) ** 2, atol=1e-7)
+    for kind in ("text/csv", "image/svg+xml", "application/x-npz"):
+        answer = satellite.post("/v1/trees/satellite/simulations", json=start, headers={"Accept": kind})
+        assert answer.status_code == 200, (kind, answer.text[:300])
+    wrong = satellite.post("/v1/trees/satellite/simulations", json={**start, "friction": "exact"})
+    assert wrong.json()["errors"][0]["code"] == "not-supported", wrong.text
+
+
 @pytest.mark.parametrize(
     ("path", "body"),
     [
