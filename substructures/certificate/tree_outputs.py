@@ -13,6 +13,7 @@ from substructures.certificate.bodies import (
     Bodies,
     Frame,
     coordinates_of,
+    in_order,
     massless,
 )
 from substructures.certificate.by_coordinate import of_coordinates, rates
@@ -90,6 +91,8 @@ def _outputs(
         gradient_instead(result, "potential_energy", acting, known, begin if is_known else UNKNOWN, ways)
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
+    if any(joint.group for joint in bodies.joints):
+        _position_rates(result, tree, definitions, values)
     limits(result, bodies, definitions, loads)
     friction(result, bodies, tree, numbers, definitions, loads)
     friction_load(result, bodies, definitions, loads)
@@ -101,6 +104,21 @@ def _outputs(
     result = of_coordinates(result, bodies)
     result.update(more)
     return of_free(result, list(coordinates_in(tree, definitions)), driven)
+
+
+def _position_rates(result: Outputs, tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> None:
+    """The changes of what a state consists of: q', and what the rates of ball joints do."""
+    found, order = dict[str, Ball](), list[str]()
+    for rate, way in _ways(tree, definitions, values).items():
+        for name, x in way.items():
+            found[name] = found.get(name, arb(0)) + x * values[f"{rate}'"]
+    for instance in hosts_first(tree):
+        definition = definitions[instance["name"]]
+        for body in in_order(definition):
+            own = positions_of(body) or [q for q in coordinates_of(body) if mover(definition, q) == q]
+            order += [f"{instance['name']}.{name}" for name in own]
+    rates = [found[name] if name in found else values[f"{name}'"] for name in order]
+    result.array("position_rates", (len(order),)).update({(i,): x for i, x in enumerate(rates)})
 
 
 def _ways(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> dict[str, dict[str, Ball]]:

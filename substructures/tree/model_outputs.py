@@ -17,6 +17,7 @@ position               frames 3     origin of every body frame and port in the w
 rotation               frames 3 3   from the axes of the frame to those of the world
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
+position_rates         m            of a state q with ball joints: q', p' = R v and Q' = 1/2 Q (0, w)
 limits                 n 2          lowest and highest value of the coordinates that have limits
 friction               n 4          F_c, F_s, v_s (0: none) and v_0 of the coordinates that have dry friction
 friction_load          n 2          what the force that a joint transmits adds to F_c: beside its axis, along it
@@ -35,6 +36,8 @@ from substructures.expr.program import Formulas, Program, array
 from substructures.mechanics.balls import accelerations as in_joints
 from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.mechanics.state_names import ball_rows, positions_of
+from substructures.part.balls import position_rates
 from substructures.part.outputs import over_formulas
 from substructures.part.relations import of_coordinates, of_rates
 from substructures.part.topology import MOST_CHRISTOFFEL
@@ -99,10 +102,27 @@ def model_outputs(
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
     outputs |= {name: found for name, found in _joint_laws(assembly, n).items() if wanted(name)}
+    if assembly.balls and names is None:
+        outputs["position_rates"] = _position_rates(assembly, rates)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
     return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
+
+
+def _position_rates(assembly: Assembly, rates: Sequence[Scalar]) -> Formulas:
+    """q', and of ball joints p' = R v and Q' = 1/2 Q (0, w); ``rates``: of all joints, as formulas."""
+    graph, pairs = assembly.scope.graph, list(zip(assembly.instances, assembly.mounted, strict=True))
+    names = [f"{i.name}.{joint.coordinate}" for i, m in pairs for joint in m.part.topology.joints]
+    found, movers = (
+        dict(zip(names, rates, strict=True)),
+        [m.first + c for _, m in pairs for c in m.part.topology.movers],
+    )
+    for ball in assembly.balls:
+        moved = position_rates(graph, ball.positions, [graph.lift(rates[a]) for a in ball.joints])
+        found |= zip(ball.positions, moved, strict=True)
+    order = positions_of([names[a] for a in movers], ball_rows(assembly.balls, names))
+    return array((len(order),), lambda i: found[order[i]])
 
 
 def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:

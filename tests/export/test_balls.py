@@ -23,6 +23,7 @@ QUANTITIES = (
     "bias",
     "kinetic_energy",
     "potential_energy",
+    "position_rates",
     "position",
 )
 

@@ -121,6 +121,11 @@ def test_euler_and_lagrange_by_hand() -> None:
     J = np.diag([1 + 2 * 0.3**2, 1 + 2 * 0.3**2, 0.5])
     np.testing.assert_allclose(found["metric"], J, rtol=1e-14)
     np.testing.assert_allclose(found["bias"], np.cross(w, J @ w), rtol=1e-13, atol=1e-15)
+    # Q' = 1/2 Q (0, w) of Q = s (1, e_y)
+    moved = evaluate(model, "position_rates", [s, 0, s, 0], w)
+    half = s / 2 * np.array([-w[1], w[0] + w[2], w[1], w[2] - w[0]])
+    np.testing.assert_allclose(moved["position_rates"], half, rtol=1e-14)
+    assert moved.labels == {"positions": model.positions}
     # gravity (0, 0, -g) of the world is (g, 0, 0) in the body
     np.testing.assert_allclose(found["gravity"], np.cross([0, 0, 0.6], [9.81, 0, 0]), rtol=1e-13, atol=1e-15)
     assert found["kinetic_energy"] == pytest.approx(w @ J @ w / 2)

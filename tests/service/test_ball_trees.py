@@ -45,7 +45,7 @@ def satellite(client: TestClient) -> TestClient:
 
 def test_it_is_shown_and_printed(satellite: TestClient) -> None:
     assert satellite.get("/trees/satellite").status_code == 200
-    for name in ("metric", "christoffel", "forces", "potential_energy", "bias"):
+    for name in ("metric", "christoffel", "forces", "potential_energy", "bias", "position_rates"):
         for kind in MEDIA_TYPES:
             answer = satellite.get(f"/v1/trees/satellite/{name}?format={kind}")
             assert answer.status_code == 200, (name, kind, answer.text[:300])
