@@ -123,7 +123,7 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
     given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
         given = by_name(model, given, name)
-    values, names = numeric(given, f"/{name}"), tuple(model.state_units[name])
+    values, names = numeric(given, f"/{name}"), model.positions if name == "q" else model.coordinates
     if len(names) == 1 and (values.ndim == 0 or (values.ndim == 1 and len(values) != 1)):
         # one number for one coordinate, or one for each state, as MATLAB writes lists of one
         return values.reshape(-1, 1), values.ndim == 0
@@ -164,7 +164,7 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
     """(N, n) of columns by coordinate, in the order of the model; (n,) of numbers. Raises InvalidArgument below
     ``/name``.
     """
-    names = tuple(model.state_units[name])
+    names = model.positions if name == "q" else model.coordinates
     unknown = [str(key) for key in given if key not in names]
     faults = [
         Fault(
