@@ -4,7 +4,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import numpy as np
@@ -29,6 +29,8 @@ CHAINS = {
     "planar": ("Px", "Py", "Rz"),
     "free": ("Px", "Py", "Pz", "Rz", "Ry", "Rx"),
 }
+#: with quaternions, and rates in the axes of the body
+WHOLE = {"ball": pin.JointModelSpherical, "floating": pin.JointModelFreeFlyer}
 
 
 def turn(axis: Array, angle: float) -> Array:
@@ -51,11 +53,14 @@ def rpy(angles: Any) -> Array:
 
 @dataclass
 class Engine:
-    """Model, frames by name (joint and constant placement in it), index of every coordinate."""
+    """Model, frames by name (joint and constant placement in it), index of every coordinate, or rate of a ball joint;
+    ``starts``: by the first one of these rates, where its state begins.
+    """
 
     model: pin.Model
     frames: dict[str, tuple[int, pin.SE3]]
     index: dict[str, int]
+    starts: dict[str, int] = field(default_factory=dict)
 
     def order(self, coordinates: list[str]) -> list[int]:
         return [self.index[c] for c in coordinates]
@@ -85,7 +90,13 @@ def _add(engine: Engine, body: Plain) -> None:
     place = place * _seat(joint)
     names = joint.get("coordinate", [])
     names = [names] if isinstance(names, str) else names
-    for (letter, axis), name in zip(CHAINS[joint["type"]], names, strict=True):
+    if joint["type"] in WHOLE:
+        parent = engine.model.addJoint(parent, WHOLE[joint["type"]](), place, body["name"])
+        first = engine.model.joints[parent]
+        engine.index |= {name: first.idx_v + i for i, name in enumerate(joint["velocities"])}
+        engine.starts[joint["velocities"][0]] = first.idx_q
+        place = pin.SE3.Identity()
+    for (letter, axis), name in zip(CHAINS.get(joint["type"], ()), names, strict=True):
         n = np.eye(3)["xyz".index(axis)]
         kind: Any = UNIT[letter]["xyz".index(axis)]()
         if "axis" in joint:

@@ -76,6 +76,12 @@ TREES: dict[str, Plain] = {
         "velocity_constraints": [{"type": "linear", "name": "belt", "expression": "x.a' - 0.5*x.b'"}],
     },
     "contacts": {"instances": [INSTANCE], "contacts": [{"name": "foot", "point": "x.tip"}]},
+    "balls": {
+        "instances": [
+            {"name": "hull", "definition": {**FREE, "bodies": [body("hull", "base", {"type": "floating"})]}},
+            {**INSTANCE, "at": "hull.deck"},
+        ],
+    },
 }
 
 
@@ -83,8 +89,9 @@ TEXT = """
 Each analysis and each formula of analyses was tried on a small tree of each kind: a cart with two pendulums, one
 coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), a cart whose
 motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity constraint, a point above the
-floor (`contacts`). **no**: the request is refused with the code `has-closures`, `has-driven`, `has-ignored`,
-`has-velocity-constraints` or `has-contacts`, and told what to take in its place. Formulas of the tree itself (`metric`,
+floor (`contacts`), a floating body below (`balls`). **no**: the request is refused with the code `has-closures`,
+`has-driven`, `has-ignored`, `has-velocity-constraints`, `has-contacts` or `has-balls`, and told what to take in its
+place. Formulas of the tree itself (`metric`,
 `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
 velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the `no` of all.
 """
@@ -101,7 +108,8 @@ def request_of(name: str, source: Source) -> Plain:
     """A small request for an analysis of a tree."""
     model = source.model
     moving = "x.b"
-    q = [0.2 if c != moving else 0.5 for c in model.coordinates]
+    turned = {name: k == 0 for ball in model.balls for k, name in enumerate(ball["positions"][-4:])}
+    q = [float(turned.get(c, 0.5 if c == moving else 0.2)) for c in model.positions]
     motion = {
         k: np.random.default_rng(i).uniform(-1, 1, (60, len(q))).tolist()
         for i, k in enumerate(("q", "qd", "qdd", "tau"))
@@ -135,7 +143,7 @@ def request_of(name: str, source: Source) -> Plain:
         "optimal-controls": {**control, "iterations": 1},
         "optimal-parameters": {"vary": {"x.l": [0.4, 0.5]}, "columns": {"m": "mass"}, "minimise": "x.l", "starts": 1},
         "loop-states": {"q": q},
-        "reduced-equations": {"independent": ["x.a", moving], "start": dict(zip(model.coordinates, q, strict=True))},
+        "reduced-equations": {"independent": ["x.a", moving], "start": dict(zip(model.positions, q, strict=True))},
         "excitations": {name: motion[name] for name in ("q", "qd", "qdd")},
         "identifications": motion,
     }[name]

@@ -23,7 +23,7 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     # a motion has told of the limits itself, which it may also leave between its results
     told = type(request).__name__ in NEAR or motion is not None
     q: Any = None if told else getattr(request, "q", None)
-    states = np.zeros((0, source.model.dof)) if q is None else read_states(source.model, {"q": q}, None).q
+    states = np.zeros((0, len(source.model.positions))) if q is None else read_states(source.model, {"q": q}, None).q
     notices = value_warnings(source.sources, given, inputs, states)
     notices += not_judged_warnings(name for name in DYNAMICS if name in source.model.program.not_judged)
     if getattr(request, "friction", None) == "loaded":
@@ -31,5 +31,5 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     # a model with its definitions has told of relations itself
     judge = source.sources.judge if motion is not None and source.model.plausibility is None else None
     if motion is not None and judge is not None:
-        notices += judge.apart(motion.coordinates, motion.q)
+        notices += judge.apart(source.model.positions, motion.q)
     return [*notices, *(motion.warnings if motion else ())]

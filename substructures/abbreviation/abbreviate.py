@@ -27,6 +27,7 @@ from substructures.expr.hoist import hoisted
 from substructures.expr.program import Program
 from substructures.quantities.formulas import kept
 from substructures.quantities.quantity import DERIVED
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 #: told how much is done, may raise
@@ -124,6 +125,7 @@ def abbreviate(
     how fast a machine is: the same request has the same result. Raises InvalidArgument (``/quantity``, ``/simplify``,
     ``/ranges/name``, ``/parameters/name``), TooLarge.
     """
+    require_chains(model.balls)
     simplify = _criterion(simplify)
     whole = _program(model, quantity)
     ranges = dict(ranges or {})

@@ -58,9 +58,10 @@ def _title(motion: Trajectory) -> str:
 
 
 def _coordinates(motion: Trajectory, joints: str, kind: str) -> Iterator[Line]:
+    columns = motion.positions or motion.coordinates
     for a, name in enumerate(motion.coordinates):
-        if joints[a] == kind:
-            yield Line(name, motion.t, motion.q[:, a])
+        if joints[a] == kind and name in columns:
+            yield Line(name, motion.t, motion.q[:, columns.index(name)])
 
 
 def _drifts(motion: Trajectory) -> Iterator[Line]:

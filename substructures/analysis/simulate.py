@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import Any
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
+from substructures.analysis.equations.geodesics import without_forces
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     Closed,
     KnifeEdge,
@@ -14,8 +15,8 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     Rolling,
     constraints_of,
 )
+from substructures.analysis.motion.ball_motion import simulate_balls
 from substructures.analysis.motion.friction.transmitted import with_reactions
-from substructures.analysis.motion.geodesics import without_forces
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.load_powers import with_powers
@@ -30,14 +31,14 @@ from substructures.analysis.motion.problems.kinds import (
 )
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import Outputs
-from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal, Table
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.errors import Fault, InvalidArgument
 from substructures.tree.document import require_undriven, require_unignored
-from substructures.tree.given.ties import require_untied
+from substructures.tree.given.ties import require_chains, require_untied
 from substructures.tree.model import Model
 
 __all__ = [
@@ -130,7 +131,7 @@ def simulate(
     elif isinstance(kind, ClosedMotion):
         motion = simulate_closed(ClosedProblem(**given, kind=kind))
     else:
-        motion = simulate_tree(TreeProblem(**given, kind=kind if isinstance(kind, TreeMotion) else TreeMotion()))
+        motion = _tree_motion(given, kind if isinstance(kind, TreeMotion) else TreeMotion(), outputs)
     found = with_limits(model, parameters, motion)
     if outputs.reactions is not None:
         found = with_reactions(model, outputs.reactions, found, given["start"])
@@ -139,6 +140,16 @@ def simulate(
         moved = tuple(kind.prescribed) if isinstance(kind, ClosedMotion) else ()
         found = with_powers(model, outputs.powers, found, given["start"], moved, integrator.drift_limit)
     return found
+
+
+def _tree_motion(given: Mapping[str, Any], kind: TreeMotion, outputs: Outputs) -> Trajectory:
+    """Of a tree without closures."""
+    balls = given["model"].balls
+    if not balls:
+        return simulate_tree(TreeProblem(**given, kind=kind))
+    if outputs.reactions is not None or outputs.powers is not None or kind.contacts:
+        require_chains(balls, "leave 'reactions', 'powers' and 'contacts' out")
+    return simulate_balls(MotionProblem(**given), kind)
 
 
 def _usual(model: Model) -> MotionKind:

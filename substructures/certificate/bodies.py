@@ -28,7 +28,7 @@ from substructures.certificate.linear import (
     zeros,
 )
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.relations import Related, mover, slope_of
+from substructures.certificate.relations import POSITIONS, Related, is_ball, mover, place_of, rates_of, slope_of
 
 GROUND = -1
 #: (prismatic, axis of the frame before it) of every one degree of freedom joint in a joint type
@@ -41,6 +41,8 @@ CHAINS: dict[str, tuple[tuple[bool, int], ...]] = {
     "cylindrical": ((False, 2), (True, 2)),
     "planar": ((True, 0), (True, 1), (False, 2)),
     "free": ((True, 0), (True, 1), (True, 2), (False, 2), (False, 1), (False, 0)),
+    "ball": ((False, 0), (False, 1), (False, 2)),
+    "floating": ((True, 0), (True, 1), (True, 2), (False, 0), (False, 1), (False, 2)),
 }
 NONE = (0, 0, 0)
 
@@ -99,7 +101,8 @@ class Joint:
 
     ``parent``: the joint that carries it. ``A``, ``O``: joint frame k and its origin O_k; ``tau``: shift of the body
     frame along the axis. ``w``, ``v``: angular velocity, and velocity of what is at the world's origin, for q' = 1.
-    ``mover``: the coordinate that moves it, its own or that of a relation, and ``slope`` dq / d mover.
+    ``mover``: the coordinate that moves it, its own or that of a relation, and ``slope`` dq / d mover. ``group``: the
+    joints of a ball or floating one.
     """
 
     coordinate: str
@@ -113,6 +116,7 @@ class Joint:
     armature: Ball
     mover: str
     slope: Ball
+    group: range = range(0)
 
     @property
     def body(self) -> Matrix:
@@ -163,6 +167,8 @@ class Bodies:
         phi, tau = numbers.read(joint.get("phi", 0)), numbers.read(joint.get("tau", 0))
         if joint["type"] == "fixed":
             frame = frame.placed(turn(2, phi), vector(arb(0), arb(0), tau))
+        if is_ball(body):
+            frame = frame.placed(*place_of(body, numbers.names))
         for step, (coordinate, (prismatic, axis)) in enumerate(_steps(body)):
             names = f"{prefix}{coordinate}", f"{prefix}{movers[step][0]}", movers[step][1]
             frame = self._moved(frame, joint, step, names, prismatic, axis, (phi, tau), numbers)
@@ -190,7 +196,7 @@ class Bodies:
         turned = onto_third_axis(axis)
         if "axis" in joint:
             turned = with_third_axis(numbers.vector(joint["axis"])) * turned
-        q = numbers.names[coordinate.rpartition(".")[2]]
+        q = arb(0) if joint["type"] in POSITIONS else numbers.names[coordinate.rpartition(".")[2]]
         # revolute: phi = q + phi0, tau constant;   prismatic: tau = q + tau0, phi constant
         phi, tau = (offsets[0], q + offsets[1]) if prismatic else (q + offsets[0], offsets[1])
         A = frame.A * turned * turn(2, phi)
@@ -198,8 +204,10 @@ class Bodies:
         # of a turn about the axis z through O: w = z, and O x z at the world's origin
         w, v = (zeros(3, 1), z) if prismatic else (z, cross(frame.p, z))
         armature = numbers.read(of_step(joint.get("armature", 0), step))
-        self.joints.append(Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, armature, by, rate))
-        k = len(self.joints) - 1
+        k, in_one = len(self.joints), joint["type"] in POSITIONS
+        group = range(k - step, k - step + len(CHAINS[joint["type"]])) if in_one else range(0)
+        row = Joint(coordinate, frame.carrier, prismatic, A, frame.p, tau, w, v, armature, by, rate, group)
+        self.joints.append(row)
         self.own[k] = massless()
         return Frame(k, A * turned.transpose(), self.joints[k].body)
 
@@ -249,7 +257,9 @@ def _steps(body: Plain) -> list[tuple[str, tuple[bool, int]]]:
 
 
 def coordinates_of(body: Plain) -> list[str]:
-    """The names of the coordinates of a body's joint; ``q_<body>``, with a number where there are several."""
+    """Names of the coordinates, or rates, of a body's joint; ``q_<body>``, with a number where there are several."""
+    if is_ball(body):
+        return rates_of(body)
     given, n = body["joint"].get("coordinate"), len(CHAINS[body["joint"]["type"]])
     if given is not None:
         return [given] if isinstance(given, str) else list(given)

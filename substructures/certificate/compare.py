@@ -220,7 +220,9 @@ def _stored(name: str, program: Stored, values: Values, found: list[Ball], state
         raise VerificationFailed(f"{name} is {kept}, and has to be {wanted}")
     if values.along:
         entry = next(iter(output.entries), None)
-        stored = stored_gradient(program, entry, found, {n: arb(x) for n, x in state.items()}, values.along)
+        stored = stored_gradient(
+            program, entry, found, {n: arb(x) for n, x in state.items()}, values.along, values.ways
+        )
         return {index: x for index, x in stored.items() if index in values.entries}
     return {tuple(index): found[entry] for index, entry in zip(output.index, output.entries, strict=True)}
 

@@ -10,7 +10,7 @@ from typing import Any
 from substructures.certificate.bodies import CHAINS, coordinates_of, in_order, limits_of
 from substructures.certificate.closures import ROWS
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.relations import moved, mover
+from substructures.certificate.relations import is_ball, moved, mover, positions_of, rates_of
 
 #: fields of a tree that take coordinates out of its equations
 GIVEN = ("driven", "ignored")
@@ -40,7 +40,17 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     found = {"coordinates": free, "joints": joints, "frames": frames, "closures": closures, "limited": limited}
     reduction = reduced(tree, definitions)
     more = {"reduction": reduction if any(reduction.values()) else {}, **ties_in(tree)}
+    more["balls"] = list(_balls_in(tree, definitions))
     return found | {name: x for name, x in (given | more).items() if x}
+
+
+def _balls_in(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[dict[str, list[str]]]:
+    """What states have in place of the rates of ball and floating joints."""
+    for instance in hosts_first(tree):
+        prefix = f"{instance['name']}."
+        for body in filter(is_ball, in_order(definitions[instance["name"]])):
+            kinds = {"positions": positions_of(body), "velocities": rates_of(body)}
+            yield {kind: [prefix + name for name in names] for kind, names in kinds.items()}
 
 
 def _rows_of(closure: Plain) -> dict[str, Any]:

@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from flint import arb
 
-from substructures.certificate.bodies import GROUND, Bodies, Moments, massless, theta_of
+from substructures.certificate.bodies import GROUND, Bodies, Joint, Moments, massless, theta_of
 from substructures.certificate.linear import Ball, Matrix, cross, dot, identity, outer, side_by_side, skew, zeros
 
 
@@ -82,6 +82,15 @@ def kappa(c: Carried) -> Matrix:
     return v * c.V * m - v * skew(s) * c.W + skew(w * s) * c.V + J * w * c.W
 
 
+def halved(mass: Moments, b: Joint, c: Joint) -> tuple[Matrix, Matrix]:
+    """int 1/2 (w_b x u_c + w_c x u_b) dm and int x x 1/2 (w_b x u_c + w_c x u_b) dm of joints that move as one."""
+    m, s, J = mass.m, mass.s, mass.J
+    # int w x (v + u x x) = w x (m v + u x s);   int x x (w x (v + u x x)) = s x (w x v) + (J w) x u
+    force = cross(b.w, c.v * m + cross(c.w, s)) + cross(c.w, b.v * m + cross(b.w, s))
+    moment = cross(s, cross(b.w, c.v) + cross(c.w, b.v)) + cross(J * b.w, c.w) + cross(J * c.w, b.w)
+    return force * arb("0.5"), moment * arb("0.5")
+
+
 @dataclass(frozen=True)
 class Motion:
     """Of a body: angular velocity and acceleration w, dw; velocity v of what is at the world's origin, and dv = d v/dt
@@ -114,9 +123,12 @@ def motions(
     found = {GROUND: Motion(zero, zero, zero, zero if world is None else world)}
     for k, joint in enumerate(bodies.joints):
         before, rate = found[joint.parent], rates[k]
-        # (w, v)_k' = (w_p x w_k, w_p x v_k + v_p x w_k): the axis moves with the body before it
-        dw = cross(before.w, joint.w) * rate
-        dv = (cross(before.w, joint.v) + cross(before.v, joint.w)) * rate
+        # (w, v)_k' = (w_p x w_k, w_p x v_k + v_p x w_k): the axis moves with the body before it, or behind its group
+        w, v = before.w, before.v
+        for a in (a for a in joint.group if a >= k):
+            w, v = w + bodies.joints[a].w * rates[a], v + bodies.joints[a].v * rates[a]
+        dw = cross(w, joint.w) * rate
+        dv = (cross(w, joint.v) + cross(v, joint.w)) * rate
         if second is not None:
             dw, dv = dw + joint.w * second[k], dv + joint.v * second[k]
         w, v = before.w + joint.w * rate, before.v + joint.v * rate

@@ -6,7 +6,7 @@ here.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 from flint import arb, arb_mat
@@ -110,3 +110,25 @@ def with_third_axis(direction: Matrix) -> Matrix:
     first = cross(unit(smallest), third)
     first = first / dot(first, first).sqrt()
     return side_by_side((first, cross(third, first), third))
+
+
+def quaternion_product(p: Sequence[Ball], q: Sequence[Ball]) -> tuple[Ball, Ball, Ball, Ball]:
+    """p q of quaternions (w, x, y, z)."""
+    (a, b, c, d), (e, f, g, h) = p, q
+    return (
+        a * e - b * f - c * g - d * h,
+        a * f + b * e + c * h - d * g,
+        a * g - b * h + c * e + d * f,
+        a * h + b * g - c * f + d * e,
+    )
+
+
+def turn_of(quaternion: Sequence[Ball]) -> Matrix:
+    """The matrix whose columns are Q e_i Q^-1."""
+    w, x, y, z = quaternion
+    zero, one = arb(0), arb(1)
+    norm = sum((q * q for q in quaternion), zero)
+    back = w / norm, -x / norm, -y / norm, -z / norm
+    axes = (zero, one, zero, zero), (zero, zero, one, zero), (zero, zero, zero, one)
+    columns = [quaternion_product(quaternion_product(quaternion, e), back)[1:] for e in axes]
+    return arb_mat(3, 3, [column[i] for i in range(3) for column in columns])

@@ -140,7 +140,9 @@ class _OwnFrames(Between):
         if _measures(load.get("stiffness", 0), load.get("length", 0)):
             return
         if found.depends(load.get("stiffness", 0), load.get("length", 0)):
-            if _is_gradient(found, load, (k, length - l0), gathered(self.bodies, reach)):
+            if not any(self.bodies.joints[a].group for a in found.joints) and _is_gradient(
+                found, load, (k, length - l0), gathered(self.bodies, reach)
+            ):
                 found.bent.append(gathered(self.bodies, pulls))
         else:
             found.potential += k * (length - l0) * (length - l0) * arb(fmpq(1, 2))
@@ -175,6 +177,9 @@ def joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
     name = found.bodies.joints[a].coordinate.rpartition(".")[2]
     given = [of_step(joint.get(x, 0), step) for x in ("stiffness", "rest", "damping")]
     k, rest, c = map(numbers.read, given)
+    if found.bodies.joints[a].group:  # of rates there are no positions
+        _add(found.applied, {a: numbers.names[f"tau.{name}"] - c * found.rate(a)})
+        return
     stretch = numbers.names[name] - rest
     effort = numbers.names[f"tau.{name}"] if name in found.coordinates else arb(0)
     _add(found.applied, {a: effort - k * stretch - c * found.rate(a)})
@@ -228,7 +233,7 @@ def _stops(found: Forces, a: int, q: Ball, stop: Plain | None, limits: Sequence[
 def _joint_load(found: Forces, load: Plain) -> None:
     a = found.index[found.prefix + load["coordinate"]]
     _add(found.applied, {a: found.numbers.read(load["force"])})
-    if not _measures(load["force"]):
+    if not _measures(load["force"]) and not found.bodies.joints[a].group:
         found.given.setdefault(a, []).append(steps_of(load["force"]))
 
 
@@ -325,6 +330,8 @@ def _changes(found: Forces, load: Plain, frame: Frame, vector: Matrix) -> dict[i
 def _steady(found: Forces, load: Plain, Q: Mapping[int, Ball], rates: Mapping[tuple[int, int], Ball]) -> None:
     """Notes a load of coordinates and parameters alone whose curl d_b Q_a - d_a Q_b is zero; ``rates``: d_b Q_a."""
     known = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
+    if any(found.bodies.joints[a].group for a in Q):
+        return  # what turns a ball joint is not looked at
     rates = _gathered_twice(found, rates)
     curl = (rate - rates.get((b, a), arb(0)) for (a, b), rate in rates.items())
     if all(names_of(steps_of(x)) <= known for x in load["vector"]) and all(x.contains(0) for x in curl):

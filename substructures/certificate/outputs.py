@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
 from flint import arb
@@ -17,7 +17,8 @@ class Values:
     ``scale``: what zeros are small against, where that is more than the largest element; ``others``: what elements may
     be as well, and whether something is left out then. ``along``: of a scalar that is known by its derivatives; then
     the elements are those by these symbols, coordinates, and behind them its value where all of them are zero (with
-    velocities, inputs and the time halved).
+    velocities, inputs and the time halved). ``ways``: of rates among them, how symbols change for 1; these symbols stay
+    as they are where coordinates are zero.
     """
 
     shape: tuple[int, ...]
@@ -26,6 +27,7 @@ class Values:
     scale: Ball = field(default_factory=lambda: arb(0))
     others: dict[tuple[int, ...], list[tuple[Ball, bool]]] = field(default_factory=dict)
     along: tuple[str, ...] = ()
+    ways: Mapping[str, Mapping[str, Ball]] = field(default_factory=dict)
     _size: Ball = None
 
     def like(self, index: tuple[int, ...], stored: Ball) -> tuple[Ball, bool]:

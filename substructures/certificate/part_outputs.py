@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
 from flint import arb
 
@@ -18,14 +18,14 @@ from substructures.certificate.bodies import (
     massless,
 )
 from substructures.certificate.by_coordinate import along, of_coordinates
-from substructures.certificate.dynamics import Carried, carried_by_joints, kappa
-from substructures.certificate.linear import Ball, Matrix, identity, side_by_side, skew, zeros
+from substructures.certificate.dynamics import Carried, carried_by_joints, halved, kappa
+from substructures.certificate.linear import Ball, Matrix, dot, identity, side_by_side, skew, zeros
 from substructures.certificate.loads import forces
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.outputs import Outputs
-from substructures.certificate.potentials import gradient_instead, is_found
-from substructures.certificate.relations import Related, mover, written
-from substructures.certificate.slopes import at_start
+from substructures.certificate.outputs import Outputs, Values, images_of
+from substructures.certificate.potentials import gradient_instead, is_found, ways_of
+from substructures.certificate.relations import Related, is_ball, mover, positions_of, written
+from substructures.certificate.slopes import at_start, without
 from substructures.expr.operations import Output
 
 #: with more Christoffel symbols than this a part or tree is stored without them (notation.md, section 6)
@@ -40,7 +40,8 @@ def part_symbols(definition: Plain) -> dict[str, str]:
     kinds |= dict.fromkeys(definition.get("inputs", ()), "input") | {"t": "time"}
     for body in definition.get("bodies", ()):
         for q in (q for q in coordinates_of(body) if mover(definition, q) == q):
-            kinds |= {q: "coordinate", f"{q}'": "velocity", f"tau.{q}": "input"}
+            kinds |= {f"{q}'": "velocity", f"tau.{q}": "input"} | ({} if is_ball(body) else {q: "coordinate"})
+        kinds |= dict.fromkeys(positions_of(body), "coordinate")
         kinds |= dict.fromkeys(inertia_names(body["name"]), "inertia")
     return kinds
 
@@ -61,7 +62,7 @@ def part_outputs(definition: Plain, values: Mapping[str, Ball], stored: Mapping[
     carried, result = carried_by_joints(bodies, masses), Outputs()
     _joints(result, bodies, masses, carried)
     _factors(result, len(bodies.joints), stored)
-    _interface(result, carried, is_large(bodies, stored))
+    _interface(result, bodies, carried, is_large(bodies, stored))
     equations(result, bodies, carried, stored)
     _frames(result, bodies, definition)
     _loads(result, bodies, definition, values)
@@ -82,11 +83,12 @@ def _loads(result: Outputs, bodies: Bodies, definition: Plain, values: Mapping[s
     result.array("applied", (n,)).update({(a,): Q for a, Q in load.applied.items()})
     if is_found([load]):
         # V of the others where all coordinates are zero
-        start, rest = Bodies(), at_start(values, part_symbols(definition))
+        ways = ways_of(definition.get("bodies", ()), values)
+        start, rest = Bodies(), at_start(values, without(part_symbols(definition), ways))
         numbers = Numbers(Related(definition, rest))
         start.add(definition, numbers, Frame(GROUND, identity(), zeros(3, 1)))
         known = forces(start, definition, numbers, load.joints, like=load).potential
-        gradient_instead(result, "potential", [load], load.slopes, known)
+        gradient_instead(result, "potential", [load], load.slopes, known, ways)
     else:
         result.scalar("potential", load.potential)
     result.array("load.at", (wrenches, 3))
@@ -179,7 +181,7 @@ def _inertia(result: Outputs, prefix: str, shape: tuple[int, ...], some: list[tu
         result.matrix(names[2], (*shape, 3, 3), lead, x.J)
 
 
-def _interface(result: Outputs, carried: list[Carried], large: bool) -> None:
+def _interface(result: Outputs, bodies: Bodies, carried: list[Carried], large: bool) -> None:
     """What couples the part to any host, in the interface frame about its origin."""
     n = len(carried)
     for name, shape in (("f", (n, 3)), ("n", (n, 3)), ("K", (n, 3, 3))):
@@ -196,6 +198,10 @@ def _interface(result: Outputs, carried: list[Carried], large: bool) -> None:
         at = [(b, c) for b in some.path]
         result.columns("F", (n, n, 3), at, F)
         result.columns("N", (n, n, 3), at, N)
+        for b in (b for b in bodies.joints[c].group if b < c):
+            force, moment = halved(some.moments, bodies.joints[b], bodies.joints[c])
+            result.matrix("F", (n, n, 3), (b, c), force)
+            result.matrix("N", (n, n, 3), (b, c), moment)
         result.columns("kappa", (n, n, 3), at, kappa(some))
         for i in range(3):  # u_c x u_c = 0
             del result["kappa"].entries[c, c, i]
@@ -212,6 +218,23 @@ def equations(result: Outputs, bodies: Bodies, carried: list[Carried], stored: M
         block = some.christoffel()
         for i, a in enumerate(some.path[:-1]):
             gamma.update({(a, b, c): block[i, j] for j, b in enumerate(some.path)})
+    if any(joint.group for joint in bodies.joints):
+        found = {image: x * sign for at, x in gamma.items() for image, sign in images_of(at, "christoffel")}
+        for c, joint in enumerate(bodies.joints):
+            for b in (b for b in joint.group if b <= c):
+                found |= {(a, b, c): x for a, x in _as_one(bodies, carried, b, c)}
+        whole = {at: x for at, x in found.items() if at[1] <= at[2]}
+        result["christoffel"] = Values((n, n, n), "connection", entries=whole)
+
+
+def _as_one(bodies: Bodies, carried: list[Carried], b: int, c: int) -> Iterator[tuple[int, Ball]]:
+    """Gamma_abc of joints b, c of one group, by a on a path with them: of the mass that both a and the group move."""
+    group = bodies.joints[c].group
+    for a, joint in enumerate(bodies.joints):
+        if a in carried[group[-1]].path or group[-1] in carried[a].path:
+            mass = carried[max(a, group[-1])].moments
+            force, moment = halved(mass, bodies.joints[b], bodies.joints[c])
+            yield a, dot(joint.v, force) + dot(joint.w, moment)
 
 
 def _metric(bodies: Bodies, carried: list[Carried]) -> dict[tuple[int, ...], Ball]:

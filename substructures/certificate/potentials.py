@@ -16,9 +16,11 @@ from flint import arb
 
 from substructures.certificate.by_coordinate import along, gathered
 from substructures.certificate.expanded import MOST, Expanded, NoExpansionError, expanded
-from substructures.certificate.linear import Ball
+from substructures.certificate.linear import Ball, quaternion_product, turn_of
 from substructures.certificate.loads import Forces
+from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs, Values
+from substructures.certificate.relations import is_ball, positions_of, rates_of
 from substructures.certificate.texts import Steps, names_of, slope, summands, value
 
 #: what is not known: no finite value
@@ -71,20 +73,28 @@ def integrated(forces: Forces) -> set[int]:
 def _at_rest_names(forces: Forces) -> dict[str, Ball]:
     """The names of a definition; velocities and inputs are zero."""
     names, definition = forces.numbers.names, forces.definition
-    steady = ["t", *forces.coordinates, *definition.get("parameters", ())]
+    placed = [name for name, a in forces.coordinates.items() if not forces.bodies.joints[a].group]
+    steady = ["t", *placed, *definition.get("parameters", ())]
     moving = [f"{name}'" for name in forces.coordinates] + [f"tau.{name}" for name in forces.coordinates]
     return {name: names[name] for name in steady} | dict.fromkeys([*moving, *definition.get("inputs", ())], arb(0))
 
 
-def gradient_instead(result: Outputs, name: str, some: Sequence[Forces], Q: Mapping[int, Ball], start: Ball) -> None:
+def gradient_instead(
+    result: Outputs,
+    name: str,
+    some: Sequence[Forces],
+    Q: Mapping[int, Ball],
+    start: Ball,
+    ways: Mapping[str, Mapping[str, Ball]],
+) -> None:
     """In place of the value of a potential its gradient: -``Q`` of what is known in closed form, less alternatives.
 
     ``start``: the known potentials where all coordinates are zero (and velocities, inputs and the time are halved);
-    behind the gradient.
+    behind the gradient. ``ways``: of rates of ball joints, how places and quaternions change.
     """
     bodies = some[0].bodies
     left, Q = along(bodies), gathered(bodies, Q)
-    values = Values((), along=tuple(bodies.joints[a].coordinate for a in left))
+    values = Values((), along=tuple(bodies.joints[a].coordinate for a in left), ways=ways)
     for i, a in enumerate(left):
         values.entries[i,] = -Q.get(a, arb(0))
     for forces in some:
@@ -181,3 +191,19 @@ def _groups(forces: Forces, given: Mapping[int, _Given]) -> list[list[int]]:
         apart = [group for group in groups if not group & joined]
         groups = [*apart, joined.union(*(group for group in groups if group & joined))]
     return [sorted(group) for group in groups]
+
+
+def ways_of(bodies: Iterable[Plain], values: Mapping[str, Ball], prefix: str = "") -> dict[str, dict[str, Ball]]:
+    """By rate of ball and floating joints the changes of place and quaternion for 1: p' = R v, Q' = 1/2 Q (0, w)."""
+    result: dict[str, dict[str, Ball]] = {}
+    zero, half = arb(0), arb("0.5")
+    for body in filter(is_ball, bodies):
+        names, rates = [prefix + name for name in positions_of(body)], [prefix + name for name in rates_of(body)]
+        quaternion = [values[name] for name in names[-4:]]
+        R = turn_of(quaternion)
+        for k in range(3):
+            if len(names) > len(quaternion):
+                result[rates[k]] = {names[i]: R[i, k] for i in range(3)}
+            e = (zero, *(half if i == k else zero for i in range(3)))
+            result[rates[k - 3]] = dict(zip(names[-4:], quaternion_product(quaternion, e), strict=True))
+    return result

@@ -1,6 +1,7 @@
 """Joints that relations move, q^d = mu q^i + delta: what documents say of them, in the coordinates that are left.
 
-Where a text names such a joint the position of the joint is put in its place, so that nothing else names it.
+Where a text names such a joint the position of the joint is put in its place, so that nothing else names it. And
+joints that have no coordinates, but quaternions and rates: what these are called.
 """
 
 from __future__ import annotations
@@ -12,13 +13,17 @@ from typing import Any
 
 from flint import arb
 
-from substructures.certificate.linear import Ball
+from substructures.certificate.linear import Ball, Matrix, turn_of, vector
 from substructures.certificate.numbers import Numbers, Plain
 
 #: fields of loads that are names
 _NAMES = frozenset(("type", "name", "coordinate", "body", "from", "to", "frame", "axes", "along", "title"))
 #: measures of frames, whose names are not those of coordinates; names with the mark of a rate
 _WORD = re.compile(r"(?:distance|angle)'?\([^()]*\)|[A-Za-z][A-Za-z0-9_]*'?")
+#: of joints whose axes move with the body that they carry, how many numbers say where it is: the place (x, y, z) of a
+#: floating one, and a quaternion (w, x, y, z)
+POSITIONS = {"ball": 4, "floating": 7}
+_XYZ = ("x", "y", "z")
 
 
 def moved(definition: Plain) -> dict[str, Plain]:
@@ -115,3 +120,29 @@ def written(definition: Plain) -> Plain:
             name, factor = load["coordinate"], multiplier_text(definition, load["coordinate"])
             load |= {"coordinate": mover(definition, name), "force": f"({factor})*({_text(load['force'])})"}
     return {**definition, "bodies": bodies, "loads": loads}
+
+
+def is_ball(body: Plain) -> bool:
+    """Whether the axes of the body's joint move with it."""
+    return body["joint"]["type"] in POSITIONS
+
+
+def positions_of(body: Plain) -> list[str]:
+    """The names of place and quaternion of such a joint; none of others."""
+    if not is_ball(body):
+        return []
+    place = [f"r_{body['name']}_{axis}" for axis in _XYZ if body["joint"]["type"] == "floating"]
+    return list(body["joint"].get("coordinate") or [*place, *(f"q_{body['name']}_{axis}" for axis in ("w", *_XYZ))])
+
+
+def rates_of(body: Plain) -> list[str]:
+    """The names of the rates of such a joint."""
+    sliding = [f"v_{body['name']}_{axis}" for axis in _XYZ if body["joint"]["type"] == "floating"]
+    return list(body["joint"].get("velocities") or [*sliding, *(f"w_{body['name']}_{axis}" for axis in _XYZ)])
+
+
+def place_of(body: Plain, names: Mapping[str, Ball]) -> tuple[Matrix, Matrix]:
+    """Axes as columns and origin of the body, seen from where its joint is."""
+    values = [names[name] for name in positions_of(body)]
+    p = values[:-4] or [arb(0)] * 3
+    return turn_of(values[-4:]), vector(p[0], p[1], p[2])

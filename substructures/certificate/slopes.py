@@ -98,21 +98,36 @@ _UNARY: dict[str, Callable[[Ball, Ball], Ball]] = {
 
 
 def at_start(values: Mapping[str, Ball], kinds: Mapping[str, str]) -> dict[str, Ball]:
-    """All coordinates zero; half the velocities, accelerations, inputs and time. ``kinds``: of the symbols."""
+    """All coordinates zero; half the velocities, accelerations, inputs and time. ``kinds``: of the symbols; those of
+    others stay.
+    """
     outside = {name: x / 2 for name, x in values.items() if kinds.get(name) in OUTSIDE}
     return {**values, **outside} | {name: arb(0) for name in values if kinds.get(name) == "coordinate"}
 
 
 def stored_gradient(
-    program: Stored, entry: int | None, found: Sequence[Ball], values: Mapping[str, Ball], along: Sequence[str]
+    program: Stored,
+    entry: int | None,
+    found: Sequence[Ball],
+    values: Mapping[str, Ball],
+    along: Sequence[str],
+    ways: Mapping[str, Mapping[str, Ball]],
 ) -> dict[tuple[int, ...], Ball]:
-    """Of a stored scalar V: the derivatives by the symbols ``along``, and at last its value :func:`at_start`.
-    ``entry``: None where V is zero by structure.
+    """Of a stored scalar V: the derivatives by the symbols ``along``, or ``ways`` in which several change, and at last
+    its value :func:`at_start`. ``entry``: None where V is zero by structure.
     """
     if entry is None:
         return {}
     by_name = slopes(program, entry, found)
     result: dict[tuple[int, ...], Ball] = {(a,): by_name[name] for a, name in enumerate(along) if name in by_name}
-    start = at_start(values, {symbol.name: symbol.kind for symbol in program.symbols})
+    for a, way in ((a, ways[name]) for a, name in enumerate(along) if name in ways):
+        result[a,] = sum((by_name[name] * x for name, x in way.items() if name in by_name), arb(0))
+    start = at_start(values, without({symbol.name: symbol.kind for symbol in program.symbols}, ways))
     result[len(along),] = operations_in_balls(program, start)[entry]
     return result
+
+
+def without(kinds: Mapping[str, str], ways: Mapping[str, Mapping[str, Ball]]) -> dict[str, str]:
+    """The kinds of the symbols that do not change with rates."""
+    kept = {name for way in ways.values() for name in way}
+    return {name: kind for name, kind in kinds.items() if name not in kept}

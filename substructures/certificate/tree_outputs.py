@@ -13,6 +13,7 @@ from substructures.certificate.bodies import (
     Bodies,
     Frame,
     coordinates_of,
+    in_order,
     massless,
 )
 from substructures.certificate.by_coordinate import of_coordinates, rates
@@ -27,9 +28,9 @@ from substructures.certificate.loads import Forces, forces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
-from substructures.certificate.potentials import UNKNOWN, gradient_instead, integrated, is_found
-from substructures.certificate.relations import Related, mover, written
-from substructures.certificate.slopes import at_start
+from substructures.certificate.potentials import UNKNOWN, gradient_instead, integrated, is_found, ways_of
+from substructures.certificate.relations import Related, is_ball, mover, positions_of, written
+from substructures.certificate.slopes import at_start, without
 from substructures.certificate.tree_loads import TreeForces
 from substructures.expr.operations import Output
 
@@ -46,7 +47,9 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
         for body in definition.get("bodies", ()):
             for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
                 q = f"{name}.{c}"
-                kinds |= {q: "coordinate", f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
+                kinds |= {f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
+                kinds |= {} if is_ball(body) else {q: "coordinate"}
+            kinds |= {f"{name}.{p}": "coordinate" for p in positions_of(body)}
     return ignored_symbols(tree, driven_symbols(tree, kinds))
 
 
@@ -79,14 +82,17 @@ def _outputs(
     if is_found(acting):
         weight = {a: result["gravity"].entries[a,] for a in range(len(bodies.joints))}
         known = _sums([weight, *(x for f in acting for x in (f.slopes, f.dead_slopes)), others.slopes])
-        begin_at = with_driven(tree, at_start(given, tree_symbols(tree, definitions)))
+        ways = _ways(tree, definitions, given)
+        begin_at = with_driven(tree, at_start(given, without(tree_symbols(tree, definitions), ways)))
         some, start, _, there = built(tree, definitions, begin_at, acting)
         begin = _potential_energy(start, gravity, there) + beside(tree, definitions, start, some).potential
         # of a coordinate that need not be zero there
         is_known = not any(bodies.joints[a].mover in driven for forces in acting for a in integrated(forces))
-        gradient_instead(result, "potential_energy", acting, known, begin if is_known else UNKNOWN)
+        gradient_instead(result, "potential_energy", acting, known, begin if is_known else UNKNOWN, ways)
     else:
         result.scalar("potential_energy", _potential_energy(bodies, gravity, acting) + others.potential)
+    if any(joint.group for joint in bodies.joints):
+        _position_rates(result, tree, definitions, values)
     limits(result, bodies, definitions, loads)
     friction(result, bodies, tree, numbers, definitions, loads)
     friction_load(result, bodies, definitions, loads)
@@ -98,6 +104,28 @@ def _outputs(
     result = of_coordinates(result, bodies)
     result.update(more)
     return of_free(result, list(coordinates_in(tree, definitions)), driven)
+
+
+def _position_rates(result: Outputs, tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> None:
+    """The changes of what a state consists of: q', and what the rates of ball joints do."""
+    found, order = dict[str, Ball](), list[str]()
+    for rate, way in _ways(tree, definitions, values).items():
+        for name, x in way.items():
+            found[name] = found.get(name, arb(0)) + x * values[f"{rate}'"]
+    for instance in hosts_first(tree):
+        definition = definitions[instance["name"]]
+        for body in in_order(definition):
+            own = positions_of(body) or [q for q in coordinates_of(body) if mover(definition, q) == q]
+            order += [f"{instance['name']}.{name}" for name in own]
+    rates = [found[name] if name in found else values[f"{name}'"] for name in order]
+    result.array("position_rates", (len(order),)).update({(i,): x for i, x in enumerate(rates)})
+
+
+def _ways(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> dict[str, dict[str, Ball]]:
+    """How places and quaternions change with the rates of ball joints."""
+    names = [instance["name"] for instance in tree.get("instances", ())]
+    found = (ways_of(definitions[name].get("bodies", ()), values, f"{name}.") for name in names)
+    return {rate: way for some in found for rate, way in some.items()}
 
 
 def built(
@@ -134,7 +162,9 @@ def _names(instance: str, definition: Plain, names: Mapping[str, Ball], values: 
     for body in definition.get("bodies", ()):
         for c in (c for c in coordinates_of(body) if mover(definition, c) == c):
             q = f"{instance}.{c}"
-            known |= {c: values[q], f"{c}'": values[f"{q}'"], f"tau.{c}": values[f"tau.{q}"]}
+            known |= {f"{c}'": values[f"{q}'"], f"tau.{c}": values[f"tau.{q}"]}
+            known |= {} if is_ball(body) else {c: values[q]}
+        known |= {p: values[f"{instance}.{p}"] for p in positions_of(body)}
     return known
 
 

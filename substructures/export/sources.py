@@ -10,21 +10,21 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.export.interface import TIME, Interface, Vector, has_time
+from substructures.mechanics.state_names import BallRow, ball_rows, positions_of, state_units
 from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
 from substructures.quantities.numbers.states import default_number, input_defaults
 from substructures.tree.model import EFFORTS, Model
 
-_RATES = {"q": ("", "rad", "m"), "qd": ("'", "rad/s", "m/s"), "qdd": ("''", "rad/s^2", "m/s^2")}
+_PRIMES = {"q": "", "qd": "'", "qdd": "''"}
 
 
 def interface_of_model(model: Model, reference: str = "", digest: str = "") -> Interface:
     """The vectors of a tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
     efforts = [f"tau.{name}" for name in model.coordinates]
     inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
-    vectors = _states(model.coordinates, model.joints) | _others(
-        model.parameters, inputs, model.units, input_defaults(model)
-    )
+    states = _states(model.coordinates, model.joints, model.balls)
+    vectors = states | _others(model.parameters, inputs, model.units, input_defaults(model))
     always = ("t", "u") if model.driven else ()
     return Interface(
         vectors, reference, digest or model.program.digest, model.frames, always, has_time(model.program.symbols)
@@ -39,16 +39,18 @@ def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Inte
     defaults = {name: default_number(x["default"]) for name, x in told.items() if "default" in x}
     inputs = {name: str(given[name].unit or "") for name in sorted(given)} | efforts
     units = {name: str(given.get("unit", "")) for name, given in part.parameters.items()} | inputs
-    vectors = _states(part.coordinates, part.joints) | _others(part.parameters, list(inputs), units, defaults)
+    balls = ball_rows(part.topology.balls, [joint.coordinate for joint in part.topology.joints])
+    vectors = _states(part.coordinates, part.joints, balls) | _others(part.parameters, list(inputs), units, defaults)
     digest = digest or part.definition.digest
     return Interface(vectors, reference, digest, part.frames, has_time=has_time(part.program.symbols))
 
 
-def _states(coordinates: Sequence[str], joints: str) -> dict[str, Vector]:
-    found = {"t": TIME}
-    for symbol, (primes, turn, slide) in _RATES.items():
-        names = tuple(f"{name}{primes}" for name in coordinates)
-        found[symbol] = Vector(symbol, names, tuple(slide if kind == "P" else turn for kind in joints))
+def _states(coordinates: Sequence[str], joints: str, balls: Sequence[BallRow]) -> dict[str, Vector]:
+    found, units = {"t": TIME}, state_units(coordinates, joints, balls)
+    for symbol, primes in _PRIMES.items():
+        # of ball joints quaternions and places stand in place of coordinates
+        names = positions_of(coordinates, balls) if symbol == "q" else tuple(f"{name}{primes}" for name in coordinates)
+        found[symbol] = Vector(symbol, names, tuple(units[symbol].values()))
     return found
 
 

@@ -41,8 +41,8 @@ class Side:
     @classmethod
     def of_tree(cls, spec: TreeSpec, parts: Mapping[str, Part]) -> Side:
         """A tree with the parts of its instances. Raises InvalidDocument, TooLarge as :func:`couple`."""
-        require_untied(spec, "equivalences")
         model = couple(spec, parts)
+        require_untied(model, "equivalences")
         single = f"{spec.instances[0].name}." if len(spec.instances) == 1 else ""
         return cls(spec, parts, model, tuple(c.removeprefix(single) for c in model.coordinates), single)
 

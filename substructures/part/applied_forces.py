@@ -69,7 +69,7 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
     potential = zero
     for load in loads.joints:
         forces[load.a] = forces[load.a] + load.force
-        given[load.a] += load.terms
+        given[load.a] += [] if m.topology.joints[load.a].is_rate else load.terms
     movers = set(m.topology.movers)
     for a, entry in enumerate(m.topology.joints):
         stretch = m.positions[a] - m.laws[a].rest

@@ -28,6 +28,7 @@ from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import InvalidDocument
 from substructures.loads.friction import FrictionLaw
 from substructures.loads.kinds import LoadOfPart
+from substructures.part.balls import JointType
 
 MAX_BODIES = 500
 
@@ -123,8 +124,9 @@ class JointFriction(FrictionLaw):
 class Joint(DocumentPart):
     """Joint row psi, theta, d, sigma, phi, tau (Maisser 1988; modified Denavit-Hartenberg), or a placement."""
 
-    type: Literal["revolute", "prismatic", "fixed", "universal", "spherical", "cylindrical", "planar", "free"]
+    type: JointType
     coordinate: Name | tuple[Name, ...] | None = Field(None, description="coordinate name(s); rad or m")
+    velocities: tuple[Name, ...] | None = Field(None, description="rates of `ball`, `floating`; rad/s or m/s")
     psi: Number = Field(0, description="rad")
     theta: Number = Field(0, description="rad")
     d: Number = Field(0, description="m")
@@ -290,9 +292,8 @@ class Definition(WithTables):
     def __repr__(self) -> str:
         """Two lines: its name and title, and the names in it."""
         bodies, ports = ", ".join(b.name for b in self.bodies), ", ".join(p.name for p in self.ports)
-        title = f": {self.title}" if self.title else ""
         return (
-            f"Definition '{self.name}'{title}\n"
+            f"Definition '{self.name}'{': ' if self.title else ''}{self.title}\n"
             f"bodies {bodies or 'none'}; ports {ports or 'none'}; parameters {', '.join(self.parameters) or 'none'}"
         )
 

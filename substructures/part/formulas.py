@@ -29,7 +29,8 @@ load.at, .vector   loads 3     point (carrier's body frame) and vector of forces
 =================  ==========  ===========================================================================
 
 Where relations move joints, axes a, b and those of f, n, K, kappa, F, N, applied are by coordinate, all other axes n by
-joint, and there are by joint c: multiplier mu and offset delta (n) of q^c = mu y + delta.
+joint, and there are by joint c: multiplier mu and offset delta (n) of q^c = mu y + delta. Where there are ball joints,
+christoffel, F and N are those of rates (:mod:`substructures.mechanics.balls`), each symmetric in b and c.
 
 A part with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols is stored without
 christoffel, kappa, F and N.
@@ -77,7 +78,7 @@ from substructures.part.frames import joined_turns
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.kinematics import Kinematics, frame_link, kinematics
 from substructures.part.mechanism import Mechanism
-from substructures.part.relations import MULTIPLIER, OFFSET, of_coordinates
+from substructures.part.relations import MULTIPLIER, OFFSET, of_coordinates, of_rates
 from substructures.part.wrenches import wrench_point
 
 
@@ -128,11 +129,11 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     outputs["load.at"] = array((len(places), 3), lambda i, x: places[i][x])
     outputs["load.vector"] = array((len(places), 3), lambda i, x: loads.wrenches[i].vector[x])
     if m.ratios.is_identity:
-        return outputs
+        return of_rates(outputs, m.topology.balls)
     n = len(m.joints)
     outputs[MULTIPLIER] = array((n,), lambda a: m.ratios.multipliers[a])
     outputs[OFFSET] = array((n,), lambda a: m.offsets[a])
-    return of_coordinates(outputs, m.ratios)
+    return of_coordinates(of_rates(outputs, m.topology.balls), m.ratios)
 
 
 def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:

@@ -15,15 +15,15 @@ def load_names(
     inputs: Mapping[str, str],
     coordinates: Mapping[str, int],
     moved: Mapping[str, tuple[Expr, Expr, str]],
+    rates: Collection[str] = (),
 ) -> Lookup:
     """The lookup of names in loads; a symbol is described in the scope when it is first used.
 
-    ``inputs``: their SI units by name; ``coordinates``: 1 of prismatic and 0 of revolute ones; ``moved``: of joints
-    that move with another one, position, multiplier and the coordinate that moves them.
-
-    It becomes no name of the scope, so that what has to be constant cannot name it.
+    ``inputs``: their SI units by name; ``coordinates``: 1 of prismatic ones, else 0; ``rates``: those without position;
+    ``moved``: of joints that move with another one, position, multiplier and what moves them. None is a constant.
     """
-    scope.more = (*coordinates, *moved, *(f"{name}'" for name in (*coordinates, *moved)), *inputs)
+    positions = [name for name in coordinates if name not in rates]
+    scope.more = (*positions, *moved, *(f"{name}'" for name in (*coordinates, *moved)), *inputs)
 
     def described(name: str, kind: str, unit: str) -> Expr:
         """The symbol of a name, with its description."""
@@ -38,7 +38,7 @@ def load_names(
             return described("t", "time", "s")
         if name in inputs:
             return described(name, "input", inputs[name])
-        if name in coordinates:
+        if name in positions:
             return scope.graph.symbol(name)
         if name.endswith("'") and name[:-1] in coordinates:
             return described(name, "velocity", "m/s" if coordinates[name[:-1]] else "rad/s")

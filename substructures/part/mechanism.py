@@ -12,6 +12,7 @@ from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
 from substructures.loads.friction import Friction, FrictionLaw, FrictionLoad, read_friction
 from substructures.loads.scope import Lookup, Scope, no_names
+from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.composite_form import Inertia, binet
 from substructures.mechanics.kinematics import INTERFACE, OneDofJoint, joint_rotation
 from substructures.mechanics.linear3 import (
@@ -22,11 +23,13 @@ from substructures.mechanics.linear3 import (
     Rotation,
     Symmetric,
     Turn,
+    Vector,
     multiply,
     scale,
     transpose,
 )
 from substructures.mechanics.ratios import Ratios
+from substructures.part.balls import quaternion_turn
 from substructures.part.definition import BearingFriction, Body, Definition, JointFriction
 from substructures.part.frames import AXES, Frame, axis_rotation
 from substructures.part.load_names import load_names
@@ -136,7 +139,11 @@ def _scope(definition: Definition, layout: Topology) -> Scope:
         if given.default is not None:
             aside.read(given.default, f"/inputs/{name}/default", no_names)
     for a in layout.movers:
-        scope.symbols[layout.joints[a].coordinate] = _coordinate(layout.joints[a])
+        if not layout.joints[a].is_rate:
+            scope.symbols[layout.joints[a].coordinate] = _coordinate(layout.joints[a])
+    for ball in layout.balls:
+        units = dict.fromkeys(ball.quaternion, "") | dict.fromkeys(ball.place, "m")
+        scope.symbols |= {name: Symbol(name, "coordinate", units[name]) for name in ball.positions}
     return scope
 
 
@@ -161,6 +168,7 @@ class _Builder:
         self.entries: dict[int, list[JointEntry]] = {}
         for entry in layout.joints:
             self.entries.setdefault(entry.body, []).append(entry)
+        self.balls = {ball.body: ball for ball in layout.balls}
         self.joints: list[OneDofJoint] = []
         self.own = {INTERFACE: Inertia()}
         self.laws: list[JointLaw] = []
@@ -176,13 +184,16 @@ class _Builder:
             if of != a
         }
         self.positions: list[Expr] = []
-        self.names = load_names(scope, inputs, kinds, moved)
+        rates = frozenset(entry.coordinate for entry in layout.joints if entry.is_rate)
+        self.names = load_names(scope, inputs, kinds, moved, rates)
 
     def add(self, i: int, body: Body) -> None:
         """Place the joint(s) of a body, then give its inertia to the carrier."""
         pointer = f"/bodies/{i}"
         frame = self._placed(self.bodies[body.parent], body, f"{pointer}/joint")
         axis = self._axis(body, f"{pointer}/joint")
+        if i in self.balls:
+            frame = self._turned(frame, self.balls[i])
         for entry in self.entries.get(i, []):
             frame = self._joint(frame, entry, body, axis, f"{pointer}/joint")
         if body.joint.type == "fixed":
@@ -217,6 +228,12 @@ class _Builder:
         phi, tau = (self.scope.read(getattr(body.joint, name), f"{pointer}/{name}") for name in ("phi", "tau"))
         return frame.placed(Planar(2, *cos_sin(phi)).matrix(), (self.scope.graph.zero, self.scope.graph.zero, tau))
 
+    def _turned(self, frame: Frame, ball: BallJoint) -> Frame:
+        """The frame of the body that a ball or floating joint carries, from which its joints, at zero, do not lead."""
+        graph, names = self.scope.graph, ball.place
+        place: Vector = (graph.symbol(names[0]), graph.symbol(names[1]), graph.symbol(names[2])) if names else ZERO
+        return frame.placed(quaternion_turn(graph, ball.quaternion), place)
+
     def _axis(self, body: Body, pointer: str) -> Matrix:
         """E from the placed frame to the frame whose third axis is the joint axis."""
         joint = body.joint
@@ -231,7 +248,7 @@ class _Builder:
     def _joint(self, frame: Frame, entry: JointEntry, body: Body, axis: Matrix, pointer: str) -> Frame:
         """One degree of freedom; returns the frame that moves with it, turned back from the joint axis."""
         turned = multiply(AXES[entry.axis], axis) if body.joint.axis is not None else AXES[entry.axis]
-        q = self.names(entry.coordinate) or self.scope.graph.zero
+        q = (None if entry.is_rate else self.names(entry.coordinate)) or self.scope.graph.zero
         self.positions.append(q)
         phi, tau = self._offsets(entry, body, pointer)
         constant = multiply(turned, frame.E)

@@ -88,6 +88,11 @@ class OwnNames(Names):
             return self.kept(energy, False, spring.pointer)
         if not depends_on_state(self.m.topology.coordinates, spring.stiffness, spring.length):
             return energy
+        if self.m.topology.balls:
+            self.without_potential(
+                f"with ball joints no potential of this spring is looked for: {LEFT_OUT}", spring.pointer
+            )
+            return self.graph.zero
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
         forces = self.m.ratios.reduced({(a,): Q for a, Q in pulls().items()}, (0,))
         on = {i: self.graph.lift(Q) for (i,), Q in forces.items()}

@@ -7,6 +7,7 @@ become those of the coordinates that are left by :class:`substructures.mechanics
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from fractions import Fraction
 from typing import Any
 
 from substructures.errors import among
@@ -14,6 +15,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program
 from substructures.expr.units.unit_check import Notice
 from substructures.loads.scope import Scope, no_names
+from substructures.mechanics.balls import BILINEAR, BallJoint, in_rates
 from substructures.mechanics.ratios import Ratios
 from substructures.part.definition import Definition, Relation
 
@@ -98,6 +100,25 @@ def of_coordinates(outputs: Mapping[str, Formulas], ratios: Ratios) -> dict[str,
     if ratios.is_identity:
         return dict(outputs)
     return {name: _reduced(name, each, ratios) if name in OF_COORDINATES else each for name, each in outputs.items()}
+
+
+def of_rates(outputs: Mapping[str, Formulas], balls: Sequence[BallJoint]) -> dict[str, Formulas]:
+    """The outputs of joints with those that rates multiply twice in the rates of ball joints: christoffel, F, N."""
+    result = dict(outputs)
+    for name, (linear, place) in BILINEAR.items():
+        if balls and name in outputs:
+            each = outputs[name]
+            entries: dict[tuple[int, ...], Any] = {i: x for i, x in each.expanded().items() if i[place] <= i[place + 1]}
+            halves = {index: _half(x) for index, x in outputs[linear].expanded().items()}
+            for at, term in in_rates(balls, halves, place).items():
+                entries[at] = entries[at] + term if at in entries else term
+            result[name] = Formulas(each.shape, entries, "connection" if name == "christoffel" else each.symmetry)
+    return result
+
+
+def _half(x: Any) -> Any:
+    """Exactly of a formula."""
+    return x * (Fraction(1, 2) if isinstance(x, Expr | int) else 0.5)
 
 
 def _reduced(name: str, each: Formulas, ratios: Ratios) -> Formulas:

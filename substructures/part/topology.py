@@ -8,7 +8,9 @@ from typing import NamedTuple
 
 from substructures.errors import Fault, InvalidDocument, TooLarge, among
 from substructures.expr.syntax import RESERVED
+from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.kinematics import INTERFACE
+from substructures.part.balls import BALLS, ball_faults, ball_names
 from substructures.part.definition import Body, Definition, Relation
 
 BASE = "base"
@@ -29,6 +31,9 @@ CHAINS: dict[str, tuple[tuple[int, int], ...]] = {
     "cylindrical": ((0, 2), (1, 2)),
     "planar": ((1, 0), (1, 1), (0, 2)),
     "free": ((1, 0), (1, 1), (1, 2), (0, 2), (0, 1), (0, 0)),
+    # in the axes of the body that they carry, at rest there: their rates are no derivatives of coordinates
+    "ball": ((0, 0), (0, 1), (0, 2)),
+    "floating": ((1, 0), (1, 1), (1, 2), (0, 0), (0, 1), (0, 2)),
 }
 
 
@@ -43,6 +48,7 @@ class JointEntry:
     body: int  #: index of the body in the definition
     step: int  #: place in the chain of a compound joint
     last: bool  #: carries the named body
+    is_rate: bool = False  #: ``coordinate`` names a rate, of a ball joint or of a floating one
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,6 +59,7 @@ class Topology:
     carrier: dict[str, int]
     order: tuple[int, ...]  #: indices of the bodies in the definition, parents first
     before: tuple[int, ...]  #: by joint the one with which a relation moves it, or itself
+    balls: tuple[BallJoint, ...] = ()
 
     @property
     def movers(self) -> tuple[int, ...]:
@@ -136,22 +143,27 @@ def topology(definition: Definition) -> Topology:
     order, more = _order(definition)
     faults += more
     joints: list[JointEntry] = []
+    balls: list[BallJoint] = []
     carrier = {BASE: INTERFACE}
     for i in order:
         body = definition.bodies[i]
-        names = _coordinates(body, i, faults)
+        is_ball = body.joint.type in BALLS
+        names = ball_names(body, i, faults) if is_ball else ((), _coordinates(body, i, faults))
+        if is_ball:
+            balls.append(BallJoint(i, len(joints), names[0]))
         k = carrier.get(body.parent, INTERFACE)
         chain = CHAINS[body.joint.type]
-        for step, ((s, axis), name) in enumerate(zip(chain, names, strict=True)):
-            joints.append(JointEntry(name, k, s, axis, i, step, step == len(chain) - 1))
+        for step, ((s, axis), name) in enumerate(zip(chain, names[1], strict=True)):
+            joints.append(JointEntry(name, k, s, axis, i, step, step == len(chain) - 1, is_ball))
             k = len(joints) - 1
         carrier[body.name] = k
-    faults += _coordinate_faults(definition, joints)
+    faults += _coordinate_faults(definition, joints, balls)
+    faults += ball_faults(definition, {joint.coordinate for joint in joints if joint.is_rate})
     before, more = _related(definition.relations, [joint.coordinate for joint in joints])
     faults += more
     if faults:
         raise InvalidDocument(faults)
-    return Topology(tuple(joints), carrier, tuple(order), before)
+    return Topology(tuple(joints), carrier, tuple(order), before, tuple(balls))
 
 
 def _name_faults(definition: Definition) -> list[Fault]:
@@ -235,11 +247,13 @@ def _coordinates(body: Body, i: int, faults: list[Fault]) -> list[str]:
     return names
 
 
-def _coordinate_faults(definition: Definition, joints: list[JointEntry]) -> list[Fault]:
+def _coordinate_faults(definition: Definition, joints: Sequence[JointEntry], balls: Sequence[BallJoint]) -> list[Fault]:
     faults = []
     seen: set[str] = set()
-    for joint in joints:
-        name, pointer = joint.coordinate, f"/bodies/{joint.body}/joint/coordinate"
+    named = [(x.coordinate, x.body, "velocities" if x.is_rate else "coordinate") for x in joints]
+    named += [(name, ball.body, "coordinate") for ball in balls for name in ball.positions]
+    for name, body, field in named:
+        pointer = f"/bodies/{body}/joint/{field}"
         if name in seen or name in definition.parameters or name in definition.inputs:
             faults.append(
                 Fault(pointer, "duplicate-name", f"coordinate '{name}' is used twice (coordinates, parameters, inputs)")

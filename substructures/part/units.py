@@ -12,6 +12,7 @@ from typing import Any
 
 from substructures.documents.units import NUMBER, Dimension
 from substructures.expr.syntax import measured
+from substructures.expr.units.angles import angle_warnings
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Place, UnitCheck, dimension_of
 from substructures.loads.friction import FRICTION
@@ -29,7 +30,6 @@ from substructures.loads.units import (
     of_kind,
     vector,
 )
-from substructures.part.angles import angle_warnings
 from substructures.part.definition import Definition, InertiaTensor, Input, Joint, Parameter, PartClosure, Placement
 from substructures.part.topology import Topology
 

@@ -21,6 +21,7 @@ from substructures.pictures.pose import kinematics, poses
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.document import TreeSpec
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 INERTIA = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -38,6 +39,7 @@ def scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model) -> dict[str, 
     principal ``moments`` about it [kg m^2] and their ``axes`` in columns; ``loads`` and ``closures``: their ``ends``,
     each a frame and a point in it [m]; ``gravity`` [m/s^2]; ``sphere`` around all at home; ``poses`` by name.
     """
+    require_chains(model.balls)
     place = {name: i for i, name in enumerate(model.frames)}
     numbers = _Numbers(assemble(spec, parts), model, place)
     limits = numbers.limits()

@@ -61,4 +61,5 @@ def kinds_of(model: Model) -> dict[str, str]:
     kinds = {symbol.name: symbol.kind for symbol in model.program.symbols} | {"t": "time"}
     for name in model.coordinates:
         kinds |= {name: "coordinate", f"{name}'": "velocity", f"{name}''": "acceleration"}
+    kinds |= dict.fromkeys(model.positions, "coordinate")
     return kinds | dict.fromkeys(model.parameters, "parameter") | dict.fromkeys(model.input_names, "input")

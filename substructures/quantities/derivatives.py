@@ -24,6 +24,7 @@ from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
 from substructures.part.part import MAX_NODES
 from substructures.quantities.numbers.workspace import ID, Workspace, vector
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model, require_open
 
 FD = "forward_dynamics"
@@ -57,6 +58,7 @@ def inverse_dynamics_derivative(model: Model, _: int = MAX_NODES) -> Program:
     of the module's table (only those appear that the dynamics depend on). Where a load has an infinite derivative its
     value is not finite.
     """
+    require_chains(model.balls)
     r = Workspace(model)
     # ID_a = g_ab q''^b + Gamma_abc q'^b q'^c - Q_a  (notation.md, section 7)
     rows = r.inverse_dynamics()

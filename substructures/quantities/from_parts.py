@@ -21,6 +21,7 @@ from substructures.errors import MissingValue
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Formulas, Output, Program, array, program
+from substructures.mechanics.balls import accelerations
 from substructures.mechanics.linear3 import Scalar
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
@@ -32,7 +33,7 @@ from substructures.tree.document import TreeSpec, require_ungiven
 from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
 from substructures.tree.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
-from substructures.tree.mounted_part import MountedPart
+from substructures.tree.mounted_part import MountedPart, balls_in
 
 Scalars = list[Any]
 #: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
@@ -205,6 +206,7 @@ class NumericTree:
         coupled = coupled.with_loads(dict(enumerate(numbers.get(LOADS, ()))), potential)
         qd, qdd = ([lanes(given[f"{name}{primes}"]) for name in self.coordinates] for primes in ("'", "''"))
         rates, second = map(coupled.ratios.rates, (qd, qdd))
+        second = accelerations(balls_in(coupled.placed), rates, second)
         outputs = model_outputs(assembly, coupled, rates, second, frozenset(quantities))
         for name in quantities:
             if name not in result:

@@ -25,6 +25,7 @@ from substructures.quantities.quantity import (
     IGNORED,
     MODEL,
     OF_PARTS,
+    POSITIONS,
     PROGRAMS,
     QUANTITIES,
     REACTIONS,
@@ -87,7 +88,7 @@ class Sources:
         if stored is not None:
             return stored.symmetry
         definitions = () if self.judge is None else self.judge.definitions.values()
-        return "connection" if any(each.relations for each in definitions) else "christoffel"
+        return "connection" if self.model.balls or any(each.relations for each in definitions) else "christoffel"
 
     @cached_property
     def defaults(self) -> Mapping[str, float]:
@@ -144,6 +145,8 @@ class Sources:
             return self.of(source).labels[axis]
         if axis == FRAMES:
             return self.model.frames
+        if axis == POSITIONS:
+            return self.model.positions
         if axis in (DRIVEN, IGNORED):
             return self.model.driven if axis == DRIVEN else self.model.ignored
         return tuple(f"{closure.name}.{row}" for closure in self.model.closures for row in closure.rows)
@@ -194,7 +197,7 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     # tree may have a thousand beside those of its parts; rows of closures, six at most between two frames
     sizes = {"coordinates": n, "frames": frames, "axes": 3, "links": frames, "columns": 10 * frames}
     sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames), "rates": 6 + n}
-    sizes |= dict.fromkeys((DRIVEN, IGNORED), frames)
+    sizes |= dict.fromkeys((DRIVEN, IGNORED), frames) | {POSITIONS: 2 * n}
     return sum(TABLE[name].size(sizes) for name in quantities)
 
 

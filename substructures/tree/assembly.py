@@ -11,6 +11,7 @@ from substructures.expr.operations import Symbol
 from substructures.expr.syntax import RESERVED
 from substructures.loads.friction import TreeFriction, read_friction
 from substructures.loads.scope import Scope, no_names
+from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import ZERO, Matrix, Vector
 from substructures.part.definition import PartClosure, Placement
@@ -21,7 +22,8 @@ from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
-from substructures.tree.mounted_part import WORLD, MountedPart, friction_of_movers, limits_of_movers
+from substructures.tree.given.ties import require_chains
+from substructures.tree.mounted_part import WORLD, MountedPart, balls_of, friction_of_movers, limits_of_movers
 
 
 @dataclass(frozen=True)
@@ -39,6 +41,11 @@ class Assembly:
     friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 of coordinates, by joint
     friction_load: dict[int, tuple[Expr, Expr]]  #: by joint: of the force beside the axis, and along it
     reading: Reading  #: for what is read when the parts have their places
+
+    @property
+    def balls(self) -> tuple[BallJoint, ...]:
+        """The ball and floating joints, with the names of their positions in the tree."""
+        return balls_of(self.mounted, [instance.name for instance in self.instances])
 
 
 def division_by_zero(spec: TreeSpec, assembly: Assembly) -> InvalidDocument:
@@ -87,7 +94,17 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    return Assembly(scope, instances, tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading)
+    places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading
+    return _known_with_balls(spec, Assembly(scope, instances, *places))
+
+
+def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:
+    """The assembly. Raises InvalidDocument (``has-balls``) for what does not go with ball and floating joints."""
+    given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
+    for name, some in (given | {"closures": assembly.cuts}).items():
+        if some:
+            require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
+    return assembly
 
 
 def _name_faults(spec: TreeSpec, scope: Scope) -> None:

@@ -58,7 +58,8 @@ def asked(part: Part) -> tuple[tuple[str, ...], ...]:
     """All lists of outputs that coupling asks a part for."""
     if part.topology.is_related:
         return (OWN, FRAMES, USED, (MULTIPLIER,))
-    equations = [EQUATIONS[:1], EQUATIONS] if part.has_christoffel else [EQUATIONS[:1]]
+    most = () if part.topology.balls else EQUATIONS if part.has_christoffel else EQUATIONS[:1]
+    equations = dict.fromkeys((most[:1], most))
     return (OWN, FRAMES, *((*USED, *names) for names in equations))
 
 

@@ -206,5 +206,5 @@ def _angles(placed: Sequence[PlacedPart], graph: Graph) -> Glossary:
 def _coordinates(placed: Sequence[PlacedPart], graph: Graph) -> Iterator[tuple[int, Expr]]:
     for here in placed:
         for c, joint in enumerate(here.part.topology.joints):
-            if not joint.s:
+            if not (joint.s or joint.is_rate):
                 yield here.first + c, joint_position(graph, here.mounted, c)

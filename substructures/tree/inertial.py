@@ -53,9 +53,13 @@ class Inertial:
 
 def planned(run: Run, mounted: Sequence[MountedPart], christoffel: bool, chosen: bool) -> Plan:
     """Frames for the fewest operations; not ``chosen``: every joint in its own frame and all own entries as stored."""
-    # where relations move joints, what is stored is of the coordinates
+    # where relations move joints, what is stored is of the coordinates, and of rates where there are ball joints
     kinds = [
-        () if m.part.topology.is_related else EQUATIONS if christoffel and m.part.has_christoffel else EQUATIONS[:1]
+        ()
+        if m.part.topology.is_related or m.part.topology.balls
+        else EQUATIONS
+        if christoffel and m.part.has_christoffel
+        else EQUATIONS[:1]
         for m in mounted
     ]
     if not chosen:

@@ -19,13 +19,16 @@ Motions = dict[int, BodyMotion]
 WrenchesByCarrier = dict[int, Wrench]
 
 
-def bias_forces(placed: Sequence[PlacedPart], rates: Sequence[Scalar], falling: bool = False) -> list[Scalar]:
+def bias_forces(
+    placed: Sequence[PlacedPart], rates: Sequence[Scalar], falling: bool = False, second: Sequence[Scalar] = ()
+) -> list[Scalar]:
     """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first.
 
-    ``falling``: less the gravity forces, in a world that is accelerated against gravity.
+    ``falling``: less the gravity forces, in a world that is accelerated against gravity; ``second``: q'' where all
+    rates are constant, if it is not zero there.
     """
     inertias = on_carriers(placed)
-    motions = body_motions(placed, rates, [0] * len(rates) if falling else None, inertias)
+    motions = body_motions(placed, rates, second or ([0] * len(rates) if falling else None), inertias, falling)
     loads = inertial_loads(inertias, motions)
     return pass_back(placed, loads, len(rates))
 
@@ -58,15 +61,16 @@ def body_motions(
     rates: Sequence[Scalar],
     accelerations: Sequence[Scalar] | None = None,
     inertias: Sequence[Mapping[int, Inertia]] = (),
+    falling: bool = True,
 ) -> list[Motions]:
     """For every part the motions of its body frames and of its interface, by carrier.
 
-    With ``accelerations`` the world is accelerated against gravity; without, q'' = 0 in a world at rest. ``inertias``:
-    of the carriers, by part, unless they are those of the parts.
+    With ``accelerations`` the world is accelerated against gravity, if ``falling``; without, q'' = 0 in a world at
+    rest. ``inertias``: of the carriers, by part, unless they are those of the parts.
     """
     motions: list[Motions] = []
     for here, moving in zip(placed, inertias or [here.evaluated.inertias for here in placed], strict=True):
-        own = {INTERFACE: _interface_motion(here, motions, accelerations is not None)}
+        own = {INTERFACE: _interface_motion(here, motions, falling and accelerations is not None)}
         for c, link in enumerate(here.links):
             a = here.first + c
             # from the body frame of the parent to O_c, then by the joint's own motion to the body frame of c

@@ -9,14 +9,13 @@ w_a the axes, d_b Q_a - d_a Q_b = M . (w_b x w_a), which is also what Q_a change
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from typing import Any
 
 from substructures.expr.calculus.integrate import from_zero, needed, potential
 from substructures.expr.graph import Expr, Graph
 from substructures.loads.pairs import wrench_forces
 from substructures.part.outputs import Run, over_formulas
 from substructures.tree.coupling import place
-from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, links_of, ratios_of
+from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, balls_in, links_of, ratios_of
 
 #: terms of a generalised force that is integrated
 LIMIT = 50
@@ -47,18 +46,25 @@ def found_potential(graph: Graph, placed: Sequence[PlacedPart], coordinates: Seq
 
 
 def _potentials(graph: Graph, placed: Sequence[PlacedPart], coordinates: Sequence[str]) -> Iterator[Expr]:
-    ratios = ratios_of(over_formulas(graph), [here.mounted for here in placed])
+    for forces in _steady_forces(graph, placed):
+        used = frozenset().union(*(needed(x, LIMIT) for x in forces.values()))
+        some = [a for a, name in enumerate(coordinates) if a in forces or name in used]
+        names = [coordinates[a] for a in some]
+        found = potential([forces.get(a, graph.zero) for a in some], names, LIMIT) if some else None
+        if found is not None:
+            yield from_zero(found, coordinates)
+
+
+def _steady_forces(graph: Graph, placed: Sequence[PlacedPart]) -> Iterator[dict[int, Expr]]:
+    """By coordinate the forces of each load that may have a potential; what turns a ball joint is not looked at."""
+    mounted = [here.mounted for here in placed]
+    ratios = ratios_of(over_formulas(graph), mounted)
+    turned = {a for ball in balls_in(placed) for a in ball.joints}
     for here in placed:
         if not any(here.part.steady_loads):
             continue
         for is_steady, (carrier, wrench) in zip(here.part.steady_loads, here.applied_wrenches(), strict=True):
-            on_joints: dict[tuple[int, ...], Any] = (
-                {(a,): x for a, x in wrench_forces(here, carrier, wrench).items()} if is_steady else {}
-            )
-            forces = {a: graph.lift(x) for (a,), x in ratios.reduced(on_joints, (0,)).items()}
-            used = frozenset().union(*(needed(x, LIMIT) for x in forces.values()))
-            some = [a for a, name in enumerate(coordinates) if a in forces or name in used]
-            names = [coordinates[a] for a in some]
-            found = potential([forces.get(a, graph.zero) for a in some], names, LIMIT) if some else None
-            if found is not None:
-                yield from_zero(found, coordinates)
+            on_joints = wrench_forces(here, carrier, wrench) if is_steady else {}
+            if turned.isdisjoint(on_joints):
+                reduced = ratios.reduced({(a,): x for a, x in on_joints.items()}, (0,))
+                yield {a: graph.lift(x) for (a,), x in reduced.items()}

@@ -54,6 +54,8 @@ class LoadNames(Names):
         names = [f"{name}.{m.part.topology.joints[c].coordinate}" for name, m, c in joints]
         self.coordinates = {name: m.first + c for name, (_, m, c) in zip(names, joints, strict=True)}
         self.units = {m.first + c: UNITS[m.part.topology.joints[c].s] for _, m, c in joints}
+        #: those that are rates of ball joints, and have no positions
+        self.without_positions = {a for ball in assembly.balls for a in ball.joints}
         assembly.scope.more = (*names, *(f"{name}'" for name in names), *assembly.inputs)
         super().__init__(assembly.scope)
 
@@ -86,7 +88,7 @@ class LoadNames(Names):
         if name in self.assembly.inputs:
             return self._symbol(name, "input", si_unit(str(self.assembly.inputs[name]["unit"])))
         a = self.coordinates.get(name.removesuffix("'"))
-        if a is None or name.endswith("''"):
+        if a is None or name.endswith("''") or (name in self.coordinates and a in self.without_positions):
             return None
         return self.rates[a] if name.endswith("'") else self._symbol(name, "coordinate", self.units[a])
 

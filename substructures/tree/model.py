@@ -13,6 +13,7 @@ from substructures.errors import InvalidDocument, VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
+from substructures.mechanics.state_names import ball_rows, positions_of, state_units
 from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, told_operations
@@ -34,7 +35,7 @@ from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
 EFFORTS = {"R": "N m", "P": "N"}
-LISTED = ("driven", "ignored", "velocity_constraints", "contacts")
+LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls")
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,8 @@ class Model:
     loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
     ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given,
     ``ignored``: whose momentum is; ``velocity_constraints``, ``contacts``: of its motions, as plain data; the formulas
-    are those without; ``numbers``: in SI, still to be put in for symbols of the program (:meth:`with_numbers`)."""
+    are those without; ``balls``: joints whose rates are no derivatives of coordinates; ``numbers``: in SI, still to be
+    put in for symbols of the program (:meth:`with_numbers`)."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -62,6 +64,7 @@ class Model:
     numbers: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
     ignored: tuple[str, ...] = ()
     contacts: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
+    balls: tuple[Mapping[str, Sequence[str]], ...] = field(default=(), hash=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -90,6 +93,11 @@ class Model:
         return len(self.coordinates)
 
     @cached_property
+    def positions(self) -> tuple[str, ...]:
+        """What states q are: the coordinates, but of ball joints their place (x, y, z) and quaternion (w, x, y, z)."""
+        return positions_of(self.coordinates, self.balls)
+
+    @cached_property
     def units(self) -> dict[str, str]:
         """The SI units of parameters and inputs by name; empty where none was given."""
         efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
@@ -99,9 +107,7 @@ class Model:
     @cached_property
     def state_units(self) -> dict[str, dict[str, str]]:
         """The SI units of coordinates, velocities and accelerations, by the fields q, qd, qdd and coordinate."""
-        rates = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "qdd": ("rad/s^2", "m/s^2")}
-        pairs = [(name, kind == "P") for name, kind in zip(self.coordinates, self.joints, strict=True)]
-        return {field: {name: units[is_slide] for name, is_slide in pairs} for field, units in rates.items()}
+        return state_units(self.coordinates, self.joints, self.balls)
 
     @cached_property
     def effective(self) -> frozenset[str]:
@@ -119,12 +125,8 @@ class Model:
         closures: dict[str, Any] = {"closures": [rows.plain() for rows in self.closures]} if self.closures else {}
         closures |= {"reduction": self.reduction.plain()} if self.reduction else {}
         closures |= {name: list(getattr(self, name)) for name in LISTED if getattr(self, name)}
-        return closures | {
-            "coordinates": list(self.coordinates),
-            "joints": self.joints,
-            "frames": list(self.frames),
-            "limited": list(self.limited),
-        }
+        named = {"coordinates": list(self.coordinates), "joints": self.joints, "frames": list(self.frames)}
+        return closures | named | {"limited": list(self.limited)}
 
     def summary(self) -> dict[str, Any]:
         """Plain data that is stored beside the program."""
@@ -265,12 +267,13 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     moving = [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
-    told = reduction_of(assembly.instances, assembly.mounted, bool(assembly.reading.spec.closures))
     spec = assembly.reading.spec
+    told = reduction_of(assembly.instances, assembly.mounted, bool(spec.closures))
     tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told
     more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied, "contacts": touching}
+    more["balls"] = ball_rows(assembly.balls, moving)
     return Model(result, *axes, assembly.parameters, {}, rows, inputs, limited, plausibility, **more)
 
 

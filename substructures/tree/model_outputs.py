@@ -17,6 +17,7 @@ position               frames 3     origin of every body frame and port in the w
 rotation               frames 3 3   from the axes of the frame to those of the world
 U, Omega               frames n 3   partial velocities of the origin, partial angular velocities; axes of the frame
 closure.*              m ...        of a tree with closures: see :mod:`substructures.tree.closures`
+position_rates         m            of a state q with ball joints: q', p' = R v and Q' = 1/2 Q (0, w)
 limits                 n 2          lowest and highest value of the coordinates that have limits
 friction               n 4          F_c, F_s, v_s (0: none) and v_0 of the coordinates that have dry friction
 friction_load          n 2          what the force that a joint transmits adds to F_c: beside its axis, along it
@@ -32,15 +33,19 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array
+from substructures.mechanics.balls import accelerations as in_joints
+from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
+from substructures.mechanics.state_names import ball_rows, positions_of
+from substructures.part.balls import position_rates
 from substructures.part.outputs import over_formulas
-from substructures.part.relations import of_coordinates
+from substructures.part.relations import of_coordinates, of_rates
 from substructures.part.topology import MOST_CHRISTOFFEL
 from substructures.tree.assembly import Assembly
 from substructures.tree.closures import closure_formulas
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
-from substructures.tree.mounted_part import PlacedPart, ratios_of
+from substructures.tree.mounted_part import PlacedPart, balls_in, balls_of, ratios_of
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
@@ -97,10 +102,27 @@ def model_outputs(
     if wanted(*MOMENTUM):
         outputs |= _momentum(placed, n)
     outputs |= {name: found for name, found in _joint_laws(assembly, n).items() if wanted(name)}
+    if assembly.balls and names is None:
+        outputs["position_rates"] = _position_rates(assembly, rates)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
-    return of_coordinates(outputs, coupled.ratios)
+    return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
+
+
+def _position_rates(assembly: Assembly, rates: Sequence[Scalar]) -> Formulas:
+    """q', and of ball joints p' = R v and Q' = 1/2 Q (0, w); ``rates``: of all joints, as formulas."""
+    graph, pairs = assembly.scope.graph, list(zip(assembly.instances, assembly.mounted, strict=True))
+    names = [f"{i.name}.{joint.coordinate}" for i, m in pairs for joint in m.part.topology.joints]
+    found, movers = (
+        dict(zip(names, rates, strict=True)),
+        [m.first + c for _, m in pairs for c in m.part.topology.movers],
+    )
+    for ball in assembly.balls:
+        moved = position_rates(graph, ball.positions, [graph.lift(rates[a]) for a in ball.joints])
+        found |= zip(ball.positions, moved, strict=True)
+    order = positions_of([names[a] for a in movers], ball_rows(assembly.balls, names))
+    return array((len(order),), lambda i: found[order[i]])
 
 
 def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
@@ -119,12 +141,12 @@ def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:
 
 def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequence[Scalar]]:
     """Velocity forces, alone and less the gravity forces, by Newton and Euler's recursion."""
-    bias = bias_forces(coupled.placed, rates)
+    bias = bias_forces(coupled.placed, rates, second=at_constant_rates(balls_in(coupled.placed), rates))
     return {"bias": bias, "nonlinear_effects": [x - q for x, q in zip(bias, coupled.gravity, strict=True)]}
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
-    """Velocities and accelerations of all joints: the symbols, or what relations make of them."""
+    """Velocities and accelerations of all joints: the symbols, or what relations and rates of balls make of them."""
     rates: list[Expr] = []
     accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
@@ -135,7 +157,7 @@ def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
     ratios = ratios_of(over_formulas(assembly.scope.graph), assembly.mounted)
     lift = assembly.scope.graph.lift
     first, second = ([lift(x) for x in ratios.rates(some)] for some in (rates, accelerations))
-    return first, second
+    return first, [lift(x) for x in in_joints(balls_of(assembly.mounted), first, second)]
 
 
 def _momentum(placed: Sequence[PlacedPart], n: int) -> dict[str, Formulas]:

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.laws import magnitude, maximum, minimum
+from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import (
     INTERFACE,
@@ -83,6 +84,18 @@ def ratios_of(run: Run, mounted: Sequence[MountedPart]) -> Ratios:
         else:
             multipliers += [1] * m.part.joint_count
     return Ratios(tuple(of), tuple(multipliers), tuple(movers))
+
+
+def balls_of(mounted: Sequence[MountedPart], names: Sequence[str] = ()) -> tuple[BallJoint, ...]:
+    """The ball and floating joints of a tree; ``names``: of the instances, for those of their positions."""
+    prefixes = [f"{name}." for name in names] or [""] * len(mounted)
+    pairs = zip(mounted, prefixes, strict=True)
+    return tuple(ball.mounted(m.first, prefix) for m, prefix in pairs for ball in m.part.topology.balls)
+
+
+def balls_in(placed: Sequence[PlacedPart]) -> tuple[BallJoint, ...]:
+    """The ball and floating joints of parts that have their places."""
+    return balls_of([here.mounted for here in placed])
 
 
 def joint_position(graph: Graph, m: MountedPart, c: int) -> Expr:

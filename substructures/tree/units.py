@@ -9,10 +9,10 @@ from typing import Any
 from substructures.documents import escape
 from substructures.documents.units import NUMBER, read_unit
 from substructures.expr.program import Program
+from substructures.expr.units.angles import RAD, angle_warnings
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Notice, Place, UnitCheck, dimension_of
 from substructures.loads.units import COORDINATE, LENGTH, RATE, vector
-from substructures.part.angles import RAD, angle_warnings
 from substructures.part.definition import Definition
 from substructures.part.parameters import names_in_limits
 from substructures.part.part import Part

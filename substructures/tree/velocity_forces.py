@@ -10,13 +10,14 @@ from substructures.expr.graph import Expr, Graph, GraphState
 from substructures.expr.program import Formulas
 from substructures.expr.tally import Tally
 from substructures.loads.scope import Scope
+from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Scalar, negate
 from substructures.mechanics.newton_euler import BodyMotion
 from substructures.mechanics.velocity_forces import velocity_forces
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import PlacedPart, balls_in
 
 #: velocity forces, or these less the gravity forces, of a tree with these rates
 Way = Callable[[Graph, Coupled, Sequence[Expr], bool], Sequence[Scalar]]
@@ -56,10 +57,16 @@ def least_forces(scope: Scope, coupled: Coupled, rates: Sequence[Expr]) -> dict[
         graph.restore(start.copy())
         return trial
 
-    least = min(tried(composite), tried(recursive), key=attrgetter("operations"))
+    # from the composites in coordinates alone
+    ways = (recursive,) if balls_in(coupled.placed) else (composite, recursive)
+    least = min(map(tried, ways), key=attrgetter("operations"))
     symbols = set(nodes((coupled.christoffel or {}).values()))
     # each of them is formed, and multiplied once at least
-    if coupled.christoffel is not None and operations(symbols) + len(symbols) < least.operations:
+    if (
+        coupled.christoffel is not None
+        and not balls_in(coupled.placed)
+        and operations(symbols) + len(symbols) < least.operations
+    ):
         least = min(least, tried(multiplied), key=attrgetter("operations"))
     graph.restore(least.graph)
     return {"bias": least.way(graph, coupled, rates, False), "nonlinear_effects": least.effects}
@@ -91,7 +98,7 @@ def outermost(part: PlacedPart) -> PlacedPart:
 
 def recursive(_: Graph, coupled: Coupled, rates: Sequence[Expr], falling: bool) -> Sequence[Scalar]:
     """From the accelerations of all bodies for q'' = 0."""
-    return bias_forces(coupled.placed, rates, falling)
+    return bias_forces(coupled.placed, rates, falling, at_constant_rates(balls_in(coupled.placed), rates))
 
 
 def multiplied(graph: Graph, coupled: Coupled, rates: Sequence[Expr], falling: bool) -> Sequence[Scalar]:

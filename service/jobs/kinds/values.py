@@ -17,12 +17,15 @@ from substructures.quantities.quantity import REGRESSOR, TABLE
 from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
 
+#: what of a summary says how a model moves
+TIED = ("velocity_constraints", "contacts", "balls")
+
 
 def without_formulas(summary: Mapping[str, Any]) -> Model:
     """The model of a stored summary with an empty program, for checks of names, units and lengths."""
     names = tuple(summary["coordinates"]), summary["joints"], tuple(summary["frames"])
     closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-    tied: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in ("velocity_constraints", "contacts")}
+    tied: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in TIED}
     empty = Program((), (), {})
     inputs = summary.get("inputs", {})
     return Model(empty, *names, summary["parameters"], {}, closures, inputs, **tied)

@@ -38,7 +38,7 @@ def vector(entries: Sequence[Expr]) -> Formulas:
 def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | None]:
     """The lookup of names; a symbol is declared when it is first used."""
     kinds: dict[str, Symbol] = {"t": Symbol("t", "time", "s")}
-    kinds |= {name: Symbol(name, "coordinate") for name in model.coordinates}
+    kinds |= {name: Symbol(name, "coordinate") for name in model.positions}
     kinds |= {f"{name}'": Symbol(f"{name}'", "velocity") for name in model.coordinates}
     kinds |= {name: Symbol(name, "parameter", str(p.get("unit", ""))) for name, p in model.parameters.items()}
     if inputs:

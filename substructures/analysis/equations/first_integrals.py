@@ -2,13 +2,12 @@
 
 Energy: H' = Q_a q'^a + V' is the zero formula; of given motions Jacobi's (section 12), beside momenta alone.
 Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0, then p_c = g_cb q'^b. The same for constant
-directions c^a across the coordinates: c^a p_a (:mod:`.symmetries`).
-Momenta of the whole: the derivative of p . e or L . e along the equations of motion is the zero formula, which is so
-exactly when gravity, loads and the reactions of the world have no resultant along (about) e.
+directions c^a: c^a p_a (:mod:`.symmetries`). Momenta of the whole: the derivative of p . e or L . e along the motion
+is the zero formula, as gravity, loads and the reactions of the world have no resultant along (about) e.
 Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
 g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0. So do
-velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. What is zero is decided by the
-graph, where equal formulas are one node, and by :mod:`substructures.expr.calculus.vanish`.
+velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. Zero is what the graph, in which
+equal formulas are one node, and :mod:`substructures.expr.calculus.vanish` find to be so.
 """
 
 from __future__ import annotations
@@ -40,6 +39,7 @@ from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.quantities.numbers.states import input_defaults
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS
 
@@ -62,8 +62,8 @@ def first_integrals(
     InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     if degree not in (1, 2):
-        message = f"integrals of degree {str(degree)[:80]} in the momenta are not looked for: give 1 or 2"
-        raise InvalidArgument([Fault("/degree", "unknown-degree", message)])
+        raise InvalidArgument.at("/degree", "unknown-degree", f"1 or 2 is known as degree, not {str(degree)[:80]}")
+    require_chains(model.balls)
     known = model.input_names
     inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
     faults = [

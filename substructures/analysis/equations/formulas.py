@@ -14,6 +14,7 @@ from substructures.expr.calculus.corners import between_corners
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
+from substructures.part.balls import position_rates
 from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
@@ -73,6 +74,17 @@ class ModelFormulas(Workspace):
         super().__init__(model, zero)
         self.q = [self.graph.symbol(name) for name in model.coordinates]
         self.rates = [self.velocity_symbol(a) for a in range(self.n)]
+
+    @cached_property
+    def position_rates(self) -> dict[str, Expr]:
+        """By what a state q consists of: q', of ball joints p' = R v and Q' = 1/2 Q (0, w)."""
+        rates, units = dict(zip(self.model.coordinates, self.rates, strict=True)), self.model.state_units["q"]
+        for ball in self.model.balls:
+            moving = [rates.pop(name) for name in ball["velocities"]]
+            self.symbols |= {name: Symbol(name, "coordinate", units[name]) for name in ball["positions"]}
+            found = position_rates(self.graph, ball["positions"], moving)
+            rates |= dict(zip(ball["positions"], found, strict=True))
+        return {name: rates[name] for name in self.model.positions}
 
     @cached_property
     def factors(self) -> MetricElimination:
@@ -163,4 +175,4 @@ class ModelFormulas(Workspace):
         return directional(exprs, self._seeds() | accelerations)
 
     def _seeds(self) -> dict[str, Expr]:
-        return {str(x.value): v for x, v in zip(self.q, self.rates, strict=True)} | self.time
+        return self.position_rates | self.time

@@ -56,12 +56,12 @@ class Conditions:
     @property
     def q(self) -> Array:
         """Coordinates at the start (n,)."""
-        return self.start[: self.model.dof]
+        return self.start[: len(self.model.positions)]
 
     @property
     def qd(self) -> Array:
         """Velocities at the start (n,)."""
-        return self.start[self.model.dof :]
+        return self.start[len(self.model.positions) :]
 
     def varied_potential(self) -> list[str]:
         """Inputs that vary and are part of the potential energy, which then changes by a power that is not known."""
@@ -77,9 +77,7 @@ class Conditions:
 
     def followed(self, t: Array, x: Array, names: Sequence[str]) -> dict[str, Array]:
         """Outputs of the expressions at times (K,) and states (K, 2n)."""
-        n = self.model.dof
-        values = self.values | {"t": t} | {name: x[:, a] for a, name in enumerate(self.model.coordinates)}
-        values |= {f"{name}'": x[:, n + a] for a, name in enumerate(self.model.coordinates)}
+        values = self.values | {"t": t} | {name: x[:, a] for a, name in enumerate(state_names(self.model))}
         return interpret_in_blocks(self.expressions, values, list(names), len(t))
 
     def inputs_at(self, t: Array, x: Array) -> dict[str, Array]:
@@ -121,8 +119,8 @@ class Conditions:
 
 
 def state_names(model: Model) -> list[str]:
-    """Coordinates, then velocities."""
-    return [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    """Coordinates, or positions of ball joints, then velocities."""
+    return [*model.positions, *(f"{name}'" for name in model.coordinates)]
 
 
 def read_conditions(

@@ -20,5 +20,5 @@ def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Tr
     limits = joint_limits(model, parameters)
     lowest, highest = motion.reached or reached(motion.t, motion.q, motion.qd)
     judge = model.plausibility
-    apart = [] if judge is None else judge.apart(motion.coordinates, motion.q)
+    apart = [] if judge is None else judge.apart(model.positions, motion.q)
     return replace(motion, limits=limits.plain(), warnings=(*limits.warnings(lowest, highest), *apart))

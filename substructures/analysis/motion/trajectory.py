@@ -53,7 +53,8 @@ class Trajectory:
     to there. ``steps``: accepted steps of the integrator. ``figures``: numbers about the computation (evaluations of
     the right-hand side, seconds, real-time factor). ``cancelled``: stopped by whoever watched its progress.
     ``reached``: lowest and highest values of the coordinates on the way, (n,) each, between steps too; ``limits``:
-    those of the joints; ``warnings``: what was left of them. ``joints``: the rows of reactions, ``loads``: of powers.
+    those of the joints; ``warnings``: what was left of them. ``joints``: the rows of reactions, ``loads``: of powers;
+    ``positions``: the columns of ``q``, where they are not the coordinates.
     """
 
     coordinates: tuple[str, ...]
@@ -73,6 +74,7 @@ class Trajectory:
     warnings: tuple[Mapping[str, str], ...] = ()
     joints: tuple[str, ...] = ()
     loads: tuple[str, ...] = ()
+    positions: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         when = f"t = {self.t[0]:g} to {self.t[-1]:g} s" if len(self.t) else "at no time"
@@ -113,4 +115,5 @@ class Trajectory:
             "warnings": [dict(warning) for warning in self.warnings],
             **({"joints": list(self.joints)} if self.joints else {}),
             **({"loads": list(self.loads)} if self.loads else {}),
+            **({"positions": list(self.positions)} if self.positions else {}),
         }

@@ -13,9 +13,9 @@ from substructures.certificate.derived.powers import OUTPUT as POWERS
 
 
 def to_npz(trajectory: Trajectory) -> bytes:
-    """Arrays t, q, qd and all series by name, and ``coordinates``."""
+    """Arrays t, q, qd and all series by name, and ``coordinates``, of q."""
     buffer = io.BytesIO()
-    names = np.array(trajectory.coordinates, dtype=np.str_)
+    names = np.array(trajectory.positions or trajectory.coordinates, dtype=np.str_)
     np.savez_compressed(buffer, allow_pickle=False, coordinates=names, **trajectory.arrays())
     return buffer.getvalue()
 
@@ -25,7 +25,7 @@ def to_csv(trajectory: Trajectory) -> str:
     named by joint and axis, powers ``power.<row>``); 17 digits.
     """
     columns: list[tuple[str, Array]] = [("t", trajectory.t)]
-    columns += [(name, trajectory.q[:, a]) for a, name in enumerate(trajectory.coordinates)]
+    columns += [(name, trajectory.q[:, a]) for a, name in enumerate(trajectory.positions or trajectory.coordinates)]
     columns += [(f"{name}'", trajectory.qd[:, a]) for a, name in enumerate(trajectory.coordinates)]
     for name, values in trajectory.series.items():
         flat, many = values.reshape(len(trajectory.t), -1), values.ndim > 1

@@ -7,13 +7,13 @@ g = L^T D L without exchange of rows (notation.md, section 7).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from flint import arb
 
 from substructures.certificate.derived.model_at import ModelAt, dot, total
-from substructures.certificate.linear import Ball, Matrix
+from substructures.certificate.linear import Ball, Matrix, quaternion_product, turn_of, vector
 from substructures.certificate.outputs import Outputs
 
 #: what one quantity has to be at a state
@@ -226,6 +226,27 @@ def simulated(m: ModelAt) -> Outputs:
     vector_of(result, "forward_dynamics", m.accelerations())
     vector_of(result, "pivots", pivots(m.matrix("metric")))
     result.scalar("power", power(m))
+    return result
+
+
+def simulated_in_rates(positions: Sequence[str], balls: Sequence[Mapping[str, Sequence[str]]]) -> Expectation:
+    """The same with ball joints: changes of the ``positions`` of states, accelerations, power."""
+    return partial(_simulated_in_rates, positions, balls)
+
+
+def _simulated_in_rates(positions: Sequence[str], balls: Sequence[Mapping[str, Sequence[str]]], m: ModelAt) -> Outputs:
+    result, moved = Outputs(), dict(zip(m.coordinates, m.rates, strict=True))
+    for ball in balls:
+        names, w = ball["positions"], [m.values[f"{name}'"] for name in ball["velocities"]]
+        Q = [m.values[name] for name in names[-4:]]
+        half = [x / 2 for x in quaternion_product(Q, (arb(0), *w[-3:]))]
+        place = (turn_of(Q) * vector(*w[:3])).entries() if len(names) > len(Q) else []
+        moved |= dict(zip(names, (*place, *half), strict=True))
+    vector_of(result, "position_rates", [moved[name] for name in positions])
+    vector_of(result, "forward_dynamics", m.accelerations())
+    along = m.along(m.time() | {name: moved[name] for name in positions})
+    work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True))
+    result.scalar("power", work + along.scalar("potential_energy"))
     return result
 
 

@@ -21,6 +21,7 @@ from substructures.export.fmu.binaries import libraries
 from substructures.export.fmu.description import build_description, description2, description3, terminals
 from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
 from substructures.export.fmu.variables import Layout, layout_of
+from substructures.tree.given.ties import require_chains
 
 _SHARED = ("simulation.h", "simulation.c", "fmi.h")
 _OF_CONTACTS = ("contacts.h", "contacts.c", "complementarity.h", "complementarity.c")
@@ -40,6 +41,8 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
 
     Raises InvalidArgument where there is nothing to be simulated, MissingValue, TooLarge.
     """
+    q, qd = (exported.interface.vectors[symbol].names for symbol in ("q", "qd"))
+    require_chains(q if len(q) != len(qd) else ())
     layout = layout_of(exported)
     motion, by = _differentiated(layout)
     tangents = (

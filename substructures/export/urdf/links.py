@@ -22,6 +22,7 @@ from substructures.part.definition import Definition
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.relations import read_relations
 from substructures.part.topology import BASE, JointEntry, topology
+from substructures.tree.given.ties import require_chains
 
 #: x_parent = R x + r
 Pose = tuple[Array, Array]
@@ -72,6 +73,7 @@ def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
     """
     # joints stand where their own positions are zero: relations come beside them
     m = mechanism(definition.model_copy(update={"relations": ()}))
+    require_chains(m.topology.balls)
     laws = {k: law.damping for k, law in enumerate(m.laws) if _is_constant(m, law.damping)}
     outputs = _outputs(m, laws)
     layout, names = topology(definition), m.topology.coordinates

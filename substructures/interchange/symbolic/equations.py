@@ -10,6 +10,7 @@ from sympy.physics.mechanics.system import SymbolicSystem
 from sympy.physics.vector import dynamicsymbols
 
 from substructures.interchange.symbolic.expressions import dynamic_symbols, to_sympy
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 
@@ -18,6 +19,7 @@ def symbolic_system(model: Model) -> Any:
 
     It has the mass matrix, the right-hand side and the inputs that PyDy and its users take. Raises as ``to_sympy``.
     """
+    require_chains(model.balls)
     t = dynamicsymbols._t
     q = [sympy.Function(name)(t) for name in model.coordinates]
     u = [sympy.Function(f"u.{name}")(t) for name in model.coordinates]
@@ -39,6 +41,7 @@ def linearizer(model: Model) -> Any:
 
     Coordinates are q(t), speeds their derivatives, inputs ``.r``, as of a ``LagrangesMethod``.
     """
+    require_chains(model.balls)
     named = dynamic_symbols(model.coordinates)
     q, u, a = (sympy.Matrix([named[name + stroke] for name in model.coordinates]) for stroke in ("", "'", "''"))
     metric, bias, forces = (to_sympy(model, name, dynamic=True) for name in ("metric", "bias", "forces"))

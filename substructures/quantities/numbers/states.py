@@ -26,6 +26,7 @@ from substructures.expr.program import Program, array, program
 from substructures.expr.syntax import ExpressionError
 from substructures.loads.scope import no_names
 from substructures.quantities.measured import PlaceUnits, numeric, si_values
+from substructures.quantities.numbers.quaternions import with_unit_quaternions
 from substructures.tree.model import Model
 
 #: states: (n,), (N, n), or by coordinate name a number or (N,) numbers
@@ -122,18 +123,19 @@ def _state(model: Model, given: Any, name: str) -> tuple[Array, bool] | None:
     given = si_values(given, model.state_units[name], f"/{name}")
     if isinstance(given, Mapping):
         given = by_name(model, given, name)
-    values = numeric(given, f"/{name}")
-    if model.dof == 1 and (values.ndim == 0 or (values.ndim == 1 and len(values) != 1)):
+    values, names = numeric(given, f"/{name}"), model.positions if name == "q" else model.coordinates
+    if len(names) == 1 and (values.ndim == 0 or (values.ndim == 1 and len(values) != 1)):
         # one number for one coordinate, or one for each state, as MATLAB writes lists of one
         return values.reshape(-1, 1), values.ndim == 0
-    if values.ndim not in (1, 2) or values.shape[-1] != model.dof:
+    if values.ndim not in (1, 2) or values.shape[-1] != len(names):
         if values.ndim in (1, 2):
-            message = wrong_length(values.shape[-1], model.coordinates)
+            message = wrong_length(values.shape[-1], names)
         else:
-            expected = f"(N, {model.dof}) or ({model.dof},)"
-            message = f"shape {values.shape} found, {expected} expected, since {_count_of(model.coordinates)}"
+            expected = f"(N, {len(names)}) or ({len(names)},)"
+            message = f"shape {values.shape} found, {expected} expected, since {_count_of(names)}"
         raise InvalidArgument.at(f"/{name}", "wrong-length", message)
-    return np.atleast_2d(values), values.ndim == 1
+    balls, rows = model.balls if name == "q" else (), np.atleast_2d(values)
+    return with_unit_quaternions(names, balls, rows), values.ndim == 1
 
 
 def wrong_length(found: int, coordinates: Sequence[str]) -> str:
@@ -162,28 +164,25 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
     """(N, n) of columns by coordinate, in the order of the model; (n,) of numbers. Raises InvalidArgument below
     ``/name``.
     """
-    unknown = [str(key) for key in given if key not in model.coordinates]
+    names = model.positions if name == "q" else model.coordinates
+    unknown = [str(key) for key in given if key not in names]
     faults = [
         Fault(
             f"/{name}/{escape(key)}",
             "unknown-coordinate",
-            _given(key, model)
-            if key in model.given
-            else f"unknown coordinate '{key[:80]}'{among(key, model.coordinates, k)}",
+            _given(key, model) if key in model.given else f"unknown coordinate '{key[:80]}'{among(key, names, k)}",
         )
         for k, key in enumerate(unknown)
     ]
-    faults += [
-        Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in model.coordinates if c not in given
-    ]
+    faults += [Fault(f"/{name}", "missing", f"no value for coordinate '{c}'") for c in names if c not in given]
     if faults:
         raise InvalidArgument(faults)
     # columns by coordinate, in the order of the model: (N,) each, or numbers
-    columns = {c: numeric(given[c], f"/{name}/{escape(c)}") for c in model.coordinates}
+    columns = {c: numeric(given[c], f"/{name}/{escape(c)}") for c in names}
     for c, column in columns.items():
-        first = columns[model.coordinates[0]]
+        first = columns[names[0]]
         if column.shape != first.shape:
-            message = f"shape {column.shape} found, but {first.shape} of '{model.coordinates[0]}'"
+            message = f"shape {column.shape} found, but {first.shape} of '{names[0]}'"
             raise InvalidArgument.at(f"/{name}/{escape(c)}", "wrong-length", message)
     return np.stack(list(columns.values()), axis=-1) if columns else np.zeros((1, 0))
 
@@ -211,7 +210,8 @@ def known_values(
     for primes, columns in (("", states.q), ("'", states.qd), ("''", states.qdd)):
         if columns is not None:
             rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
-            values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(model.coordinates)}
+            names = model.coordinates if primes else model.positions
+            values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(names)}
     values["t"] = _times(given.get("t"), count)
     if not model.coordinates:
         # nothing else says how many states there are

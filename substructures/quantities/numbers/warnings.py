@@ -46,8 +46,8 @@ def value_warnings(
     notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
     notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
     if judge is not None and q is not None:
-        notices += judge.left(model.coordinates, q, parameters, first)
-        notices += judge.apart(model.coordinates, q, first)
+        notices += judge.left(model.positions, q, parameters, first)
+        notices += judge.apart(model.positions, q, first)
     return notices
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from decimal import Decimal
 from typing import Annotated, Any, Literal, Protocol
 
@@ -95,6 +95,9 @@ class Tied(Protocol):
         """As in the document, or as plain data."""
 
 
+#: what takes ball and floating joints, whose rates are no derivatives of coordinates
+TAKES_BALLS = ("simulations", "TreeMotion", "forward_dynamics", "reactions")
+
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
@@ -109,13 +112,27 @@ TIES = {
 }
 
 
+def require_chains(balls: Collection[Any], instead: str = "", pointer: str = "") -> None:
+    """Raises InvalidDocument (``has-balls``) where joints without singular angles are not taken into account."""
+    if balls:
+        message = (
+            "rates of ball and floating joints, which are no derivatives of coordinates, are not taken into account"
+        )
+        instead = f"{instead}, or " if instead else ""
+        advice = f"{instead}take the joint types 'spherical' and 'free', which have coordinates"
+        raise InvalidDocument.at(pointer, "has-balls", f"{message} here: {advice}")
+
+
 def names_of(ties: Sequence[Any]) -> list[str]:
     """Their names."""
     return [str(each["name"] if isinstance(each, Mapping) else each.name) for each in ties]
 
 
 def require_untied(tree: Tied, what: str) -> None:
-    """Raises InvalidDocument (``has-velocity-constraints``, ``has-contacts``) where ``what`` would ignore those."""
+    """Raises InvalidDocument (``has-velocity-constraints``, ``has-contacts``, ``has-balls``) where ``what`` would not
+    know them.
+    """
+    require_chains(getattr(tree, "balls", ()) if what not in TAKES_BALLS else ())
     for field, (takes, motion) in TIES.items():
         names = ", ".join(f"'{name}'" for name in names_of(getattr(tree, field)))
         if names and what not in (*takes, motion):

@@ -18,7 +18,7 @@ from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.document import Instance, TreeSpec, require_ungiven
-from substructures.tree.given.ties import require_untied
+from substructures.tree.given.ties import require_chains, require_untied
 from substructures.tree.publishing.published_loads import closure_of_part, frames_of_part, load_of_part
 from substructures.tree.publishing.published_names import PartNames, part_names
 
@@ -60,6 +60,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     Raises InvalidDocument for names of ports, frames and parameters that are not there, and parameters without a value.
     """
     _require_tree(spec)
+    require_chains([ball for part in parts.values() for ball in part.topology.balls])
     names = part_names(spec, parts, wanted.free, wanted.defaults)
     document: dict[str, Any] = {**wanted.about, "bodies": [], "loads": [], "relations": [], "poses": {}, "left_out": []}
     for instance in _hosts_first(spec):

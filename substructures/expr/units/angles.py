@@ -9,14 +9,13 @@ from typing import Any
 
 from substructures.documents.units import NUMBER
 from substructures.expr.units.unit_check import Notice, Place
-from substructures.part.definition import Parameter
 
 TURNS = 10  # rad
 #: the SI unit of angles, and a field that is a number but no angle
 RAD, COEFFICIENT = "rad", "coefficient"
 
 
-def angle_warnings(places: Iterable[Place], parameters: Mapping[str, Parameter]) -> list[Notice]:
+def angle_warnings(places: Iterable[Place], parameters: Mapping[str, Any]) -> list[Notice]:
     """Warnings about places of angles, and about parameters that are angles by their unit or stand in such a place."""
     angles = {at: value for at, value, dimension in places if dimension == NUMBER and _field(at) != COEFFICIENT}
     named = {value for value in angles.values() if isinstance(value, str)}

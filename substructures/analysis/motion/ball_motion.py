@@ -1,0 +1,211 @@
+"""Motion of trees with ball and floating joints: quaternions and rates together, judged by energy and norms.
+
+x = (q, v, W) with the quaternions as they are in q (notation.md, section 14),
+
+    g v' + Gamma~ v v = Q        Q' = 1/2 Q (0, w)        p' = R v        W' = Q_a v^a + V'
+
+The equations hold for quaternions of any length, so that none is held at length 1 on the way: how far they leave it
+tells how well they were integrated. Results have them at length 1.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import replace
+from functools import lru_cache, partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.kernels import Known
+from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
+from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import METHODS
+from substructures.analysis.motion.judges import energy_balance, unbalanced
+from substructures.analysis.motion.problems.kinds import TreeMotion
+from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.resets import acting
+from substructures.analysis.motion.second_judges import computed_again
+from substructures.analysis.motion.second_run import state_groups
+from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.motion.varying_inputs import VaryingInputs
+from substructures.analysis.verdict import Check
+from substructures.array import Array
+from substructures.certificate.derived.model_formulas import simulated_in_rates
+from substructures.compile import Kernel, compile_program
+from substructures.errors import InvalidArgument
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.program import Program, array, program
+from substructures.quantities.certificate import certified
+from substructures.quantities.numbers.limits import reached
+from substructures.tree.model import Model
+
+NEEDS = ("metric", "bias", "forces", "potential_energy")
+OUTPUTS = ("position_rates", "forward_dynamics", "power")
+SINGULAR = "the accelerations are not determined at the start: look at masses, inertias and forces"
+
+
+def equations_in_rates(model: Model, zero: Iterable[str] = ()) -> Program:
+    """``position_rates`` (m,): changes of a state q; ``forward_dynamics`` (n,): v'; ``power``: Q_a v^a + V'.
+
+    ``zero``: symbols that are 0. Raises InvalidInput for rates without inertia.
+    """
+    f = ModelFormulas(model, zero)
+    moved, second = list(f.position_rates.values()), f.acceleration
+    outputs = {
+        "position_rates": array((len(moved),), lambda i: moved[i]),
+        "forward_dynamics": array((f.n,), lambda a: second[a]),
+        "power": array((), lambda: f.power),
+    }
+    expected = simulated_in_rates(model.positions, model.balls)
+    return certified(program(f.graph, outputs, f.symbols), model, expected, "equations of motion", zero=f.zero)
+
+
+@lru_cache(maxsize=16)
+def _kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
+    return compile_program(equations_in_rates(model.source, zero), OUTPUTS, folder)
+
+
+class BallRates:
+    """x' of x = (q, v, W), (m,), (n,) and one number. Not for several threads at a time."""
+
+    def __init__(self, conditions: Conditions, folder: Path | None) -> None:
+        model = conditions.model
+        self.m, self.n = len(model.positions), model.dof
+        self._t, self._x = np.zeros(1), np.zeros((1, self.m + self.n))
+        self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
+        self._out = {name: np.zeros((1, *size)) for name, size in zip(OUTPUTS, ((self.m,), (self.n,), ()), strict=True)}
+        kernel = _kernel(Known(model.program.digest, model), conditions.zero, folder)
+        columns = [(state_names(model), self._x), *self.inputs.columns]
+        self._run = kernel.bind(self._out, conditions.values | {"t": self._t}, columns=columns)
+
+    def __call__(self, t: float, x: Array) -> Array:
+        """At a state; not finite where the metric is singular."""
+        self._t[0], self._x[0] = t, x[:-1]
+        self.inputs.fill()
+        self._run()
+        moved, second, power = (self._out[name] for name in OUTPUTS)
+        return np.concatenate((moved[0], second[0], power))
+
+
+def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
+    """The motion of a tree with ball joints from a start over a span of time.
+
+    Series: ``kinetic_energy``, ``potential_energy``, ``energy``, ``work`` [J], varying inputs, and those of the
+    problem. Checks: the balance of energy, and the norms of quaternions. What goes wrong on the way is a trajectory
+    with status ``failed``. Raises InvalidInput (pointers start with names of arguments of ``simulate``), MissingValue.
+    """
+    _require_known(problem, kind)
+    model, folder, start = problem.model, problem.integrator.folder, problem.span[0]
+    conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
+    f = BallRates(conditions, folder)
+    f.inputs.enter(*problem.span)
+    x = np.append(conditions.start, 0.0)
+    if np.isfinite(f(start, x)).all():
+        motion = _moved(conditions, f, problem, x, problem.integrator.progress)
+    else:
+        motion = IntegratedMotion([start], [x], [start], [x], status="failed", message=SINGULAR)
+    found = _judged(conditions, f, problem, motion)
+    quiet = replace(conditions, events=())
+
+    def move(other: MotionProblem, y: Array, told: ProgressReport | None, _: bool) -> IntegratedMotion:
+        """The motion once more."""
+        return _moved(quiet, f, other, y, told)
+
+    is_whole = bool(conditions.varied_potential())
+    again = computed_again(problem, motion, state_groups(f.m, f.n), move, is_whole=is_whole)
+    return replace(found, checks=(*found.checks, *again))
+
+
+def _require_known(problem: MotionProblem, kind: TreeMotion) -> None:
+    """Raises InvalidArgument for what is not known of a motion with ball joints."""
+    integrator = problem.integrator
+    known: dict[str, tuple[bool, str]] = {
+        "method": (integrator.fixed_step is None and integrator.method in METHODS, ", ".join(METHODS)),
+        "friction": (kind.friction == "regularised", "regularised"),
+        "events": (not acting(problem.events), "events without 'reset'"),
+    }
+    for name, (is_known, instead) in known.items():
+        if not is_known:
+            message = f"with ball and floating joints '{name}' is one of: {instead}"
+            raise InvalidArgument.at(f"/{name}", "not-supported", message)
+
+
+def _moved(
+    conditions: Conditions, f: BallRates, problem: MotionProblem, x: Array, progress: ProgressReport | None
+) -> IntegratedMotion:
+    integrator, span = problem.integrator, problem.span
+    settings = IntegratorSettings(integrator.stepper(), integrator.max_steps)
+    watches = conditions.watches(lambda _, y: y[:-1], integrator.folder)
+    breaks = conditions.breaks(span)
+    f.inputs.enter(span[0], [*breaks, span[1]][0])
+    times, told = problem.times.grid(), share_of(span, progress)
+    motion = integrate(f, x, span, times, settings, watches, breaks, told, f.inputs.enter)
+    f.inputs.leave()
+    return motion
+
+
+def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion: IntegratedMotion) -> Trajectory:
+    model, m = problem.model, f.m
+    t, x, results = motion.judged()
+    values: dict[str, Any] = {**conditions.values, **conditions.inputs_at(t, x[:, :-1]), "t": t}
+    values |= dict(zip(state_names(model), x[:, :-1].T, strict=True))
+    found = interpret_in_blocks(model.program, values, ["metric", "potential_energy"], len(t))
+    v = x[:, m:-1]
+    series = {
+        "kinetic_energy": np.einsum("kab,ka,kb->k", found["metric"], v, v) / 2,
+        "potential_energy": found["potential_energy"],
+        "work": x[:, -1],
+    }
+    varied, limit = conditions.varied_potential(), problem.drift_limit
+    energy = unbalanced(varied) if varied else energy_balance(t, series, not x[:, -1].any(), limit)
+    series["energy"] = series["kinetic_energy"] + series["potential_energy"]
+    norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in _quaternions(model)])
+    reason = "|Q| = 1 of all quaternions: Q' = 1/2 Q (0, w) keeps their lengths"
+    kept = Check.of(("quaternions", "zero", reason, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
+    unit = partial(with_lengths, model)
+    span = _reached(model, t, x, m)
+    return Trajectory(
+        model.coordinates,
+        t[results],
+        unit(x[results, :m]),
+        v[results],
+        {name: some[results] for name, some in series.items()} | conditions.series_at(t[results], x[results, :-1]),
+        (energy, kept),
+        motion.status,
+        motion.message,
+        motion.steps,
+        tuple(
+            replace(each, q=unit(y[None, :m])[0], qd=y[m:-1])
+            for each, (_, _, y) in zip(crossings(problem.events, motion.found, m), motion.found, strict=True)
+        ),
+        {"evaluations": float(motion.evaluations)},
+        motion.cancelled,
+        span,
+        positions=model.positions,
+    )
+
+
+def _quaternions(model: Model) -> list[list[int]]:
+    """The places of all quaternions in a state q."""
+    return [[model.positions.index(name) for name in ball["positions"][-4:]] for ball in model.balls]
+
+
+def with_lengths(model: Model, q: Array) -> Array:
+    """States (K, m) with quaternions of length 1."""
+    result = q.copy()
+    for some in _quaternions(model):
+        result[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
+    return result
+
+
+def _reached(model: Model, t: Array, x: Array, m: int) -> tuple[Array, Array]:
+    """Lowest and highest values of the coordinates; of rates of ball joints, which have no limits, 0."""
+    places = {name: i for i, name in enumerate(model.positions)}
+    found = np.zeros((2, model.dof))
+    own = [a for a, name in enumerate(model.coordinates) if name in places]
+    found[:, own] = reached(t, x[:, [places[model.coordinates[a]] for a in own]], x[:, [m + a for a in own]])
+    return found[0], found[1]

@@ -1,0 +1,108 @@
+"""Trees with joints without singular angles over HTTP: stored, shown, printed, evaluated, moved, exported."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+import pytest
+from fastapi.testclient import TestClient
+
+from service.messages.negotiation import MEDIA_TYPES
+
+#: a satellite on a wheel
+TREE: dict[str, Any] = {
+    "name": "satellite",
+    "gravity": [0, 0, -9.81],
+    "instances": [
+        {
+            "name": "s",
+            "definition": {
+                "name": "on-a-wheel",
+                "parameters": {"J": {"value": 0.2, "unit": "kg*m^2"}},
+                "bodies": [
+                    {"name": "hull", "parent": "base", "mass": 5, "inertia": {"xx": 2, "yy": 3, "zz": 4},
+                     "joint": {"type": "floating", "velocities": ["vx", "vy", "vz", "wx", "wy", "wz"]}},
+                    {"name": "wheel", "parent": "hull", "inertia": {"zz": "J"},
+                     "joint": {"type": "revolute", "coordinate": "spin"}},
+                ],
+            },
+        }
+    ],
+}  # fmt: skip
+POSITIONS = [*(f"s.r_hull_{axis}" for axis in "xyz"), *(f"s.q_hull_{axis}" for axis in "wxyz"), "s.spin"]
+
+
+@pytest.fixture
+def satellite(client: TestClient) -> TestClient:
+    made = client.post("/v1/trees", json=TREE)
+    assert made.status_code == 201, made.text
+    rates = [f"s.{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
+    assert made.json()["coordinates"] == [*rates, "s.spin"]
+    assert made.json()["balls"] == [{"positions": POSITIONS[:-1], "velocities": rates}]
+    return client
+
+
+def test_it_is_shown_and_printed(satellite: TestClient) -> None:
+    assert satellite.get("/trees/satellite").status_code == 200
+    for name in ("metric", "christoffel", "forces", "potential_energy", "bias", "position_rates"):
+        for kind in MEDIA_TYPES:
+            answer = satellite.get(f"/v1/trees/satellite/{name}?format={kind}")
+            assert answer.status_code == 200, (name, kind, answer.text[:300])
+    text = satellite.get("/v1/trees/satellite/bias?format=text").text
+    assert "wx'*wy'" in text
+    assert "q_hull" not in text
+
+
+def test_it_is_evaluated(satellite: TestClient) -> None:
+    body = {
+        "quantities": ["metric", "bias", "gravity"],
+        "q": [1, 2, 3, 0.6, 0.8, 0, 0, 0.5],
+        "qd": [0] * 3 + [1, 2, 3, 4],
+    }
+    found = satellite.post("/v1/trees/satellite/evaluations", json=body)
+    assert found.status_code == 200, found.text
+    assert np.array(found.json()["metric"]).shape == (7, 7)
+    # weight in the axes of the hull, which is turned about x
+    np.testing.assert_allclose(found.json()["gravity"][:3], [0, -5 * 9.81 * 0.96, -5 * 9.81 * -0.28], rtol=1e-12)
+    named = {**body, "q": dict(zip(POSITIONS, body["q"], strict=True))}  # type: ignore[call-overload]
+    assert satellite.post("/v1/trees/satellite/evaluations", json=named).json()["bias"] == found.json()["bias"]
+    wrong = satellite.post("/v1/trees/satellite/evaluations", json={**body, "q": [0, 0, 0, 1, 1, 0, 0, 0]})
+    assert (wrong.status_code, wrong.json()["errors"][0]["code"]) == (422, "not-a-unit-quaternion")
+    short = satellite.post("/v1/trees/satellite/evaluations", json={**body, "q": [0] * 7})
+    assert short.json()["errors"][0]["code"] == "wrong-length"
+
+
+def test_it_moves(satellite: TestClient) -> None:
+    start = {"q": [0, 0, 0, 1, 0, 0, 0, 0], "qd": [0, 0, 0, 0.1, 1, 0.2, 5], "span": [0, 3], "count": 4}
+    found = satellite.post("/v1/trees/satellite/simulations", json=start)
+    assert found.status_code == 200, found.text
+    told = found.json()
+    assert told["is_right"] is True
+    assert told["positions"] == POSITIONS
+    assert np.array(told["q"]).shape == (4, 8)
+    # free fall
+    np.testing.assert_allclose(np.array(told["q"])[:, 2], -9.81 / 2 * np.arange(4) ** 2, atol=1e-7)
+    for kind in ("text/csv", "image/svg+xml", "application/x-npz"):
+        answer = satellite.post("/v1/trees/satellite/simulations", json=start, headers={"Accept": kind})
+        assert answer.status_code == 200, (kind, answer.text[:300])
+    wrong = satellite.post("/v1/trees/satellite/simulations", json={**start, "friction": "exact"})
+    assert wrong.json()["errors"][0]["code"] == "not-supported", wrong.text
+
+
+@pytest.mark.parametrize(
+    ("path", "body"),
+    [
+        ("publish", {}),
+        ("linearisations", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
+        ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
+        ("equilibria", {"count": 1}),
+        ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
+    ],
+)
+def test_what_refuses_it_says_why(satellite: TestClient, path: str, body: dict[str, Any]) -> None:
+    answer = satellite.post(f"/v1/trees/satellite/{path}", json=body)
+    assert answer.status_code == 422, answer.text
+    assert answer.json()["errors"][0]["code"] == "has-balls", answer.text
+    for name in ("scene", "picture", "urdf"):
+        assert satellite.get(f"/v1/trees/satellite/{name}").status_code in (404, 422), name
