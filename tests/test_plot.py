@@ -10,6 +10,7 @@ import pytest
 
 from substructures.analysis import drawings
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
+from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.verdict import Check
 from substructures.pictures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
@@ -99,3 +100,17 @@ def test_a_root_locus_is_drawn_in_the_plane_and_over_its_parameter(monkeypatch: 
     assert [(line.x.tolist(), line.y.tolist()) for line in plane.lines] == [([-1, 1], [2, 3]), ([-1, 1], [-2, -3])]
     assert [(line.x.tolist(), line.y.tolist()) for line in parts.lines] == [([5, 6], [-1, 1])] * 2
     assert plane.marks == (("", 0.0),)
+
+
+def test_a_frequency_response_is_a_bode_diagram(monkeypatch: pytest.MonkeyPatch) -> None:
+    """G = 1/(1 + i w): 0 dB and -20 dB a decade, 0 and -90 degrees; what has no logarithm is left out."""
+    w = np.array([0.0, 0.01, 1.0, 100.0])
+    found = FrequencyResponse(("tau",), ("x", "none"), w, np.zeros((4, 2, 1), complex), np.array([-1 + 0j]))
+    found.response[:, 0, 0] = 1 / (1 + 1j * w)
+    title, panels = drawn_panels(monkeypatch, lambda: drawings.draw(found, "P"))
+    assert title == "frequency response, finished: 4 frequencies"
+    (size, nothing), (phase, _) = panels["magnitude"].lines, panels["phase"].lines
+    assert (size.name, len(nothing.x)) == ("x to tau", 0)
+    assert size.x.tolist() == pytest.approx([-2, 0, 2])
+    assert size.y.tolist() == pytest.approx([0, -10 * np.log10(2), -40], abs=1e-3)
+    assert phase.y.tolist() == pytest.approx([-0.573, -45, -89.427], abs=1e-3)

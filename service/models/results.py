@@ -20,7 +20,7 @@ DRAWINGS = "substructures.analysis.drawings"
 JSON, CSV, SVG = "application/json", "text/csv", "image/svg+xml"
 #: formats by their names in files and items of jobs
 MEDIA_TYPES = {"json": JSON, "npz": arrays.MEDIA_TYPE, "csv": CSV, "svg": SVG, "arrow": arrow.MEDIA_TYPE}
-#: what every result can be, what trajectories can be, and what root loci and steady motions can be
+#: what every result can be, what trajectories can be, and what root loci and their like can be
 PLAIN = (JSON, arrays.MEDIA_TYPE)
 TRAJECTORY = (*PLAIN, CSV, SVG, arrow.MEDIA_TYPE)
 DRAWN = (*PLAIN, SVG)

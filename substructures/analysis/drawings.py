@@ -1,5 +1,5 @@
 """Results as diagrams: coordinates over time with the drift of first integrals, eigenvalues and steady motions over a
-parameter.
+parameter, Bode diagrams of frequency responses.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.steady_result import SteadyMotions
 from substructures.analysis.verdict import Check
@@ -18,8 +19,10 @@ from substructures.pictures.plot import Line, Panel, plot
 TIME = "t in s"
 
 
-def draw(found: Trajectory | RootLocus | SteadyMotions, joints: str) -> str:
-    """A motion, a root locus or steady motions as SVG. Raises ValueError for what is none of them."""
+def draw(found: Trajectory | RootLocus | SteadyMotions | FrequencyResponse, joints: str) -> str:
+    """A motion, a root locus, steady motions or a frequency response as SVG. Raises ValueError for what is no such."""
+    if isinstance(found, FrequencyResponse):
+        return draw_frequency_response(found)
     if isinstance(found, RootLocus):
         return draw_root_locus(found)
     if isinstance(found, SteadyMotions):
@@ -113,3 +116,20 @@ def draw_steady_motions(steady: SteadyMotions, joints: str) -> str:
             lines = tuple(Line(verdict, over[these], q[these, a], dots=True) for verdict, these in by_verdict.items())
             panels.append(Panel(name, label, "rad" if joints[a] == "R" else "m", lines, marks))
     return plot(f"steady motions: {len(found)} found, {len(marks)} bifurcations", panels)
+
+
+def draw_frequency_response(response: FrequencyResponse) -> str:
+    """SVG, a Bode diagram: magnitude and phase of every output to every input over the frequency."""
+    pairs = [(k, m) for k in range(len(response.outputs)) for m in range(len(response.inputs))]
+    # lg w, 20 lg |G|, arg G; nothing is seen of a frequency 0 and of a response 0
+    with np.errstate(divide="ignore", invalid="ignore"):
+        over, size = np.log10(response.frequencies), 20 * np.log10(response.magnitude)
+    seen = np.isfinite(over)[:, None, None] & np.isfinite(size)
+    panels = []
+    for title, unit, values in (("magnitude", "dB", size), ("phase", "degrees", np.degrees(response.phase))):
+        lines = (
+            Line(f"{response.outputs[k]} to {response.inputs[m]}", over[seen[:, k, m]], values[seen[:, k, m], k, m])
+            for k, m in pairs
+        )
+        panels.append(Panel(title, "lg of the frequency in rad/s", unit, tuple(lines)))
+    return plot(f"frequency response, {response.status}: {len(response.frequencies)} frequencies", panels)

@@ -60,6 +60,7 @@ ANALYSES = {
         FrequencyResponseRequest,
         _response,
         "What outputs do where inputs oscillate: G(i w) of a tree linearised about a state, with its poles",
+        DRAWN,
     ),
     "regulators": Analysis(
         RegulatorRequest,
