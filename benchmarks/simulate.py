@@ -1,9 +1,10 @@
-"""Time of a simulation at equal accuracy, beside heyoka by itself, SciPy on SymPy's right-hand side, and MuJoCo.
+"""Time of a simulation at equal accuracy, beside heyoka by itself, SciPy, and MuJoCo.
 
-Spatial revolute chains fall freely. Every engine is run with tighter and tighter settings; for each accuracy the
-fastest run that reaches it against a tight reference counts.
-``python -m benchmarks.simulate [--links N ...] [--json FILE] [--picture FILE]``: the picture is the work-precision
-diagram, a panel for every chain.
+Spatial revolute chains fall freely for five seconds, the humanoid of the catalogue for half a second. Every engine is
+run with tighter and tighter settings; for each accuracy the fastest run that reaches it against a tight reference
+counts. SciPy's DOP853 calls our kernel, and of up to four links SymPy's lambdified function.
+``python -m benchmarks.simulate [--links N ...] [--humanoid] [--json FILE] [--picture FILE]``: the picture is the
+work-precision diagram, a panel for every mechanism.
 """
 
 from __future__ import annotations
@@ -23,7 +24,9 @@ from sympy.physics.mechanics import dynamicsymbols
 
 from benchmarks.chains import TENSOR, chain, general_rows, row_of
 from benchmarks.kane import derive_by_kane
+from benchmarks.mujoco_robots import Twin
 from benchmarks.report import keep, options
+from benchmarks.robots import robots
 from substructures import couple, derive
 from substructures.analysis.from_fields import motion_arguments
 from substructures.analysis.motion.conditions import read_conditions
@@ -39,25 +42,39 @@ from substructures.pictures.plot import Line, Panel, plot
 from substructures.tree.model import Model
 
 Array = Any
-SPAN = 5.0
+SPAN, SHORT_SPAN = 5.0, 0.5
 TARGETS = (1e-4, 1e-6, 1e-8, 1e-10)
 GRAVITY = 9.81
 LEAST = 1e-12  # error that is looked at: the reference has some, too
+#: links of which SymPy's function is formed: of six it takes many minutes
+SYMPY_LINKS = 4
 
 
 @dataclass(frozen=True)
-class Chain:
-    """Rows, numbers of all parameters, and the start."""
+class Mechanism:
+    """What falls: its model, numbers of all parameters, the start, the time [s], and the same in MuJoCo, whose degree
+    of freedom k is our coordinate ``order[k]``; ``rows``: of a chain.
+    """
 
-    rows: list[dict[str, Any]]
+    title: str
+    model: Model
     numbers: dict[str, float]
     q: Array
     qd: Array
+    span: float
+    twin: mujoco.MjModel
+    order: list[int]
+    rows: list[dict[str, Any]] | None = None
+
+    @property
+    def x(self) -> Array:
+        """The state at the start."""
+        return np.concatenate([self.q, self.qd])
 
     @classmethod
-    def random(cls, n: int) -> Chain:
-        """Bodies of eight mass points each."""
-        rng = np.random.default_rng(7)
+    def chain(cls, n: int) -> Mechanism:
+        """Links of eight mass points each, coupled, parameters symbolic."""
+        rng, rows = np.random.default_rng(7), general_rows(n)
         numbers: dict[str, float] = {"g": GRAVITY}
         for i in range(1, n + 1):
             numbers |= {f"{x}{i}": float(rng.uniform(0.3, 0.9)) for x in ("alpha", "a", "d", "phi")}
@@ -67,34 +84,46 @@ class Chain:
             theta = np.trace(J) * np.eye(3) - J
             numbers |= {f"m{i}": float(m.sum())} | {f"c{e}{i}": float(c) for e, c in zip("xyz", centre, strict=True)}
             numbers |= {f"I{e}{i}": float(theta["xyz".index(e[0]), "xyz".index(e[1])]) for e in TENSOR}
-        return cls(general_rows(n), numbers, rng.uniform(-0.5, 0.5, n), rng.uniform(-0.5, 0.5, n))
+        definition = chain("chain", rows)
+        model = couple(row_of([definition]), {"p0": derive(definition)})
+        twin = mujoco.MjModel.from_xml_string(_xml(n, numbers))
+        given = {name: numbers[name.removeprefix("p0.")] for name in model.parameters}
+        q, qd = rng.uniform(-0.5, 0.5, n), rng.uniform(-0.5, 0.5, n)
+        return cls(f"{n} links, {SPAN:g} s", model, given, q, qd, SPAN, twin, list(range(n)), rows)
 
-    def model(self) -> Model:
-        """Coupled, parameters symbolic."""
-        definition = chain("chain", self.rows)
-        return couple(row_of([definition]), {"p0": derive(definition)})
-
-    def xml(self) -> str:
-        """The same in MuJoCo's language; contacts and constraints off."""
-        inner = ""
-        v = self.numbers
-        for i in reversed(range(1, len(self.rows) + 1)):
-            alpha, a, d, phi = (v[f"{x}{i}"] for x in ("alpha", "a", "d", "phi"))
-            position = f"{a!r} {-np.sin(alpha) * d!r} {np.cos(alpha) * d!r}".replace("np.float64(", "").replace(")", "")
-            half = (np.cos(alpha / 2), np.sin(alpha / 2)), (np.cos(phi / 2), np.sin(phi / 2))
-            (ca, sa), (cp, sp) = half
-            quaternion = " ".join(repr(float(x)) for x in (ca * cp, sa * cp, -sa * sp, ca * sp))
-            tensor = " ".join(repr(v[f"I{e}{i}"]) for e in TENSOR)
-            centre = " ".join(repr(v[f"c{e}{i}"]) for e in "xyz")
-            inner = (
-                f'<body pos="{position}" quat="{quaternion}"><joint type="hinge" axis="0 0 1"/>'
-                f'<inertial pos="{centre}" mass="{v[f"m{i}"]!r}" fullinertia="{tensor}"/>{inner}</body>'
-            )
-        flags = '<flag contact="disable" constraint="disable"/>'
-        return (
-            f'<mujoco><compiler angle="radian"/><option gravity="0 0 {-GRAVITY}" integrator="RK4">{flags}</option>'
-            f"<worldbody>{inner}</worldbody></mujoco>"
+    @classmethod
+    def humanoid(cls) -> Mechanism:
+        """34 degrees of freedom, of a body that is free: without springs and stops, as it is in the catalogue."""
+        robot, rng = robots()[1], np.random.default_rng(7)
+        twin, n = Twin.of(robot), robot.model.dof
+        given = {name: robot.numbers[name] for name in robot.model.parameters}
+        q, qd = rng.uniform(-0.2, 0.2, n), rng.uniform(-0.5, 0.5, n)
+        twin.model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CONTACT | mujoco.mjtDisableBit.mjDSBL_CONSTRAINT
+        twin.model.opt.integrator = mujoco.mjtIntegrator.mjINT_RK4
+        return cls(
+            f"humanoid, {n} dof, {SHORT_SPAN:g} s", robot.model, given, q, qd, SHORT_SPAN, twin.model, twin.order
         )
+
+
+def _xml(n: int, v: dict[str, float]) -> str:
+    """A chain in MuJoCo's language; contacts and constraints off."""
+    inner = ""
+    for i in reversed(range(1, n + 1)):
+        alpha, a, d, phi = (v[f"{x}{i}"] for x in ("alpha", "a", "d", "phi"))
+        position = f"{a!r} {float(-np.sin(alpha) * d)!r} {float(np.cos(alpha) * d)!r}"
+        (ca, sa), (cp, sp) = ((float(np.cos(x / 2)), float(np.sin(x / 2))) for x in (alpha, phi))
+        quaternion = " ".join(repr(x) for x in (ca * cp, sa * cp, -sa * sp, ca * sp))
+        tensor = " ".join(repr(v[f"I{e}{i}"]) for e in TENSOR)
+        centre = " ".join(repr(v[f"c{e}{i}"]) for e in "xyz")
+        inner = (
+            f'<body pos="{position}" quat="{quaternion}"><joint type="hinge" axis="0 0 1"/>'
+            f'<inertial pos="{centre}" mass="{v[f"m{i}"]!r}" fullinertia="{tensor}"/>{inner}</body>'
+        )
+    flags = '<flag contact="disable" constraint="disable"/>'
+    return (
+        f'<mujoco><compiler angle="radian"/><option gravity="0 0 {-GRAVITY}" integrator="RK4">{flags}</option>'
+        f"<worldbody>{inner}</worldbody></mujoco>"
+    )
 
 
 @dataclass(frozen=True)
@@ -116,43 +145,48 @@ def timed(setting: str, call: Callable[[], Array]) -> Run:
     return Run(setting, q, best)
 
 
-def ours(model: Model, system: Chain, method: str) -> list[Run]:
+def by_tolerance(once: Callable[[int], Array]) -> list[Run]:
+    """Runs at 1e-4 to 1e-13."""
+    return [timed(f"1e-{k}", lambda k=k: once(k)) for k in range(4, 14)]
+
+
+def ours(system: Mechanism, method: str) -> list[Run]:
     """simulate: compiled right-hand side, with the drift of all first integrals."""
-    numbers = parameters(model, system)
-    base = {"q": system.q, "qd": system.qd, "span": [0, SPAN], "count": 2, "parameters": numbers, "method": method}
+    base = {"q": system.q, "qd": system.qd, "span": [0, system.span], "count": 2, "parameters": system.numbers}
 
     def once(k: int) -> Array:
-        request = base | {"relative_tolerance": 10.0**-k, "absolute_tolerance": 10.0 ** -(k + 1)}
-        return simulate(model, **motion_arguments(model, **request)).q[-1]
+        tolerances = {"relative_tolerance": 10.0**-k, "absolute_tolerance": 10.0 ** -(k + 1)}
+        return simulate(system.model, **motion_arguments(system.model, **base, method=method, **tolerances)).q[-1]
 
     start = perf_counter()
     once(6)
     print(f"{method}: {perf_counter() - start:.2f} s for the first run, which compiles")
-    return [timed(f"1e-{k}", lambda k=k: once(k)) for k in range(4, 14)]
+    return by_tolerance(once)
 
 
-def without_verdict(model: Model, system: Chain) -> list[Run]:
+def without_verdict(system: Mechanism) -> list[Run]:
     """The motion that simulate judges, by itself."""
-    f, x = right_hand_side(model, system), np.concatenate([system.q, system.qd])
+    f = right_hand_side(system)
 
     def once(k: int) -> Array:
         settings = IntegratorSettings(compiled_stepper("DOP853", 10.0**-k, 10.0 ** -(k + 1)), 1_000_000)
-        return integrate(f, x, (0.0, SPAN), np.array([0.0, SPAN]), settings).x[-1][: f.n]
+        times = (0.0, system.span)
+        return integrate(f, system.x, times, np.array(times), settings).x[-1][: f.n]
 
-    return [timed(f"1e-{k}", lambda k=k: once(k)) for k in range(4, 14)]
+    return by_tolerance(once)
 
 
-def heyoka_by_itself(model: Model, system: Chain) -> list[Run]:
+def heyoka_by_itself(system: Mechanism) -> list[Run]:
     """The Taylor series of the same formulas, propagated by heyoka from the start to the end."""
-    start = Start(q=system.q, qd=system.qd, parameters=parameters(model, system)).with_defaults(model)
-    conditions, x = read_conditions(model, start, (0.0, SPAN), DYNAMICS), np.concatenate([system.q, system.qd])
+    start = Start(q=system.q, qd=system.qd, parameters=system.numbers).with_defaults(system.model)
+    conditions = read_conditions(system.model, start, (0.0, system.span), DYNAMICS)
 
     def made(k: int) -> Callable[[], Array]:
-        stepper = taylor_stepper(conditions, 10.0**-k, has_power=False)(None, 0.0, x, SPAN)
+        stepper = taylor_stepper(conditions, 10.0**-k, has_power=False)(None, 0.0, system.x, system.span)
 
         def once() -> Array:
-            stepper.integrator.time, stepper.integrator.state[:] = 0.0, x
-            stepper.integrator.propagate_until(SPAN)
+            stepper.integrator.time, stepper.integrator.state[:] = 0.0, system.x
+            stepper.integrator.propagate_until(system.span)
             return stepper.integrator.state[: len(system.q)].copy()
 
         return once
@@ -160,30 +194,28 @@ def heyoka_by_itself(model: Model, system: Chain) -> list[Run]:
     return [timed(f"1e-{k}", made(k)) for k in range(4, 14)]
 
 
-def parameters(model: Model, system: Chain) -> dict[str, float]:
-    """Numbers of the parameters of the tree."""
-    return {name: system.numbers[name.removeprefix("p0.")] for name in model.parameters}
-
-
-def right_hand_side(model: Model, system: Chain) -> RightHandSide:
+def right_hand_side(system: Mechanism) -> RightHandSide:
     """x' = f(t, x), inputs zero."""
-    return RightHandSide(model, parameters(model, system), [s.name for s in model.program.symbols if s.kind == "input"])
+    inputs = [s.name for s in system.model.program.symbols if s.kind == "input"]
+    return RightHandSide(system.model, system.numbers, inputs)
 
 
-def ours_fixed(model: Model, system: Chain) -> list[Run]:
+def ours_fixed(system: Mechanism) -> list[Run]:
     """simulate with fixed steps of the classical Runge-Kutta method."""
-    numbers = parameters(model, system)
-    base = {"q": system.q, "qd": system.qd, "span": [0, SPAN], "parameters": numbers, "outputs": Outputs(count=2)}
-    steps = [SPAN / (250 * 2**k) for k in range(7)]
-    ways = [(h, Integrator(FixedStep(h))) for h in steps]
-    return [timed(f"h = {h:.1e}", lambda way=way: simulate(model, **base, integrator=way).q[-1]) for h, way in ways]
+    base = {"q": system.q, "qd": system.qd, "span": [0, system.span], "parameters": system.numbers}
+    steps = [system.span / (250 * 2**k) for k in range(7)]
+
+    def once(h: float) -> Array:
+        return simulate(system.model, **base, outputs=Outputs(count=2), integrator=Integrator(FixedStep(h))).q[-1]
+
+    return [timed(f"h = {h:.1e}", lambda h=h: once(h)) for h in steps]
 
 
-def sympy_function(system: Chain) -> Callable[[float, Array], Array]:
+def sympy_function(system: Mechanism) -> Callable[[float, Array], Array]:
     """KanesMethod's mass matrix and forcing by lambdify with common subexpressions."""
-    n = len(system.rows)
+    n = len(system.q)
     M, forcing = derive_by_kane(system.rows)  # noqa: N806 -- symbols of the notation
-    numbers = {sympy.Symbol(name): value for name, value in system.numbers.items()}
+    numbers = {sympy.Symbol(name.removeprefix("p0.")): value for name, value in system.numbers.items()}
     q, u = dynamicsymbols(f"q1:{n + 1}"), dynamicsymbols(f"u1:{n + 1}")
     plain = sympy.symbols(f"s0:{2 * n}")
     names = dict(zip([*q, *u], plain, strict=True))
@@ -196,45 +228,42 @@ def sympy_function(system: Chain) -> Callable[[float, Array], Array]:
     return f
 
 
-def scipy_on_sympy(f: Callable[[float, Array], Array], system: Chain) -> list[Run]:
+def in_scipy(f: Callable[[float, Array], Array], system: Mechanism) -> list[Run]:
     """The same integrator, DOP853."""
-    x, n = np.concatenate([system.q, system.qd]), len(system.q)
+    n = len(system.q)
 
     def once(k: int) -> Array:
-        return solve_ivp(f, (0, SPAN), x, "DOP853", rtol=10.0**-k, atol=10.0 ** -(k + 1)).y[:n, -1]
+        return solve_ivp(f, (0, system.span), system.x, "DOP853", rtol=10.0**-k, atol=10.0 ** -(k + 1)).y[:n, -1]
 
-    return [timed(f"1e-{k}", lambda k=k: once(k)) for k in range(4, 14)]
+    return by_tolerance(once)
 
 
-def in_mujoco(system: Chain) -> list[Run]:
+def in_mujoco(system: Mechanism) -> list[Run]:
     """Its Runge-Kutta method of fourth order, the loop over the steps inside MuJoCo."""
-    model = mujoco.MjModel.from_xml_string(system.xml())
-    data = mujoco.MjData(model)
+    data, place = mujoco.MjData(system.twin), np.argsort(system.order)
 
     def once(steps: int) -> Array:
-        mujoco.mj_resetData(model, data)
-        data.qpos[:], data.qvel[:] = system.q, system.qd
-        model.opt.timestep = SPAN / steps
-        mujoco.mj_step(model, data, nstep=steps)
-        return data.qpos.copy()
+        mujoco.mj_resetData(system.twin, data)
+        data.qpos[:], data.qvel[:] = system.q[system.order], system.qd[system.order]
+        system.twin.opt.timestep = system.span / steps
+        mujoco.mj_step(system.twin, data, nstep=steps)
+        return data.qpos[place]
 
-    return [timed(f"h = {SPAN / s:.1e}", lambda s=s: once(s)) for s in (250 * 2**k for k in range(11))]
+    return [timed(f"h = {system.span / s:.1e}", lambda s=s: once(s)) for s in (250 * 2**k for k in range(11))]
 
 
-def evaluation_times(model: Model, system: Chain, peer: Callable[[float, Array], Array]) -> dict[str, float]:
+def evaluation_times(system: Mechanism, peers: dict[str, Callable[[float, Array], Array]]) -> dict[str, float]:
     """One right-hand side [us], and compiling [ms]."""
-    inputs = [s.name for s in model.program.symbols if s.kind == "input"]
+    inputs = [s.name for s in system.model.program.symbols if s.kind == "input"]
     start = perf_counter()
-    source = forward_dynamics(model, inputs)
+    source = forward_dynamics(system.model, inputs)
     compile_program(source, list(source.outputs))
-    compiling = perf_counter() - start
-    f, x = right_hand_side(model, system), np.concatenate([system.q, system.qd])
-    times = {"compile_ms": compiling * 1e3}
-    for name, function in (("rhs_ours_us", f), ("rhs_sympy_us", peer)):
+    times = {"compile_ms": (perf_counter() - start) * 1e3}
+    for name, function in ({"ours": right_hand_side(system)} | peers).items():
         start = perf_counter()
         for _ in range(2000):
-            function(0.0, x)
-        times[name] = (perf_counter() - start) / 2000 * 1e6
+            function(0.0, system.x)
+        times[f"rhs_{name}_us"] = (perf_counter() - start) / 2000 * 1e6
     return times
 
 
@@ -254,7 +283,7 @@ def table(runs: dict[str, list[Run]], reference: Array) -> dict[str, float]:
     return figures
 
 
-def diagram(links: int, runs: dict[str, list[Run]], reference: Array) -> Panel:
+def diagram(title: str, runs: dict[str, list[Run]], reference: Array) -> Panel:
     """Largest error at the end over the time it takes, both as powers of ten."""
     lines = []
     for name, some in runs.items():
@@ -262,42 +291,44 @@ def diagram(links: int, runs: dict[str, list[Run]], reference: Array) -> Panel:
         times = np.array([r.seconds for r in some])
         seen = (errors > LEAST) & (errors < 1)
         lines.append(Line(name, np.log10(times[seen] * 1e3), np.log10(errors[seen])))
-    title = f"{links} links, {SPAN:g} s"
-    return Panel(title, "lg of the time [ms]", "lg of the largest error at the end [rad]", tuple(lines))
+    return Panel(title, "lg of the time [ms]", "lg of the largest error at the end [rad, m]", tuple(lines))
 
 
-def measured(links: int) -> tuple[dict[str, float], Panel]:
-    """Figures of one chain, printed, and its diagram."""
-    system = Chain.random(links)
-    start = perf_counter()
-    model = system.model()
-    print(f"{links} links, {SPAN:g} s; derived and coupled in {(perf_counter() - start) * 1e3:.0f} ms")
-    start = perf_counter()
-    peer = sympy_function(system)
-    derived = perf_counter() - start
-    figures = evaluation_times(model, system, peer) | {"sympy_s": derived}
-    print(f"SymPy: derived and lambdified in {derived:.1f} s; ours compiled in {figures['compile_ms']:.0f} ms")
-    print(f"one right-hand side: {figures['rhs_ours_us']:.1f} us; SymPy's {figures['rhs_sympy_us']:.0f} us")
-    runs = {"DOP853": ours(model, system, "DOP853"), "no verdict": without_verdict(model, system)}
-    runs["RK4"] = ours_fixed(model, system)
+def measured(system: Mechanism) -> tuple[dict[str, float], Panel]:
+    """Figures of one mechanism, printed, and its diagram."""
+    print(f"\n{system.title}")
+    peers: dict[str, Callable[[float, Array], Array]] = {}
+    figures: dict[str, float] = {}
+    if system.rows is not None and len(system.rows) <= SYMPY_LINKS:
+        start = perf_counter()
+        peers["SymPy"] = sympy_function(system)
+        figures["sympy_s"] = perf_counter() - start
+        print(f"SymPy: derived and lambdified in {figures['sympy_s']:.1f} s")
+    figures |= evaluation_times(system, peers)
+    print(", ".join(f"{name} {x:.3g}" for name, x in figures.items()))
+    runs = {"DOP853": ours(system, "DOP853"), "no verdict": without_verdict(system), "RK4": ours_fixed(system)}
     if find_spec("heyoka"):
-        runs |= {"Taylor": ours(model, system, TAYLOR), "heyoka itself": heyoka_by_itself(model, system)}
-    runs |= {"SciPy, SymPy": scipy_on_sympy(peer, system), f"MuJoCo {mujoco.__version__}": in_mujoco(system)}
+        runs |= {"Taylor": ours(system, TAYLOR), "heyoka itself": heyoka_by_itself(system)}
+    runs["SciPy, our kernel"] = in_scipy(right_hand_side(system), system)
+    runs |= {f"SciPy, {name}": in_scipy(f, system) for name, f in peers.items()}
+    runs[f"MuJoCo {mujoco.__version__}"] = in_mujoco(system)
     reference = runs["DOP853"][-1].q
-    return figures | table(runs, reference), diagram(links, runs, reference)
+    return figures | table(runs, reference), diagram(system.title, runs, reference)
 
 
 def main() -> None:
     """Print the tables; with --json FILE write the figures."""
     parser = options(__doc__)
-    parser.add_argument("--links", type=int, nargs="+", default=[3])
+    parser.add_argument("--links", type=int, nargs="*", default=[3])
+    parser.add_argument("--humanoid", action="store_true")
     parser.add_argument("--picture", type=Path)
     arguments = parser.parse_args()
-    found = {links: measured(links) for links in arguments.links}
-    keep({f"{n} links, {name}": x for n, (some, _) in found.items() for name, x in some.items()}, arguments.json)
+    systems = [Mechanism.chain(n) for n in arguments.links] + [Mechanism.humanoid()] * arguments.humanoid
+    found = {system.title: measured(system) for system in systems}
+    keep({f"{title}, {name}": x for title, (some, _) in found.items() for name, x in some.items()}, arguments.json)
     if arguments.picture:
         panels = [panel for _, panel in found.values()]
-        arguments.picture.write_text(plot("Accuracy against time: free fall of chains", panels))
+        arguments.picture.write_text(plot("Accuracy against time: mechanisms that fall freely", panels))
 
 
 if __name__ == "__main__":

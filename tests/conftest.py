@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import os
 import sys
 from collections.abc import Generator
 from pathlib import Path
@@ -10,6 +11,8 @@ from pathlib import Path
 import anyio
 import pytest
 
+# workers of pytest take all cores: a library of linear algebra that takes them, too, waits for them, busily
+os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = "1"
 sys.path.insert(0, str(Path(__file__).parent))
 
 import checked_graph

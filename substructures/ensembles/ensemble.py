@@ -12,7 +12,7 @@ import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
-from substructures.analysis.motion.judges import Condition, MotionStates, conditions, integral_series
+from substructures.analysis.motion.judges import AlongMotion, Condition, MotionStates, conditions
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
@@ -240,10 +240,9 @@ class _Run:
     def _judged(self, motions: MotionStates, integrals: FirstIntegrals, held: Sequence[Condition]) -> Array:
         """The largest violation of each member in units of what is allowed."""
         model, limit = self.members.model, self.integrator.drift_limit
-        series = integral_series(model, integrals, motions)
         largest = np.full(len(motions.t), np.nan)
         with np.errstate(invalid="ignore", divide="ignore"):
-            for each in chain(conditions(model, integrals, motions, series), held):
+            for each in chain(conditions(AlongMotion.of(model, integrals, motions)), held):
                 # whether energy has to fall is not seen from some times of a motion; its balance is kept at all of them
                 if not isinstance(each, Condition) or each.about[1] == "falling":
                     continue

@@ -81,7 +81,7 @@ def _moves(x: Expr, moving: Collection[str]) -> bool:
     return any(node.op == "sym" and str(node.value) in moving for node in reachable([x]))
 
 
-@lru_cache(maxsize=32)
+@lru_cache(maxsize=64)
 def _kernels(source: Known, moving: tuple[str, ...], folder: Path | None) -> tuple[Kernel, Kernel, Sided] | None:
     found = sided(source.source, moving)
     if found is None:
@@ -121,7 +121,7 @@ class Laws:
 
         None where there are no corners.
         """
-        found = kernels(self._source, moving, folder) if has_corners(self._source) else None
+        found = kernels(self._source, moving, folder)
         if found is None:
             return None
         kernel, places, of = found

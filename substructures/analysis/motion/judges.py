@@ -4,17 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import lru_cache
 from math import prod
 
 import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.integral import FirstIntegrals, Integral
-from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.equations.kernels import Known, known_model, program_kernel
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
+from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret, interpret_in_blocks
-from substructures.expr.program import Program
+from substructures.expr.program import Program, program
+from substructures.expr.replay import replay
 from substructures.tree.model import Model
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
@@ -62,13 +65,41 @@ class MotionStates:
         }
 
 
-def integral_series(model: Model, integrals: FirstIntegrals, states: MotionStates) -> dict[str, Array]:
-    """All integrals, and the power where there is any, (..., K)."""
-    source = integrals.program
-    series = states.found(model, source, list(source.outputs))
-    if not source.outputs["power"].entries or "energy" not in series:
-        del series["power"]
-    return series
+@dataclass(frozen=True)
+class AlongMotion:
+    """First integrals along motions: ``series``: all of them, and the power where there is any, (..., K); ``sizes``:
+    SCALES, (..., K) and their own axes. What judges changes ``series``.
+    """
+
+    model: Model
+    integrals: FirstIntegrals
+    states: MotionStates
+    series: dict[str, Array]
+    sizes: Mapping[str, Array]
+
+    @classmethod
+    def of(cls, model: Model, integrals: FirstIntegrals, states: MotionStates) -> AlongMotion:
+        """All of them at once."""
+        source = _in_one(Known(integrals.program.digest, integrals.program), known_model(model))
+        found = states.found(model, source, list(source.outputs))
+        sizes = {name: found.pop(_size(name)) for name in SCALES}
+        if not integrals.program.outputs["power"].entries or "energy" not in found:
+            del found["power"]
+        return cls(model, integrals, states, found, sizes)
+
+
+@lru_cache(maxsize=32)
+def _in_one(integrals: Known, model: Known) -> Program:
+    """Integrals and SCALES, which share most of their operations."""
+    graph, source = Graph(), model.source.program
+    outputs = replay(integrals.source, graph, {})
+    outputs |= {_size(name): one for name, one in replay(source, graph, {}, SCALES).items()}
+    return program(graph, outputs, {s.name: s for s in (*source.symbols, *integrals.source.symbols)})
+
+
+def _size(name: str) -> str:
+    """The output that one of SCALES is: no integral is named so."""
+    return f"size of {name}"
 
 
 @dataclass(frozen=True)
@@ -84,13 +115,11 @@ class Condition:
     applies: Array
 
 
-def conditions(
-    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array]
-) -> Iterator[Condition | Check]:
-    """What all integrals demand, a Check where it is left out; ``series``: see integral_series."""
-    scales = _Scales(model, states)
+def conditions(along: AlongMotion) -> Iterator[Condition | Check]:
+    """What all integrals demand, a Check where it is left out."""
+    scales, states, series = _Scales(along), along.states, along.series
     everywhere = np.ones(states.t.shape[:-1], dtype=bool)
-    for integral in integrals.integrals:
+    for integral in along.integrals.integrals:
         value = series[integral.name]
         scale = scales.of(integral, value)
         noise = ROUNDING * np.abs(value).max(axis=-1, initial=0)
@@ -119,15 +148,13 @@ def conditions(
             yield Condition(_about(entry, "falling"), rise, scale, noise, is_lost)
 
 
-def judge(
-    model: Model, integrals: FirstIntegrals, states: MotionStates, series: Mapping[str, Array], limit: float
-) -> tuple[Check, ...]:
+def judge(along: AlongMotion, limit: float) -> tuple[Check, ...]:
     """Checks of all integrals of a motion; ``limit``: of the violation over the scale."""
     return tuple(
         found
         if isinstance(found, Check)
-        else Check.of(found.about, found.violation, states.t, float(found.scale), limit, float(found.noise))
-        for found in conditions(model, integrals, states, series)
+        else Check.of(found.about, found.violation, along.states.t, float(found.scale), limit, float(found.noise))
+        for found in conditions(along)
     )
 
 
@@ -176,8 +203,8 @@ def _spread(values: Array) -> Array:
 class _Scales:
     """Sizes (...) that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
 
-    def __init__(self, model: Model, states: MotionStates) -> None:
-        found = states.found(model, model.program, SCALES)
+    def __init__(self, along: AlongMotion) -> None:
+        model, states, found = along.model, along.states, along.sizes
         self.states, self.duration = states, np.abs(states.t).max(axis=-1, initial=0)
         self.model, self.parameters, speed = model, states.values, np.abs(states.qd)
         self.rates = speed.max(axis=-2, initial=0)

@@ -21,7 +21,7 @@ from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
-from substructures.analysis.motion.judges import MotionStates, integral_series, judge
+from substructures.analysis.motion.judges import AlongMotion, MotionStates, judge
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes
@@ -261,4 +261,4 @@ def _integrals(problem: MotionProblem, f: Variation, motion: IntegratedMotion) -
     x = f.full(t, rows.reshape(len(t), f.columns + 1, f.size))[:, 0]
     values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x)}
     states = MotionStates(t, x[:, :n], x[:, n:], values, None)
-    return judge(model, integrals, states, integral_series(model, integrals, states), problem.drift_limit)
+    return judge(AlongMotion.of(model, integrals, states), problem.drift_limit)

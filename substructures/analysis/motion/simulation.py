@@ -22,7 +22,7 @@ from substructures.analysis.motion.integrators.fixed_step import march
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
-from substructures.analysis.motion.judges import MotionStates, integral_series, judge, unbalanced
+from substructures.analysis.motion.judges import AlongMotion, MotionStates, judge, unbalanced
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
@@ -85,13 +85,13 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     conditions = tree_conditions(problem)
     _check_method(conditions, problem)
     if acting(problem.events):
-        return simulate_with_resets(problem, Resets(problem, conditions), _simulate)
-    return _simulate(problem)
+        return simulate_with_resets(problem, Resets(problem, conditions), lambda p: _simulate(p, tree_conditions(p)))
+    return _simulate(problem, conditions)
 
 
-def _simulate(problem: TreeProblem) -> Trajectory:
+def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
     """Without events that act."""
-    conditions, progress, folder = tree_conditions(problem), problem.integrator.progress, problem.integrator.folder
+    progress, folder = problem.integrator.progress, problem.integrator.folder
     try:
         f = _right_hand_side(conditions, problem, folder)
     except InvalidInput as error:
@@ -232,7 +232,8 @@ def _judged(
     t, x, results = motion.judged()
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
-    series = integral_series(model, integrals, states)
+    along = AlongMotion.of(model, integrals, states)
+    series = along.series
     more: tuple[Check, ...] = ()
     if isinstance(motion, ContactRun) and isinstance(f, DecidedContacts):
         more = with_contacts(f, motion, t, x, series)
@@ -240,7 +241,7 @@ def _judged(
         more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
     if isinstance(f, LoadedRightHandSide):
         more = (_with_loads(series, f, states, x, problem.drift_limit),)
-    checks = judge(model, integrals, states, series, problem.drift_limit)
+    checks = judge(along, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
     told = f.told if isinstance(f, DecidedContacts) else []
