@@ -62,7 +62,7 @@ def first_integrals(
     InvalidInput for a coordinate without inertia, and for unknown names (``/inputs``, ``/parameters``).
     """
     if degree not in (1, 2):
-        raise InvalidArgument.at("/degree", "unknown-degree", f"1 or 2 is known as degree, not {str(degree)[:80]}")
+        raise InvalidArgument.at("/degree", "unknown-degree", f"no integrals of degree {str(degree)[:80]}: give 1 or 2")
     require_chains(model.balls)
     known = model.input_names
     inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
