@@ -119,6 +119,13 @@ def test_root_locus_of_a_longer_pendulum(client: TestClient) -> None:
     assert "eigenvalues" in drawn.text
 
 
+def test_frequency_response_as_bode_diagram(client: TestClient) -> None:
+    asked = {"q": [0, 0], "outputs": {"turn": "x.q1"}}
+    drawn = client.post("/v1/trees/cart/frequency-responses", json=asked, headers={"Accept": "image/svg+xml"})
+    assert (drawn.status_code, drawn.headers["content-type"]) == (200, "image/svg+xml"), drawn.text
+    assert all(word in drawn.text for word in ("magnitude", "phase", "turn to tau.x.q0"))
+
+
 def test_sensitivities_are_slopes(client: TestClient) -> None:
     request = {"q": [0.3, 0.5], "span": [0, 1], "count": 2}
     name = next(n for n in client.get("/v1/trees/cart").json()["parameters"] if n.startswith("x.m"))
