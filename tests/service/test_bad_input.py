@@ -73,7 +73,7 @@ WRONG: dict[str, tuple[Any, str, str]] = {
     "symbolic exponent": (edited("/bodies/0/mass", "2^m"), "/bodies/0/mass", "column"),
     "deep expression": (edited("/bodies/0/mass", "(" * 200 + "m" + ")" * 200), "/bodies/0/mass", ""),
     "long expression": (edited("/bodies/0/mass", "m" + "+m" * 20_000), "/bodies/0/mass", ""),
-    "joint type": (edited("/bodies/0/joint/type", "ball"), "/bodies/0/joint/type", "ball"),
+    "joint type": (edited("/bodies/0/joint/type", "hinge"), "/bodies/0/joint/type", "hinge"),
     "too many coordinates": (edited("/bodies/0/joint/coordinate", ["a", "b"]), "/bodies/0/joint/coordinate", ""),
     "unknown field": (edited("/bodies/0/colour", "red"), "/bodies/0/colour", ""),
     "boolean": (edited("/bodies/0/mass", True), "/bodies/0/mass", ""),
