@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from importlib import import_module
 from typing import Any
 
 from service.models.binding import DEFAULTS, Parameters, bound, bound_names
-from substructures.analysis.motion.contacts.exporting import contact_laws, contact_programs
 from substructures.errors import InvalidArgument
 from substructures.export import (
     TARGETS,
@@ -21,7 +21,7 @@ from substructures.export import (
     interface_of_model,
     interface_of_part,
 )
-from substructures.export.contacts import CONTACTS
+from substructures.export.contacts import CONTACTS, ContactLaw
 from substructures.export.exported import check_name
 from substructures.export.rounding import read_ranges
 from substructures.export.stages import staged
@@ -32,7 +32,10 @@ from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.quantity import FORWARD, VELOCITY_DYNAMICS, askable
 from substructures.tree.document import TreeSpec
 from substructures.tree.glossary import glossary, part_glossary
+from substructures.tree.model import Model
 
+#: of trees with contacts alone
+OF_CONTACTS = "substructures.analysis.motion.contacts.exporting"
 #: prefix of functions where none is given
 NAME = "model"
 ZIP = "application/zip"
@@ -151,9 +154,9 @@ def tree_package(
         # with velocity constraints the motion is one in independent velocities
         motion = VELOCITY_DYNAMICS if request.target == FMU and sources.model.velocity_constraints else FORWARD
         names = tuple(dict.fromkeys((motion, *names)))
-    laws = contact_laws(sources.model) if request.target == FMU else ()
+    laws, more = _contacts(sources.model, request)
     if laws:
-        names, others = (CONTACTS, *names), {**others, **contact_programs(sources.model)}
+        names, others = (CONTACTS, *names), {**others, **more}
     request.require_motion(names)
     interface = _left(interface_of_model(sources.model, reference, digest), request)
 
@@ -165,6 +168,16 @@ def tree_package(
     name, flags = prefix(request.name, called), (request.together, request.packed)
     exported = exported_model(sources, interface, names, name, numbers, *flags, words, others)
     return _package(replace(exported, contacts=laws), request, limit)
+
+
+def _contacts(
+    model: Model, request: ExportRequest
+) -> tuple[tuple[ContactLaw, ...], Mapping[str, Callable[[], Program]]]:
+    """Of an FMU the contacts of the tree, and what makes the programs that they need."""
+    if request.target != FMU or not model.contacts:
+        return (), {}
+    made = import_module(OF_CONTACTS)
+    return made.contact_laws(model), made.contact_programs(model)
 
 
 def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:
