@@ -105,6 +105,19 @@ def found_in_tree(spec: TreeSpec, parts: dict[str, Part], model: Model, wrong: P
     return None
 
 
+def require_all_found(part: Part, spec: TreeSpec, model: Model, least: int = 30) -> None:
+    """Damages that have an effect are found: of a part, more than ``least``, and of its tree, in which it is ``x``."""
+    rng, tried = np.random.default_rng(0), 0
+    for kind, place, wrong in damages(part.program, rng, kinds=2):
+        if has_effect(part.program, wrong):
+            assert found_in_part(part, wrong), (kind, place)
+            tried += 1
+    assert tried > least
+    for kind, place, wrong in damages(model.program, rng, kinds=1):
+        if has_effect(model.program, wrong):
+            assert found_in_tree(spec, {"x": part}, model, wrong), (kind, place)
+
+
 def has_effect(program: Program, wrong: Program, names: Iterable[str] | None = None) -> bool:
     """Whether any output (of these names) changes at all: a number may stand beside a factor that is zero."""
     rng = np.random.default_rng(9)

@@ -10,6 +10,7 @@ import importlib.util
 import itertools
 import shutil
 import subprocess
+import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from types import ModuleType
@@ -111,6 +112,18 @@ def call_c(library: ctypes.CDLL, exported: Exported, function: Function, values:
     pointers = [*given[::2], *(a.ctypes.data_as(ctypes.c_void_p) for a in results.values())]
     getattr(library, exported.called(function))(*pointers)
     return results
+
+
+def require_clean_sources(fmu: Path, compiler: str, folder: Path) -> None:
+    """The C sources of an FMU compile without a warning."""
+    with zipfile.ZipFile(fmu) as packed:
+        for name in packed.namelist():
+            if name.startswith("sources/"):
+                (folder / Path(name).name).write_bytes(packed.read(name))
+    for each in sorted(folder.glob("*.c")):
+        command = [tool(compiler), *STRICT, "-fPIC", "-c", str(each), "-o", str(folder / "one.o")]
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr[:2000]
 
 
 def octave(script: str, folder: Path) -> list[str]:

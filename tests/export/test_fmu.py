@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import io
-import subprocess
 import zipfile
 from pathlib import Path
 from typing import Any
@@ -13,7 +12,7 @@ import pytest
 from catalogue_entries import shipped_part
 from closed_trees import four_bar
 from exported_models import tree_of
-from run_code import STRICT, tool
+from run_code import require_clean_sources
 from simulated import simulated
 
 from substructures import Model
@@ -203,16 +202,7 @@ def test_what_cannot_be_is_refused_by_the_instance(made: Any) -> None:
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("version", TARGETS)
 def test_the_sources_compile_without_a_warning(made: Any, version: str, compiler: str, tmp_path: Path) -> None:
-    with zipfile.ZipFile(made["robot", version][1]) as packed:
-        for name in packed.namelist():
-            if name.startswith("sources/"):
-                (tmp_path / Path(name).name).write_bytes(packed.read(name))
-    for each in sorted(tmp_path.glob("*.c")):
-        done = subprocess.run(
-            [tool(compiler), *STRICT, "-fPIC", "-c", str(each), "-o", str(tmp_path / "one.o")],
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr[:2000]
+    require_clean_sources(made["robot", version][1], compiler, tmp_path)
 
 
 def test_the_same_request_gives_the_same_bytes() -> None:

@@ -3,8 +3,6 @@
 from __future__ import annotations
 
 import math
-import subprocess
-import zipfile
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,7 +11,7 @@ import numpy as np
 import pytest
 from closed_trees import tree_model
 from contact_models import BALL, PLACED, G, block, of
-from run_code import STRICT, tool
+from run_code import require_clean_sources
 
 from substructures import Model, couple, derive, simulate
 from substructures.analysis.motion.contacts.exporting import contact_laws, contact_programs
@@ -212,13 +210,4 @@ def test_what_an_fmu_does_not_follow_is_refused() -> None:
 @pytest.mark.parametrize("compiler", ["gcc", "clang"])
 @pytest.mark.parametrize("version", TARGETS)
 def test_the_sources_compile_without_a_warning(made: Any, version: str, compiler: str, tmp_path: Path) -> None:
-    with zipfile.ZipFile(made("sliding", version)[1]) as packed:
-        for name in packed.namelist():
-            if name.startswith("sources/"):
-                (tmp_path / Path(name).name).write_bytes(packed.read(name))
-    for each in sorted(tmp_path.glob("*.c")):
-        done = subprocess.run(
-            [tool(compiler), *STRICT, "-fPIC", "-c", str(each), "-o", str(tmp_path / "one.o")],
-            capture_output=True, text=True, check=False,
-        )  # fmt: skip
-        assert done.returncode == 0, done.stderr[:2000]
+    require_clean_sources(made("sliding", version)[1], compiler, tmp_path)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from ball_trees import GRAVITY, of_engine, random_balls, random_position
-from damaged import damages, found_in_part, found_in_tree, has_effect
+from damaged import require_all_found
 from in_depth import seeds
 from random_trees import model_of, tree_of, with_parameters
 
@@ -210,15 +210,5 @@ def test_quaternions_have_the_norm_1() -> None:
 
 def test_planted_faults_are_found() -> None:
     definition, _ = random_balls(3, 2, 8)
-    part, rng = derive(Definition.read(definition)), np.random.default_rng(0)
-    tried = 0
-    for kind, place, wrong in damages(part.program, rng, kinds=2):
-        if has_effect(part.program, wrong):
-            assert found_in_part(part, wrong), (kind, place)
-            tried += 1
-    assert tried > 30
-    spec, parts = tree_of(definition), {"x": part}
-    model = couple(spec, parts)
-    for kind, place, wrong in damages(model.program, rng, kinds=1):
-        if has_effect(model.program, wrong):
-            assert found_in_tree(spec, parts, model, wrong), (kind, place)
+    part, spec = derive(Definition.read(definition)), tree_of(definition)
+    require_all_found(part, spec, couple(spec, {"x": part}))

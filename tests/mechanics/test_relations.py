@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from damaged import damages, found_in_part, found_in_tree, has_effect
+from damaged import found_in_part, require_all_found
 from in_depth import seeds
 from independent import by_coordinate
 from random_trees import GRAVITY, Kind, model_of, random_definition, random_states, tree_of, with_parameters
@@ -180,18 +180,8 @@ def test_a_tree_of_parts_gives_what_its_quantities_and_numbers_do(seed: int) -> 
 
 def test_planted_faults_are_found() -> None:
     definition, _ = random_related(5, 2)
-    part, rng = derive(Definition.read(definition)), np.random.default_rng(0)
-    tried = 0
-    for kind, place, wrong in damages(part.program, rng, kinds=2):
-        if has_effect(part.program, wrong):
-            assert found_in_part(part, wrong), (kind, place)
-            tried += 1
-    assert tried > 30
-    spec, parts = tree_of(definition), {"x": part}
-    model = couple(spec, parts)
-    for kind, place, wrong in damages(model.program, rng, kinds=1):
-        if has_effect(model.program, wrong):
-            assert found_in_tree(spec, parts, model, wrong), (kind, place)
+    part, spec = derive(Definition.read(definition)), tree_of(definition)
+    require_all_found(part, spec, couple(spec, {"x": part}))
 
 
 def test_a_wrong_ratio_in_the_definition_is_found() -> None:
