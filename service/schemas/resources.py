@@ -208,6 +208,12 @@ class TreeView(Shape):
     contacts: list[dict[str, Any]] = Field(
         [], description="points of the tree that do not pass through planes, in simulations; left out if none"
     )
+    balls: list[dict[str, list[str]]] = Field(
+        [], description="names of the positions and velocities of joints with quaternions; left out if none"
+    )
+    numbers: dict[str, str] = Field(
+        {}, description="what symbols of the program stand for in this tree, exact: bound parameters, places"
+    )
     limited: list[str] = Field([], description="coordinates with limits, which are the quantity limits")
     operations: dict[str, Any]
     certificate: dict[str, Any]

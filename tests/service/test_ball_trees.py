@@ -9,6 +9,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.messages.negotiation import MEDIA_TYPES
+from service.schemas.resources import TreeView, VersionView
 
 #: a satellite on a wheel
 TREE: dict[str, Any] = {
@@ -40,7 +41,14 @@ def satellite(client: TestClient) -> TestClient:
     rates = [f"s.{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
     assert made.json()["coordinates"] == [*rates, "s.spin"]
     assert made.json()["balls"] == [{"positions": POSITIONS[:-1], "velocities": rates}]
+    TreeView.model_validate(made.json())
     return client
+
+
+def test_a_part_of_it_has_the_view_of_any(client: TestClient) -> None:
+    made = client.post("/v1/substructures", json=TREE["instances"][0]["definition"])
+    assert made.status_code == 201, made.text
+    VersionView.model_validate(made.json())
 
 
 def test_it_is_shown_and_printed(satellite: TestClient) -> None:
