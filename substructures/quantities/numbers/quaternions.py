@@ -21,7 +21,7 @@ def with_unit_quaternions(positions: Sequence[str], balls: Sequence[BallRow], ro
     """
     if not balls:
         return rows
-    result = rows.copy() if balls else rows
+    result = rows.copy()
     for ball in balls:
         names = ball["positions"][-4:]
         some = [positions.index(name) for name in names]
