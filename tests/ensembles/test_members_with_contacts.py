@@ -73,6 +73,18 @@ def test_what_impacts_take_is_what_is_missing(ball: Model) -> None:
     assert found.summary()["one_by_one"] is True
 
 
+def test_checks_count_the_members_that_violate_them() -> None:
+    """The second member is pushed, which these tolerances follow only roughly; the first is a parabola."""
+    how, kind = Integrator(relative_tolerance=1e-3, drift_limit=1e-12), TreeMotion(contacts=[FLOOR])
+    push: dict[str, Any] = {"parameters": {"b.w": [0.0, 9.0]}, "inputs": {"tau.b.z": "sin(b.w*t)^3"}}
+    model = of("b", {**BALL, "parameters": {"w": {"value": 0, "unit": "rad/s"}}}, [0, 0, -G])
+    found = simulate_ensemble(model, [[2], [2]], (0, 0.5), kind=kind, integrator=how, **push)
+    assert (found.is_right, found.violation[0] <= 1, found.violation[1] > 1) == (False, True, True)
+    violated = {check["name"]: check["violated"] for check in found.checks}
+    assert violated["steps"] == 1
+    assert set(violated.values()) == {0, 1}
+
+
 def test_a_member_that_fails_is_told_and_the_others_stay(ball: Model) -> None:
     below = simulate_ensemble(ball, [[1], [-1], [0.2]], (0, 1), kind=TreeMotion(contacts=[FLOOR]), columns=HEIGHT)
     (failure,) = below.failures
