@@ -68,6 +68,9 @@ class RightHandSide:
     forward_dynamics, and MissingValue.
     """
 
+    #: coordinates that a force acts on which is none of the formulas: as by a motor there
+    pushed: Sequence[str] = ()
+
     def __init__(
         self,
         model: Model,

@@ -220,7 +220,10 @@ def _judged(
     figures: Mapping[str, float],
 ) -> Trajectory:
     model = problem.model
-    integrals = first_integrals(model, _acting_inputs(conditions, problem, f), conditions.zero & set(model.parameters))
+    # inputs that are 0 all the time leave more constant
+    forces = [name for name in problem.start.inputs if name not in conditions.zero]
+    forces += [f"tau.{name}" for name in f.pushed]
+    integrals = first_integrals(model, forces, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
@@ -255,17 +258,6 @@ def _judged(
         motion.cancelled,
         span,
     )
-
-
-def _acting_inputs(conditions: Conditions, problem: TreeProblem, f: RightHandSide) -> list[str]:
-    """The inputs that change energy and momenta: those that are 0 all the time leave more constant."""
-    found = [name for name in problem.start.inputs if name not in conditions.zero]
-    # as by a motor there: what is no force of the formulas
-    if isinstance(f, LoadedRightHandSide):
-        found += [f"tau.{name}" for name in f.loads.names]
-    if isinstance(f, DecidedContacts):
-        found += [f"tau.{name}" for name in f.pushed]
-    return found
 
 
 def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: Array, x: Array, limit: float) -> Check:

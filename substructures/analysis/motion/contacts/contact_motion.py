@@ -85,7 +85,6 @@ class ContactMotion(RightHandSide):
         self.g = np.zeros((n, n))
         source = contact_rows(model, contacts)
         pushed = {a for i, r, a in source.outputs[ROWS].index if r == 0 or self.tangents[i, r - 1]}
-        #: coordinates that contact forces may act on
         self.pushed = [model.coordinates[a] for a in sorted(pushed)]
         known, columns = dict(values) | {"t": self._t}, [(state_names(model), self._x), *self._varying]
         require(source, list(found), dict.fromkeys([*known, *(name for names, _ in columns for name in names)]))

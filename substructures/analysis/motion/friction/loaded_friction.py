@@ -104,6 +104,7 @@ class LoadedRightHandSide(RightHandSide):
         super().__init__(model, values, zero, conditions, folder)
         self.has_power = True
         self.loads = friction_loads(model, conditions.values)
+        self.pushed = self.loads.names
         self.force = np.zeros(len(self.loads.places))
         self.reactions = bearings.of(self.loads.names).program.select([FORCE])
         self._model = model
