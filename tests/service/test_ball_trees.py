@@ -114,7 +114,7 @@ def test_the_linearised_satellite(satellite: TestClient) -> None:
     [
         ("publish", {}),
         ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
-        ("equilibria", {"count": 1}),
+        ("steady-motions", {"rates": {}, "count": 1}),
         ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
     ],
 )
