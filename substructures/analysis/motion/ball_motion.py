@@ -36,6 +36,8 @@ from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.certificate.derived.model_formulas import simulated_in_rates
 from substructures.compile import Kernel, compile_program
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
@@ -78,18 +80,27 @@ class BallRates:
         self.m, self.n = len(model.positions), model.dof
         self._t, self._x = np.zeros(1), np.zeros((1, self.m + self.n))
         self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
-        self._out = {name: np.zeros((1, *size)) for name, size in zip(OUTPUTS, ((self.m,), (self.n,), ()), strict=True)}
+        self._rates, self._power, self._folder = np.zeros((1, self.m + self.n)), np.zeros(1), folder
+        parts = self._rates[:, : self.m], self._rates[:, self.m :], self._power
         kernel = _kernel(Known(model.program.digest, model), conditions.zero, folder)
         columns = [(state_names(model), self._x), *self.inputs.columns]
-        self._run = kernel.bind(self._out, conditions.values | {"t": self._t}, columns=columns)
+        outputs = dict(zip(OUTPUTS, parts, strict=True))
+        self._run = kernel.bind(outputs, conditions.values | {"t": self._t}, columns=columns)
 
     def __call__(self, t: float, x: Array) -> Array:
         """At a state; not finite where the metric is singular."""
         self._t[0], self._x[0] = t, x[:-1]
         self.inputs.fill()
         self._run()
-        moved, second, power = (self._out[name] for name in OUTPUTS)
-        return np.concatenate((moved[0], second[0], power))
+        return np.concatenate((self._rates[0], self._power))
+
+    def compiled(self) -> CompiledRates | None:
+        """The function as calls of kernels; None where it is more than these."""
+        runs = [*given, self._run] if (given := self.inputs.runs()) is not None else []
+        calls = tuple(run for run in runs if isinstance(run, BoundCall))
+        if not calls or len(calls) < len(runs):
+            return None
+        return CompiledRates(calls, self._t, self._x, self._rates, self._power, self._folder)
 
 
 def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
