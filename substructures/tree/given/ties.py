@@ -99,7 +99,7 @@ class Tied(Protocol):
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
     *("linear systems", "frequency-responses", "regulators", "equilibria", "root-loci"),
-    "ensembles",
+    *("ensembles", "sensitivities", "parameter_sensitivity"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
