@@ -171,10 +171,10 @@ def tree_package(
 
 def _motion(model: Model, request: ExportRequest) -> tuple[str, ...]:
     """The quantities of the motion, for targets that move."""
-    if request.target != FMU:
-        return (FORWARD,) if request.target in MOVING else ()
+    if request.target not in MOVING:
+        return ()
     # with velocity constraints the motion is one in independent velocities
-    motion = VELOCITY_DYNAMICS if model.velocity_constraints else FORWARD
+    motion = VELOCITY_DYNAMICS if request.target == FMU and model.velocity_constraints else FORWARD
     return (motion, CHANGES) if model.balls else (motion,)
 
 

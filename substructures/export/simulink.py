@@ -1,10 +1,10 @@
 """Simulink: a C MEX S-function of level 2 on the functions in C, and the MATLAB command that builds it.
 
-Continuous states are the coordinates and velocities; the input port takes the inputs of the tree, output ports give the
-state, then every other quantity with its elements in MATLAB's order, so that ``reshape(y, size)`` is the array. Two
-parameters of the block: those of the mechanism, ``NAME_parameters(s)`` of a structure, and the initial state, each
-``[]`` for its defaults. (MathWorks,
-Developing S-Functions: ``simstruc.h``.)
+Continuous states are the coordinates and velocities, with ball joints places, quaternions and rates; the input port
+takes the inputs of the tree, output ports give the state, then every other quantity with its elements in MATLAB's
+order, so that ``reshape(y, size)`` is the array. Two parameters of the block: those of the mechanism,
+``NAME_parameters(s)`` of a structure, and the initial state, each ``[]`` for its defaults. (MathWorks, Developing
+S-Functions: ``simstruc.h``.)
 """
 
 from __future__ import annotations
@@ -20,9 +20,10 @@ from substructures.export.languages.c import head_of
 from substructures.export.languages.matlab import structures
 from substructures.export.software import SOFTWARE
 from substructures.expr.operations import flat
-from substructures.tree.given.ties import require_chains
 
-_DYNAMICS = "forward_dynamics"
+_DYNAMICS, _CHANGES = "forward_dynamics", "position_rates"
+#: where quaternions that turn nothing are put
+_UPRIGHT = "upright"
 _STAND_IN = "// Not executed in Simulink: the tests of the generator have a stand-in for its header alone."
 
 
@@ -39,33 +40,42 @@ def simulink(exported: Exported, limit: int) -> dict[str, bytes]:
     }
 
 
-def _source(exported: Exported) -> list[str]:
-    name = exported.name
-    dynamics = next((each for each in exported.functions if each.quantity == _DYNAMICS), None)
-    if dynamics is None or not exported.interface.vectors["q"].names:
+def _motion(exported: Exported) -> tuple[Function, Function | None]:
+    """What gives the accelerations and, of ball joints, the changes of q. Raises InvalidArgument."""
+    q, by_name = exported.interface.vectors["q"], {each.quantity: each for each in exported.functions}
+    if _DYNAMICS not in by_name or not q.names:
         message = "an S-function needs the accelerations of a tree that moves: make a tree of the part"
         raise InvalidArgument.at("/target", "not-a-tree", message)
-    require_chains(exported.interface.vectors["q"].defaults, "take an FMU")
     further = next((each for each in exported.functions if each.further.names), None)
     if further is not None:
         message = f"'{further.quantity}' depends on more than states, inputs and parameters: no output can be that"
         raise InvalidArgument.at("/quantities", "signature", message)
-    others = [each for each in exported.functions if each is not dynamics]
+    if q.defaults and _CHANGES not in by_name:
+        message = f"ball joints: an S-function needs the quantity '{_CHANGES}', too"
+        raise InvalidArgument.at("/quantities", "missing", message)
+    return by_name[_DYNAMICS], by_name[_CHANGES] if q.defaults else None
+
+
+def _source(exported: Exported) -> list[str]:
+    name, q, (dynamics, changes) = exported.name, exported.interface.vectors["q"], _motion(exported)
+    others = [each for each in exported.functions if each not in (dynamics, changes)]
     widths = [prod(o.shape) for each in others for o in each.program.outputs.values()]
-    n, inputs, p = (len(exported.interface.vectors[symbol]) for symbol in ("q", "u", "p"))
+    n, v, inputs, p = (len(exported.interface.vectors[symbol]) for symbol in ("q", "qd", "u", "p"))
     lines = [f"#define S_FUNCTION_NAME {name}_sfun", "#define S_FUNCTION_LEVEL 2", ""]
     lines += ['#include "simstruc.h"', f'#include "{name}_simulink.h"', "", "#include <string.h>", ""]
-    lines += [f"enum {{ NQ = {n}, NU = {inputs}, NP = {p}, PORTS = {1 + len(widths)} }};", ""]
+    lines += [f"enum {{ NQ = {n}, NV = {v}, NU = {inputs}, NP = {p}, PORTS = {1 + len(widths)} }};", ""]
     lines += [line.replace("DEFAULTS", f"{name}_defaults") for line in _SIZES]
-    for k, width in enumerate([2 * n, *widths]):
+    for k, width in enumerate([n + v, *widths]):
         lines.append(f"    ssSetOutputPortWidth(S, {k}, {width});")
-    lines += [*_MIDDLE, "#define MDL_DERIVATIVES", "static void mdlDerivatives(SimStruct *S)", "{", *_STATE]
-    lines += ["    real_T *rates = ssGetdX(S);", "    memcpy(rates, qd, NQ * sizeof *rates);"]
+    lines += [line for part in _MIDDLE for line in ([part] if part != _UPRIGHT else _starts(q.defaults))]
+    lines += ["#define MDL_DERIVATIVES", "static void mdlDerivatives(SimStruct *S)", "{", *_STATE]
+    moved = "memcpy(rates, qd, NQ * sizeof *rates);" if changes is None else _call(exported, changes, ["rates"])
+    lines += ["    real_T *rates = ssGetdX(S);", f"    {moved}"]
     lines += [f"    {_call(exported, dynamics, ['rates + NQ'])}", f"    {_unused('t q qd u p')}", "}", ""]
     lines += ["static void mdlOutputs(SimStruct *S, int_T tid)", "{", *_STATE]
-    lines += ["    memcpy(ssGetOutputPortRealSignal(S, 0), q, 2 * NQ * sizeof *q);"]
+    lines += ["    memcpy(ssGetOutputPortRealSignal(S, 0), q, (NQ + NV) * sizeof *q);"]
     if any("qdd" in each.arguments for each in others):
-        lines += ["    double qdd[NQ];", f"    {_call(exported, dynamics, ['qdd'])}"]
+        lines += ["    double qdd[NV];", f"    {_call(exported, dynamics, ['qdd'])}"]
     port = 1
     for each in others:
         body, port = _outputs(exported, each, port)
@@ -95,6 +105,10 @@ def _outputs(exported: Exported, function: Function, port: int) -> tuple[list[st
     return [*lines, f"        {_call(exported, function, names)}", *after], port
 
 
+def _starts(defaults: Sequence[float]) -> list[str]:
+    return [f"    x[{i}] = 1.0;" for i, x in enumerate(defaults) if x]
+
+
 def _unused(names: str) -> str:
     return " ".join(f"(void){name};" for name in names.split())
 
@@ -105,7 +119,7 @@ _SIZES = (
     "{",
     "    size_t p = mxGetNumberOfElements(ssGetSFcnParam(S, 0)), x = mxGetNumberOfElements(ssGetSFcnParam(S, 1));",
     '    if (p != 0 && p != NP) ssSetErrorStatus(S, "the parameters have the wrong length");',
-    '    else if (x != 0 && x != 2 * NQ) ssSetErrorStatus(S, "the initial state has the wrong length");',
+    '    else if (x != 0 && x != NQ + NV) ssSetErrorStatus(S, "the initial state has the wrong length");',
     "}",
     "",
     "static const double *parameters(SimStruct *S, double *p)",
@@ -121,7 +135,7 @@ _SIZES = (
     "    if (ssGetNumSFcnParams(S) != ssGetSFcnParamsCount(S)) return;",
     "    mdlCheckParameters(S);",
     "    if (ssGetErrorStatus(S) != NULL) return;",
-    "    ssSetNumContStates(S, 2 * NQ);",
+    "    ssSetNumContStates(S, NQ + NV);",
     "    ssSetNumDiscStates(S, 0);",
     "    if (!ssSetNumInputPorts(S, NU > 0)) return;",
     "    if (NU > 0) {",
@@ -147,8 +161,9 @@ _MIDDLE = (
     "{",
     "    const mxArray *given = ssGetSFcnParam(S, 1);",
     "    real_T *x = ssGetContStates(S);",
-    "    memset(x, 0, 2 * NQ * sizeof *x);",
-    "    if (mxGetNumberOfElements(given) == 2 * NQ) memcpy(x, mxGetPr(given), 2 * NQ * sizeof *x);",
+    "    memset(x, 0, (NQ + NV) * sizeof *x);",
+    _UPRIGHT,
+    "    if (mxGetNumberOfElements(given) == NQ + NV) memcpy(x, mxGetPr(given), (NQ + NV) * sizeof *x);",
     "}",
     "",
 )
