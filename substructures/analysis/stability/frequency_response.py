@@ -59,7 +59,8 @@ def frequency_response(
     """G(i w) = C (i w - A)^-1 B + D of a tree without closures, linearised about one state.
 
     ``frequencies`` [rad/s]: by default from a tenth of the slowest pole to ten times the fastest. ``outputs``: y by
-    name, by default all coordinates; ``point``: further arguments of :func:`linearise`. Raises as that.
+    name, by default all coordinates, of ball joints their places and quaternions; ``point``: further arguments of
+    :func:`linearise`. Raises as that.
 
     >>> from substructures import couple, derive, frequency_response
     >>> tree = {"name": "clock", "gravity": [0, 0, -10]}
@@ -68,7 +69,7 @@ def frequency_response(
     >>> float(frequency_response(model, [0], frequencies=[0.0]).magnitude[0, 0, 0])
     0.1
     """
-    chosen = outputs or {name: name for name in model.coordinates}
+    chosen = outputs or {name: name for name in model.positions}
     system = linear_system(model, q, point, chosen)
     poles = eigenvalues(system.A)
     w = _frequencies(frequencies, poles)

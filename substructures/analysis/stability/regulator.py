@@ -10,7 +10,6 @@ import numpy as np
 import scipy
 
 from substructures.analysis.given import StateArray
-from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.stability.linear_system import SURE, Reach, eigenvalues, is_complete, linear_system, reach
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.verdict import About, Check, verdict
@@ -25,7 +24,8 @@ RICCATI = 1e-8
 
 @dataclass(frozen=True, repr=False)
 class Regulator:
-    """u = u_0 - K (x - x_0) that makes the integral of x^T Q x + u^T R u least, x = (q, q').
+    """u = u_0 - K (x - x_0) that makes the integral of x^T Q x + u^T R u least, x = (q, q'); of ball joints x has the
+    displacement and the rotation vector in the axes of the body that they carry, by the names of rates without prime.
 
     ``gain`` K (m, 2n), ``cost`` P (2n, 2n) with x_0^T P x_0 the least integral, ``eigenvalues`` of A - B K [1/s].
     ``controllable``, ``observable`` (by what is weighted): None where rounding decides; ``reached``, ``seen``: by mode.
@@ -74,7 +74,8 @@ def regulator(
         largest = float(np.abs(system.qdd).max(initial=0))
         message = f"the state is no equilibrium (accelerations up to {largest:.3g}): give 'inputs' that hold it"
         raise InvalidArgument.at("/q", "no-equilibrium", message)
-    Q = np.diag(_diagonal(weights, state_names(model), "weights", dict.fromkeys(model.coordinates, 1.0), 0.0))
+    names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    Q = np.diag(_diagonal(weights, names, "weights", dict.fromkeys(model.coordinates, 1.0), 0.0))
     R = np.diag(_diagonal(efforts, system.inputs, "efforts", dict.fromkeys(system.inputs, 1.0), 1.0, positive=True))
     reached, seen = reach(system.A, system.B), reach(system.A.T, np.sqrt(Q))
     known: dict[str, Any] = {"coordinates": model.coordinates, "inputs": system.inputs, "reached": reached}

@@ -96,7 +96,10 @@ class Tied(Protocol):
 
 
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
-TAKES_BALLS = ("simulations", "TreeMotion", "forward_dynamics", "reactions")
+TAKES_BALLS = (
+    *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
+    *("linear systems", "frequency-responses", "regulators"),
+)
 
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
