@@ -109,6 +109,19 @@ def test_the_linearised_satellite(satellite: TestClient) -> None:
     assert len(space["state"]) == 14
 
 
+def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
+    file = satellite.get("/v1/trees/satellite/export?target=urdf&bind=s.J:0")
+    assert file.status_code == 200, file.text
+    assert '<joint name="s.hull_floating" type="floating">' in file.text
+    query = "name=again&parameters=none&rotations=quaternions&store=true"
+    made = satellite.post(f"/v1/imports?{query}", content=file.content, headers={"Content-Type": "application/xml"})
+    assert made.status_code == 201, made.text
+    rates = made.json()["names"]["velocities s.hull_floating"].split(", ")
+    assert rates == [f"s_hull_floating_{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
+    whole = {"name": "whole", "instances": [{"name": "x", "substructure": "again"}]}
+    assert satellite.post("/v1/trees", json=whole).json()["balls"][0]["positions"][3] == "x.s_hull_floating_qw"
+
+
 @pytest.mark.parametrize(
     ("path", "body"),
     [

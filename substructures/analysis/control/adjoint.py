@@ -51,7 +51,7 @@ from substructures.analysis.arguments import exact
 from substructures.analysis.control.problem import Cost, declared, read_costs
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import require_known
-from substructures.certificate.derived.perturbed import adjoint
+from substructures.certificate.derived.adjoint import adjoint
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
