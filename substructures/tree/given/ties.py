@@ -98,14 +98,14 @@ class Tied(Protocol):
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
-    *("linear systems", "frequency-responses", "regulators"),
+    *("frequency-responses", "regulators"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
-    "velocity_dynamics",
+    *("velocity_dynamics", "frequency-responses"),
 )
 TAKES_CONTACTS = ("simulations", "ensembles")
 #: with the kind of motion that has them
