@@ -16,6 +16,8 @@ from scipy.spatial.transform import Rotation
 from substructures import Model, equilibria, evaluate, frequency_response, linearise, regulator
 from substructures.analysis.equations.perturbation import perturbation, state_space
 from substructures.analysis.stability.linearisation_result import BallLinearisation
+from substructures.analysis.stability.root_locus import root_locus
+from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 
 Plain = dict[str, Any]
@@ -169,6 +171,45 @@ def test_a_free_body_turns_stably_about_its_least_and_largest_axis(axis: int, sq
     assert np.sign((s**2).real) == square
     assert np.abs(roots - s).min() < 1e-9
     assert roots.real.max() == pytest.approx(max(s.real, 0.0), abs=1e-6)
+
+
+def test_equilibria_are_found_at_any_attitude() -> None:
+    """The pendulum hangs and stands, turned about the vertical as is all one; the chain has no singular angles."""
+    model = single("ball", {"xx": 0.5, "yy": 0.5, "zz": 0.3}, ["0.1", 0, "0.3"], [0, 0, "-9.81"])
+    found = equilibria(model, count=12)
+    assert (len(found.found), found.is_right, found.held) == (2, True, ())
+    assert sorted(each.verdict for each in found.found) == ["undecided", "unstable"]
+    for each in found.found:
+        down = Rotation.from_quat(each.q, scalar_first=True).apply([0.1, 0, 0.3])
+        np.testing.assert_allclose(np.abs(down), [0, 0, np.hypot(0.1, 0.3)], atol=1e-9)
+        # about the vertical, in the axes of the body
+        np.testing.assert_allclose(np.abs(each.free), [np.array([0.1, 0, 0.3]) / np.hypot(0.1, 0.3)], atol=1e-8)
+    many = equilibria(hanging("ball"), count=8)
+    assert (many.message, many.is_right) == ("", True)
+    assert all(each.at.status == "finished" for each in many.found)
+    given = equilibria(hanging("ball"), starts=many.found[0].q, count=0)
+    assert any(np.allclose(each.q, many.found[0].q, atol=1e-9) for each in given.found)
+    free = equilibria(single("floating", {"xx": 1, "yy": 1, "zz": 1}, [0, 0, 0], [0, 0, -1]), count=4)
+    assert (free.found, free.held) == ((), ("x.r_b_x", "x.r_b_y", "x.r_b_z"))
+    with pytest.raises(InvalidArgument, match="norm") as caught:
+        equilibria(model, starts=[[2, 0, 0, 0]])
+    assert caught.value.faults[0].pointer == "/starts"
+
+
+def test_root_loci_of_a_hanging_body() -> None:
+    """The frequencies of the pendulum over its length."""
+    definition = {
+        "name": "top",
+        "parameters": {"l": {"value": "0.3", "unit": "m"}},
+        "bodies": [{"name": "b", "parent": "base", "mass": 2, "com": [0, 0, "-l"], "joint": {"type": "ball"},
+                    "inertia": {"xx": 0.5, "yy": 0.5, "zz": 0.3}}],
+    }  # fmt: skip
+    model = model_of(definition, gravity=[0, 0, "-9.81"])
+    lengths = np.array([0.3, 0.5, 0.7])
+    found = root_locus(model, "l", lengths, [1, 0, 0, 0])
+    assert found.q.shape == (3, 4)
+    w = np.sqrt(2 * 9.81 * lengths / (0.5 + 2 * lengths**2))
+    np.testing.assert_allclose(np.abs(found.eigenvalues.imag).max(axis=1), w, rtol=1e-9)
 
 
 def test_satellites_are_regulated_and_answer() -> None:

@@ -124,7 +124,7 @@ def _assembled(
             pairs.append((np.full((2 * n, 2 * n), np.nan), np.full((2 * n, f.shape[1]), np.nan)))
     A, B = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
     fields = model.coordinates, *names, M, D, K, F, A, B, *by_output, qdd, found["residual"]
-    return BallLinearisation(*fields, R=R) if TURNING in found else Linearisation(*fields)
+    return BallLinearisation(*fields, positions=model.positions, R=R) if TURNING in found else Linearisation(*fields)
 
 
 def _single(result: Linearisation) -> Linearisation:
