@@ -48,7 +48,7 @@ from service.queries import aliases, uses, versions
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
-from substructures.export import interface_of_model, interface_of_part
+from substructures.export import Interface, interface_of_model, interface_of_part
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import Part
 from substructures.tree.model import Model
@@ -189,15 +189,16 @@ def _address(request: Request) -> str:
 
 def of_part(version: Version, part: Part, pose: str | None, q: list[str] | None) -> Shown:
     """A part as it stands alone."""
+    interface = interface_of_part(part)
     return Shown(
         "substructures",
         f"{version.name}@{version.version}",
         (version.digest, version.program),
         part.joints,
-        interface_of_part(part),
+        interface,
         part.program.outputs,
         lambda names: with_own_inertia(part, part.program.select(list(names))),
-        _pose(pose, q, part.joints),
+        _pose(pose, q, interface),
     )
 
 
@@ -213,7 +214,7 @@ def of_tree(found: Tree, model: Model, pose: str | None, q: list[str] | None) ->
         interface,
         program.outputs,
         lambda _: program,
-        _pose(pose, q, model.joints),
+        _pose(pose, q, interface),
     )
 
 
@@ -233,8 +234,8 @@ def _found(
         return shown, lambda: modules.of_version(store, version)
 
 
-def _pose(pose: str | None, q: list[str] | None, joints: str) -> tuple[float, ...]:
-    return pictures.read_pose(",".join(q) if q else pose, joints) or ()
+def _pose(pose: str | None, q: list[str] | None, interface: Interface) -> tuple[float, ...]:
+    return pictures.read_pose(",".join(q) if q else pose, interface.vectors["q"].units) or ()
 
 
 def _answer(request: Request, page: bytes, script: str = "main.js") -> Response:
