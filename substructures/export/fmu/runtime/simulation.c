@@ -333,6 +333,20 @@ static int advance_adaptive(State *s, double to, const char **why)
     return 0;
 }
 
+/* quaternions back to length 1, on which nothing else depends */
+static void normalise(double *q)
+{
+#if FMU_BALLS > 0
+    for (size_t i = 0; i < FMU_BALLS; ++i) {
+        double *w = q + FMU_QUATERNIONS[i], size = 0.0;
+        for (size_t j = 0; j < 4; ++j) size += w[j] * w[j];
+        for (size_t j = 0; j < 4 && size > 0.0; ++j) w[j] /= sqrt(size);
+    }
+#else
+    (void)q;
+#endif
+}
+
 int state_advance(State *s, double to, const char **why)
 {
     int wrong = 0;
@@ -344,6 +358,7 @@ int state_advance(State *s, double to, const char **why)
     if (!wrong && to > s->v[AT_T] && FMU_NQ > 0)
         wrong = s->v[AT_STEP] > 0.0 ? advance_fixed(s, to, why) : advance_adaptive(s, to, why);
     if (!wrong) s->v[AT_T] = to;
+    normalise(s->v + AT_Q);
     s->has_rates = s->has_outputs = 0;
     return wrong;
 }

@@ -4,8 +4,8 @@
  *
  *     t | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | contacts | outputs
  *
- * v: velocities of all coordinates, FMU_NA is 0 then and q'' is der(v); or, with velocity constraints, of the
- * independent ones.
+ * v: velocities of all coordinates, FMU_NA is 0 then and q'' is der(v), with ball joints rates of all joints, and q has
+ * their quaternions; or, with velocity constraints, v of the independent ones.
  */
 #ifndef SUBSTRUCTURES_SIMULATION_H
 #define SUBSTRUCTURES_SIMULATION_H
