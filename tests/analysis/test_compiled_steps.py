@@ -7,12 +7,13 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import catalogue_model, shipped
+from catalogue_entries import CHAINS
 from closed_trees import at, four_bar
 from in_depth import deep
 from random_trees import Plain
 from simulated import simulated
 
-from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
+from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
@@ -66,7 +67,7 @@ def test_the_steps_of_scipy(method: str, longest: float | None, is_driven: bool)
     assert steps > 10
 
 
-@pytest.mark.parametrize("name", deep(*sorted({*catalogue.names()} - RIGID)))
+@pytest.mark.parametrize("name", deep(*sorted({*CHAINS} - RIGID)))
 def test_shipped_entries(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Motions of the whole catalogue against SciPy's steps, to a hundred times the tolerance of 1e-10."""
     model = shipped(name)

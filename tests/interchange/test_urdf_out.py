@@ -10,7 +10,7 @@ from xml.etree import ElementTree as Tree
 import numpy as np
 import pytest
 from ball_trees import random_balls, random_position
-from catalogue_entries import open_entry, shipped_part
+from catalogue_entries import CHAINS, open_entry, shipped_part
 from in_depth import seeds
 from related import reduction
 
@@ -151,7 +151,7 @@ def test_read_again_they_are_the_same(name: str) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("name", catalogue.names())
+@pytest.mark.parametrize("name", CHAINS)
 def test_pinocchio_has_the_same_numbers_of_all_shipped_parts(name: str, tmp_path: Path) -> None:
     part = bare(name)
     assert worst_in_pinocchio(urdf_of(part), at_world(part), list(part.coordinates), tmp_path / "a.urdf") < 1e-12
