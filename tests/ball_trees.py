@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 from random_trees import GRAVITY, Kind, random_definition
+from scipy.spatial.transform import Rotation
 
 Plain = dict[str, Any]
 OF = {"spherical": "ball", "free": "floating"}
@@ -51,6 +52,37 @@ def random_position(rng: np.random.Generator, model: Any) -> np.ndarray:
     return q
 
 
+def displaced(model: Any, q: np.ndarray, by: np.ndarray) -> np.ndarray:
+    """A state moved by n numbers: of ball joints by a displacement and a rotation vector in the axes of the body."""
+    at, moved = dict(zip(model.positions, q.tolist(), strict=True)), dict(zip(model.coordinates, by, strict=True))
+    result = {name: x + moved.get(name, 0.0) for name, x in at.items()}
+    for ball in model.balls:
+        names, (*slide, _, _, _) = ball["positions"], ball["velocities"]
+        turn = np.array([moved[name] for name in ball["velocities"][-3:]])
+        old = Rotation.from_quat([at[name] for name in names[-4:]], scalar_first=True)
+        new = (old * Rotation.from_rotvec(turn)).as_quat(scalar_first=True)
+        result |= dict(zip(names[-4:], new.tolist(), strict=True))
+        if slide:
+            place = old.apply([moved[name] for name in slide]) + [at[name] for name in names[:3]]
+            result |= dict(zip(names[:3], place.tolist(), strict=True))
+    return np.array([result[name] for name in model.positions])
+
+
+def apart(model: Any, q: np.ndarray, other: np.ndarray) -> np.ndarray:
+    """By what ``other`` is displaced."""
+    at, there = (dict(zip(model.positions, x.tolist(), strict=True)) for x in (q, other))
+    result = {name: there[name] - at[name] for name in model.positions}
+    for ball in model.balls:
+        names, (*slide, _, _, _) = ball["positions"], ball["velocities"]
+        old, new = (Rotation.from_quat([x[name] for name in names[-4:]], scalar_first=True) for x in (at, there))
+        turned = (old.inv() * new).as_rotvec()
+        result |= dict(zip(ball["velocities"][-3:], turned.tolist(), strict=True))
+        if slide:
+            moved = old.inv().apply([there[name] - at[name] for name in names[:3]])
+            result |= dict(zip(slide, moved.tolist(), strict=True))
+    return np.array([result[name] for name in model.coordinates])
+
+
 def of_engine(engine: Any, model: Any, q: np.ndarray) -> np.ndarray:
     """The state of Pinocchio, whose quaternions are x, y, z, w."""
     result = np.zeros(engine.model.nq)
@@ -66,4 +98,4 @@ def of_engine(engine: Any, model: Any, q: np.ndarray) -> np.ndarray:
     return result
 
 
-__all__ = ["GRAVITY", "of_engine", "random_balls", "random_position", "with_balls"]
+__all__ = ["GRAVITY", "apart", "displaced", "of_engine", "random_balls", "random_position", "with_balls"]

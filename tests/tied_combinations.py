@@ -77,6 +77,7 @@ TREES: dict[str, Plain] = {
     },
     "contacts": {"instances": [INSTANCE], "contacts": [{"name": "foot", "point": "x.tip"}]},
     "balls": {
+        "gravity": [0, 0, 0],
         "instances": [
             {"name": "hull", "definition": {**FREE, "bodies": [body("hull", "base", {"type": "floating"})]}},
             {**INSTANCE, "at": "hull.deck"},
@@ -110,6 +111,7 @@ def request_of(name: str, source: Source) -> Plain:
     moving = "x.b"
     turned = {name: k == 0 for ball in model.balls for k, name in enumerate(ball["positions"][-4:])}
     q = [float(turned.get(c, 0.5 if c == moving else 0.2)) for c in model.positions]
+    still = [float(turned.get(c, 0)) for c in model.positions]
     motion = {
         k: np.random.default_rng(i).uniform(-1, 1, (60, len(q))).tolist()
         for i, k in enumerate(("q", "qd", "qdd", "tau"))
@@ -134,7 +136,7 @@ def request_of(name: str, source: Source) -> Plain:
         "poincare-sections": {"q": q, "quantity": moving, "duration": 0.2},
         "linearisations": {"q": q},
         "frequency-responses": {"q": q, "frequencies": [1], "outputs": {"y": moving}},
-        "regulators": {"q": [0] * len(q), "weights": {moving: 1}, "of_inputs": [effort]},
+        "regulators": {"q": still, "weights": {moving: 1}, "of_inputs": [effort]},
         "equilibria": {"count": 1},
         "steady-motions": {"rates": {}, "count": 1},
         "root-loci": {"parameter": "x.l", "values": [0.5], "q": q},
@@ -166,7 +168,9 @@ def refusal(name: str, kind: str) -> str:
         codes = {fault.code for fault in error.faults}
         if len(codes) == 1 and next(iter(codes)).startswith("has-"):
             return codes.pop()
-        raise
+        # it was looked at, with its ties
+        if codes != {"no-equilibrium"}:
+            raise
     return ""
 
 

@@ -130,6 +130,12 @@ def directional(roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
     return [d.get(root, root.graph.zero) for root in roots]
 
 
+def in_directions(roots: Sequence[Expr], directions: Iterable[Mapping[str, Expr]]) -> list[list[Expr]]:
+    """Row i, column j is the derivative of expression i in direction j, as of :func:`directional`."""
+    columns = [directional(roots, seeds) for seeds in directions]
+    return [[column[i] for column in columns] for i in range(len(roots))]
+
+
 def step(graph: Graph, node: Expr, d: list[Expr]) -> Expr:
     """Derivative of a node from those of its operands."""
     op, args = node.op, node.args

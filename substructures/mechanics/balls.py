@@ -128,6 +128,22 @@ def turned_by(quaternion: Sequence[Scalar], half_square: Scalar) -> Matrix:
     )
 
 
+def displacement_rates(rates: Sequence[Scalar]) -> dict[tuple[int, int], Scalar]:
+    """R of d' = dv + R d, for displacements d of a ball joint in the axes of its body: of place, if it has one, and the
+    rotation vector, as the ``rates`` v and w are.
+
+        d_turn' = dw - w x d_turn        d_place' = dv - w x d_place - v x d_turn
+    """
+    m = len(rates) - 3
+    result: dict[tuple[int, int], Scalar] = {}
+    blocks = [(m, m, rates[m:]), *([(0, 0, rates[m:]), (0, m, rates[:m])] if m else [])]
+    for row, column, x in blocks:
+        for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+            # -(x x d)_i = x_k d_j - x_j d_k
+            result[row + i, column + j], result[row + i, column + k] = x[k], -x[j]
+    return result
+
+
 def quaternion_rates(quaternion: Sequence[Scalar], rates: Sequence[Scalar], half: Scalar) -> list[Scalar]:
     """Q' = 1/2 Q (0, w); ``rates``: w."""
     w, x, y, z = quaternion

@@ -13,11 +13,11 @@ Forward dynamics q'' = FD(q, q', tau) satisfies ID(q, q', FD, tau) = 0, hence g 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.differentiate import directional
+from substructures.expr.differentiate import directional, in_directions
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array
 from substructures.expr.replay import replay
@@ -70,19 +70,19 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
 
     ``inverse_dynamics`` (n,); ``inverse_dynamics_q`` (n, n): dID_a/dq^b [N m/rad, N/m, ...] and
     ``inverse_dynamics_qd`` (n, n): dID_a/dq'^b = 2 Gamma_abc q'^c - dQ_a/dq'^b, both at [a, b]. The derivative by q''
-    is the metric. One walk for every column, each over what depends on it.
+    is the metric. Of ball joints dq^b is a displacement, or a rotation vector, in the axes of the body. One walk for
+    every column, each over what depends on it.
     """
     r = Workspace(model)
     rows = r.inverse_dynamics()
 
-    def matrix(names: Sequence[str]) -> Formulas:
-        """dID_a/dx^b for the symbols x."""
-        # column b: dID_a/dx^b, the derivative along the unit direction of x^b alone
-        columns = [directional(rows, {name: r.graph.one}) for name in names]
-        return array((r.n, r.n), lambda a, b: columns[b][a])
+    def matrix(directions: Sequence[Mapping[str, Expr]]) -> Formulas:
+        """The derivative of ID_a along the direction b."""
+        found = in_directions(rows, directions)
+        return array((r.n, r.n), lambda a, b: found[a][b])
 
-    rates = [f"{name}'" for name in model.coordinates]
-    return r.program({ID: vector(rows), f"{ID}_q": matrix(model.coordinates), f"{ID}_qd": matrix(rates)})
+    rates = [{f"{name}'": r.graph.one} for name in model.coordinates]
+    return r.program({ID: vector(rows), f"{ID}_q": matrix(r.displacements), f"{ID}_qd": matrix(rates)})
 
 
 def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:

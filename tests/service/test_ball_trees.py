@@ -98,6 +98,17 @@ def test_it_moves(satellite: TestClient) -> None:
     assert wrong.json()["errors"][0]["code"] == "not-supported", wrong.text
 
 
+def test_the_linearised_satellite(satellite: TestClient) -> None:
+    """Displacements in the axes of the hull: gravity turns with it, -m g along x by the turn about y."""
+    found = satellite.post("/v1/trees/satellite/linearisations", json={"q": [0, 0, 0, 1, 0, 0, 0, 0]}).json()
+    assert found["K"][0][4] == pytest.approx(-5 * 9.81)
+    assert np.array(found["R"]).shape == (7, 7)
+    assert not np.any(found["R"])
+    space = satellite.get("/v1/trees/satellite/state_space").json()
+    assert space["positions"] == POSITIONS
+    assert len(space["state"]) == 14
+
+
 def test_it_is_drawn_at_rest_and_at_any_state(satellite: TestClient) -> None:
     scene = satellite.get("/v1/trees/satellite/scene").json()
     assert scene["positions"] == POSITIONS
@@ -147,9 +158,8 @@ def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
     ("path", "body"),
     [
         ("publish", {}),
-        ("linearisations", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
         ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
-        ("equilibria", {"count": 1}),
+        ("steady-motions", {"rates": {}, "count": 1}),
         ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
     ],
 )

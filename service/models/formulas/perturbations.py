@@ -30,6 +30,7 @@ def _state_space(source: Source, options: Options) -> Made:
     model, outputs, inputs = source.model, options.get("outputs", ()), options.get("inputs")
     state = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
     members = {"state": state, "inputs": list(inputs or inputs_of(model)), "expressions": list(outputs)}
+    members |= {"positions": list(model.positions)} if model.balls else {}
     return Made(state_space(model, outputs, inputs), members)
 
 

@@ -11,7 +11,7 @@ import numpy as np
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.expr.calculus.corners import VanishingOnAllSides, corners, inner, on_side
-from substructures.expr.differentiate import directional, gradient
+from substructures.expr.differentiate import directional, gradient, in_directions
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
@@ -73,11 +73,11 @@ def _has_even_dissipation(known: Known, given: frozenset[str], zero: frozenset[s
     found = corners([f.power])
     (power,) = on_side([f.power], dict(zip(found, sides, strict=True)))
     at_rest = rest_forces(f, power)
-    if at_rest is None or depends_on([power], {"t"}) or not is_gradient(at_rest, model.coordinates, vanishes):
+    if at_rest is None or depends_on([power], {"t"}) or not _is_gradient(f, at_rest, vanishes):
         return False
     # what is left of P without r_a q'^a is -D_ab q'^a q'^b, by Euler: dP/dq'^a q'^a = 2 P
     left = power - f.graph.sum(r * v for r, v in zip(at_rest, f.rates, strict=True))
-    anywhere = {str(q.value): f.graph.symbol(f"d.{q.value}") for q in f.q}
+    anywhere = {name: f.graph.symbol(f"d.{name}") for name in model.positions}
     along = {str(v.value): v for v in f.rates}
     return vanishes(directional([left], along)[0] - 2 * left) and vanishes(directional([left], anywhere)[0])
 
@@ -91,9 +91,14 @@ def rest_forces(f: ModelFormulas, power: Expr) -> list[Expr] | None:
         return None
 
 
-def is_gradient(forces: Sequence[Expr], names: Sequence[str], vanishes: Callable[[Expr], bool]) -> bool:
-    """Whether d_b r_a = d_a r_b for all pairs of coordinates: then, and only then, r has a potential near any place."""
-    slopes = gradient(forces, names) if any(not x.is_zero for x in forces) else []
+def _is_gradient(f: ModelFormulas, forces: Sequence[Expr], vanishes: Callable[[Expr], bool]) -> bool:
+    """Whether d_b r_a = d_a r_b for all pairs of coordinates: then, and only then, r has a potential near any place. Of
+    forces on ball joints, whose displacements do not commute, nothing is told.
+    """
+    on_balls = {name for ball in f.model.balls for name in ball["velocities"]}
+    if any(name in on_balls and not x.is_zero for name, x in zip(f.model.coordinates, forces, strict=True)):
+        return False
+    slopes = in_directions(forces, f.displacements) if any(not x.is_zero for x in forces) else []
     pairs = ((a, b) for a in range(len(slopes)) for b in range(a))
     return all(vanishes(slopes[a][b] - slopes[b][a]) for a, b in pairs)
 
@@ -134,7 +139,7 @@ def _culprits(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> str:
     if at_rest is None or all(vanishes(x) for x in at_rest):
         return "the forces without potential"
     names = ", ".join(f"'{name}'" for name, x in zip(f.model.coordinates, at_rest, strict=True) if not vanishes(x))
-    if depends_on(at_rest, {"t"}) or not is_gradient(at_rest, f.model.coordinates, vanishes):
+    if depends_on(at_rest, {"t"}) or not _is_gradient(f, at_rest, vanishes):
         return f"the forces without potential, at rest those on {names}"
     return f"forces that are not in V: those on {names} have a potential, but none in closed form was found"
 

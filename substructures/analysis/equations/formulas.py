@@ -13,8 +13,8 @@ from substructures.errors import InvalidDocument
 from substructures.expr.calculus.corners import between_corners
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
-from substructures.expr.program import Symbol
-from substructures.part.balls import position_rates
+from substructures.expr.program import Entries, Symbol
+from substructures.mechanics.balls import displacement_rates
 from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model, require_open
@@ -78,13 +78,17 @@ class ModelFormulas(Workspace):
     @cached_property
     def position_rates(self) -> dict[str, Expr]:
         """By what a state q consists of: q', of ball joints p' = R v and Q' = 1/2 Q (0, w)."""
-        rates, units = dict(zip(self.model.coordinates, self.rates, strict=True)), self.model.state_units["q"]
+        return self.moved(self.rates)
+
+    @cached_property
+    def displacement_rates(self) -> Entries:
+        """R of d' = dv + R d for displacements d of a state q: 0 but for ball joints."""
+        places, result = {name: a for a, name in enumerate(self.model.coordinates)}, Entries()
         for ball in self.model.balls:
-            moving = [rates.pop(name) for name in ball["velocities"]]
-            self.symbols |= {name: Symbol(name, "coordinate", units[name]) for name in ball["positions"]}
-            found = position_rates(self.graph, ball["positions"], moving)
-            rates |= dict(zip(ball["positions"], found, strict=True))
-        return {name: rates[name] for name in self.model.positions}
+            at = [places[name] for name in ball["velocities"]]
+            found = displacement_rates([self.rates[a] for a in at])
+            result |= {(at[i], at[k]): self.graph.lift(x) for (i, k), x in found.items()}
+        return result
 
     @cached_property
     def factors(self) -> MetricElimination:

@@ -7,6 +7,11 @@ About any q, q', q'', at given inputs and time:
 
 With closures phi_k (G_ka = d_a phi_k, multipliers lambda_k) M dq'' + D dq' + K dq = F du + G^T dlambda and G dq = 0.
 
+With ball joints (section 14) dq has of each the displacement and the rotation vector in the axes of the body that it
+carries, dQ = 1/2 Q (0, dq), and d_b is the derivative along these; rates v are no derivatives:
+
+    M dv' + D dv + K dq = F du        dq' = dv + R dq
+
 and as first order equations dx' = A dx + B du, dy = C dx + D du, x = (q, q'), for outputs y = h(q, q', u, t).
 """
 
@@ -22,13 +27,13 @@ from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.given import require_known
 from substructures.certificate.derived.perturbed import first_order, perturbed
 from substructures.errors import Fault, InvalidDocument
-from substructures.expr.differentiate import directional, gradient
+from substructures.expr.differentiate import directional, gradient, in_directions
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
-from substructures.quantities.numbers.workspace import ID
+from substructures.quantities.numbers.workspace import ID, vector
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model, require_open
 
@@ -60,7 +65,7 @@ def perturbation(model: Model) -> Program:
     and ``residual`` (n,): g q'' + Gamma q' q' - Q - G^T lambda, zero where q'' is that of the motion. With closures of
     m rows also ``closure.residual`` (m,), ``closure.jacobian`` (m, n): G, and along the motion its first and second
     derivative by time, ``closure.jacobian_rate`` and ``closure.jacobian_second`` (m, n); symbols of the multipliers:
-    multipliers_of(model).
+    multipliers_of(model). With ball joints also ``rates_by_position`` (n, n): R.
 
     Raises InvalidDocument for forces without derivative.
     """
@@ -87,12 +92,14 @@ def _perturbation(known: Known) -> Program:
         "input": array((f.n, len(names)), lambda a, i: -by_input[a][i]),
         "residual": found[ID],
     }
+    if model.balls:
+        outputs["rates_by_position"] = Formulas((f.n, f.n), f.displacement_rates)
     if model.closures:
         outputs |= _with_closures(f, outputs)
     result = program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
     multipliers = multipliers_of(model)
     more = dict.fromkeys(multipliers, "input")
-    return certified(result, model, perturbed(names, multipliers), "perturbation", more=more)
+    return certified(result, model, perturbed(names, multipliers, model.balls), "perturbation", more=more)
 
 
 def _with_closures(f: ModelFormulas, found: Mapping[str, Formulas]) -> dict[str, Formulas]:
@@ -125,7 +132,8 @@ def state_space(
     model: Model, outputs: Sequence[NumberOrExpression] = (), inputs: Sequence[str] | None = None
 ) -> Program:
     """A (2n, 2n), B (2n, m), C (k, 2n), D (k, m) as formulas at any state, with ``derivative`` (2n,) = x' and
-    ``output`` (k,) = y.
+    ``output`` (k,) = y. With ball joints dx = (dq, dv) of the module's equations, and ``derivative`` (m + n,) is that
+    of the m numbers of a state q, quaternions among them, and of its rates.
 
     ``outputs``: expressions in coordinates, velocities, inputs, parameters and t; ``inputs``: default all. Raises
     InvalidInput: bad expressions (``/outputs/i``), unknown inputs (``/inputs/i``), forces without derivative, singular
@@ -139,13 +147,20 @@ def state_space(
     given = [(exact(x, f"/outputs/{i}"), f"/outputs/{i}") for i, x in enumerate(outputs)]
     read = read_expressions(model, {"output": given}, inputs=True)
     y = _rows(replay(read, f.graph, {})["output"], len(given), f.graph.zero)
-    states = [str(x.value) for x in (*f.q, *f.rates)]
-    # x' = (q', g^-1 (Q - Gamma q' q'))
-    x = [*f.rates, *f.acceleration]
-    matrices = {"A": gradient(x, states), "B": gradient(x, chosen), "C": gradient(y, states), "D": gradient(y, chosen)}
-    shapes = {"A": (2 * f.n, 2 * f.n), "B": (2 * f.n, len(chosen)), "C": (len(y), 2 * f.n), "D": (len(y), len(chosen))}
-    results = {name: array(shapes[name], lambda i, j, m=m: m[i][j]) for name, m in matrices.items()}
-    results["derivative"] = array((2 * f.n,), lambda i: x[i])
-    results["output"] = array((len(y),), lambda i: y[i])
+    states = [*f.displacements, *({str(rate.value): f.graph.one} for rate in f.rates)]
+    acting = [{name: f.graph.one} for name in chosen]
+    # dq' = dv + R dq, and g^-1 (Q - Gamma q' q')
+    kinematic = f.displacement_rates | {(a, f.n + a): f.graph.one for a in range(f.n)}
+    own = [[kinematic.get((a, i), f.graph.zero) for i in range(2 * f.n)] for a in range(f.n)]
+    still, x = [[f.graph.zero] * len(chosen)] * f.n, f.acceleration
+    matrices = {
+        "A": (own + in_directions(x, states), len(states)),
+        "B": (still + in_directions(x, acting), len(acting)),
+        "C": (in_directions(y, states), len(states)),
+        "D": (in_directions(y, acting), len(acting)),
+    }
+    results = {name: array((len(m), width), lambda i, j, m=m: m[i][j]) for name, (m, width) in matrices.items()}
+    results |= {"derivative": vector([*f.position_rates.values(), *x]), "output": vector(y)}
     result = program(f.graph, results, {s.name: s for s in read.symbols} | f.symbols)
-    return certified(result, model, first_order([text for text, _ in given], chosen), "state_space")
+    expected = first_order([text for text, _ in given], chosen, model.positions, model.balls)
+    return certified(result, model, expected, "state_space")

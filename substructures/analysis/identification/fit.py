@@ -188,7 +188,7 @@ def _explained(W: Array, tau: Array, residual: Array, deviations: Array, limit: 
 def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (REGRESSOR,)) -> _Data:
     """Outputs of the program along a motion."""
     view = _view(base)
-    require_moving(view)
+    require_moving(view, "identifications")
     states = read_states(view, vars(motion), None)
     if states.qdd is None:
         raise InvalidArgument.at("/qdd", "missing", "accelerations 'qdd' are needed")

@@ -41,6 +41,7 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached
+from substructures.quantities.numbers.quaternions import quaternions_in
 from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
@@ -163,7 +164,7 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
     varied, limit = conditions.varied_potential(), problem.drift_limit
     energy = unbalanced(varied) if varied else energy_balance(t, series, not x[:, -1].any(), limit)
     series["energy"] = series["kinetic_energy"] + series["potential_energy"]
-    norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in _quaternions(model)])
+    norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in quaternions_in(model.positions, model.balls)])
     reason = "|Q| = 1 of all quaternions: Q' = 1/2 Q (0, w) keeps their lengths"
     kept = Check.of(("quaternions", "zero", reason, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
     unit = partial(with_lengths, model)
@@ -189,15 +190,10 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
     )
 
 
-def _quaternions(model: Model) -> list[list[int]]:
-    """The places of all quaternions in a state q."""
-    return [[model.positions.index(name) for name in ball["positions"][-4:]] for ball in model.balls]
-
-
 def with_lengths(model: Model, q: Array) -> Array:
     """States (K, m) with quaternions of length 1."""
     result = q.copy()
-    for some in _quaternions(model):
+    for some in quaternions_in(model.positions, model.balls):
         result[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
     return result
 

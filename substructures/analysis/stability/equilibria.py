@@ -12,9 +12,10 @@ import numpy as np
 from substructures.analysis.equations.formulas import require_moving, unsteady
 from substructures.analysis.stability.closed_search import ClosedSearch
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
-from substructures.analysis.stability.equilibrium_search import RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.equilibrium_search import BallSearch, RestConditions, RestSearch, SearchRange
 from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
 from substructures.analysis.stability.linearisation_result import (
+    BallLinearisation,
     ClosedLinearisation,
     ConstrainedLinearisation,
     Linearisation,
@@ -33,8 +34,9 @@ SINGULAR = 1e-9
 
 @dataclass(frozen=True, repr=False)
 class Equilibrium:
-    """``q`` (n,): angles in (-pi, pi] [rad], distances [m]. ``free`` (k, n): directions of length one in which the
-    forces do not decide (K singular); with closures those that keep them.
+    """``q`` (n,): angles in (-pi, pi] [rad], distances [m]; with ball joints (m,) with quaternions, of a family one.
+    ``free`` (k, n): directions of length one in which the forces do not decide (K singular); with closures those that
+    keep them.
 
     ``at``: the linearisation there with modes and stability.
     """
@@ -44,7 +46,8 @@ class Equilibrium:
     at: Linearisation
 
     def __repr__(self) -> str:
-        place = ", ".join(f"{name}={x:.6g}" for name, x in zip(self.at.coordinates, self.q.tolist(), strict=True))
+        names = self.at.positions if isinstance(self.at, BallLinearisation) else self.at.coordinates
+        place = ", ".join(f"{name}={x:.6g}" for name, x in zip(names, self.q.tolist(), strict=True))
         return f"Equilibrium({place})\n{self.at.message or self.verdict}, {len(self.free)} undetermined directions"
 
     @property
@@ -91,13 +94,13 @@ def equilibria(
     """Positions of rest of a model: Q_a(q, q' = 0) = 0, with closures Q_a + lambda_k G_ka = 0 and phi_k(q) = 0.
 
     Newton's method begins at the ``starts`` (N, n) [rad, m], at zero, and at ``count`` random places: angles in +-pi,
-    distances in +-``reach`` [m], drawn with ``seed``. ``t`` [s], ``parameters`` (in place of their defaults) and
-    ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first moved onto the
-    closures; with velocity constraints of the tree contacts are closed whose planes pass through the origin of the
-    world, and of families the places near ``starts`` and zero are found. An equilibrium in a singular position has a
-    linearisation that is ``failed``, and is not judged. That none is found is a result with advice. Raises InvalidInput
-    (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative, ``not-steady`` for given motions
-    that make them vary) and MissingValue. Source: notation.md, section 7.
+    distances in +-``reach`` [m], ball joints in any attitude, drawn with ``seed``. ``t`` [s], ``parameters`` (in place
+    of their defaults) and ``inputs`` [N m, N] (their defaults, or 0) stay as they are. Starts of closed loops are first
+    moved onto the closures; with velocity constraints of the tree contacts are closed whose planes pass through the
+    origin of the world, and of families the places near ``starts`` and zero are found. An equilibrium in a singular
+    position has a linearisation that is ``failed``, and is not judged. That none is found is a result with advice.
+    Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative,
+    ``not-steady`` for given motions that make them vary) and MissingValue. Source: notation.md, section 7.
     """
     require_moving(model, "equilibria")
     conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))
@@ -108,13 +111,13 @@ def equilibria(
     within = SearchRange(starts, count, reach, seed)
     if model.velocity_constraints:
         return _constrained(ConstrainedSearch(model, within, conditions, None))
-    search = ClosedSearch(model, within, conditions) if model.closures else RestSearch(model, within, conditions)
-    places = search.starts()
+    kind = ClosedSearch if model.closures else BallSearch if model.balls else RestSearch
+    places = (search := kind(model, within, conditions)).starts()
     held = search.held(places)
-    moving = [a for a in range(model.dof) if a not in held]
+    moving = [a for a in range(search.n) if a not in held]
     places[:, held] = places[0, held]
     found, _ = search.places(places, moving)
-    names = tuple(model.coordinates[a] for a in held)
+    names = tuple(model.positions[a] for a in held)
     results, left_out = confirmed([_described(model, conditions, q) for q in found])
     return Equilibria(results, names, message=left_out if results or left_out else search.advice(places[0], held))
 

@@ -20,11 +20,14 @@ from substructures.analysis.stability.meetings import with_sides
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
+from substructures.quantities.numbers.quaternions import by_displacements, quaternions_in, with_unit_quaternions
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: two places closer than this are one [rad, m]
 SAME = 1e-6
+#: singular values of K below this share of the largest are none, and steps and their size along a family of places
+FREE, SLIDES, STEP = 1e-8, 60, 0.3
 #: forces left over, in units of the search, or relative to the largest entry of K times 1 rad or 1 m
 RESIDUAL = 1e-10
 NEEDS = ("metric", "forces")
@@ -77,34 +80,36 @@ class RestSearch:
     """Forces of a tree and their Jacobian at rest, compiled."""
 
     def __init__(self, model: Model, within: SearchRange, conditions: RestConditions) -> None:
-        n = self.n = model.dof
+        n, self.n = model.dof, len(model.positions)
         self.model, self.within, self.conditions = model, within, conditions
-        states = read_states(model, {"q": np.zeros(n)}, None)
+        self.quaternions, start = quaternions_in(model.positions, model.balls), np.zeros(self.n)
+        start[[some[0] for some in self.quaternions]] = 1
+        states = read_states(model, {"q": start}, None)
         known = symbol_values(model, vars(conditions), states, NEEDS)
         values = {name: float(np.ravel(x)[0]) for name, x in known.items()}
         values |= {f"{name}''": 0.0 for name in model.coordinates}
-        self.q, self.F, self.K = np.zeros((1, n)), np.zeros((1, n)), np.zeros((1, n, n))
+        self.q, self.F, self.K = states.q.copy(), np.zeros((1, n)), np.zeros((1, n, n))
         outputs, columns = self._also()
         outputs |= {"residual": self.F, "stiffness": self.K}
-        columns.append((list(model.coordinates), self.q))
+        columns.append((list(model.positions), self.q))
         self.run = program_kernel(perturbation(model)).bind(outputs, values, columns=columns)
-        self._sized([kind == "R" for kind in model.joints])
+        self._sized([model.state_units["q"][name] for name in model.positions])
 
-    def _sized(self, turning: Sequence[bool]) -> None:
+    def _sized(self, units: Sequence[str]) -> None:
         """Where is looked, in which unit of force, and what has come round after a full turn."""
-        # places in +-pi for angles, +-reach for distances
-        self.size = np.where(turning, np.pi, self.within.reach)
-        self.length = np.where(turning, 1.0, self.within.reach)
-        self.turning, self.unit = np.zeros(self.n, dtype=bool), np.ones(self.n)
+        reach = self.within.reach
+        self.size = np.array([{"rad": np.pi, "m": reach}.get(unit, 1.0) for unit in units])
+        self.length = np.array([reach if unit == "m" else 1.0 for unit in units])
+        self.turning, self.unit = np.zeros(self.n, dtype=bool), np.ones(1)
         # |Q_a| and |K_ab| times a unit of q^b; a force that is rounding has no size of its own
-        sizes = np.zeros(self.n)
+        sizes = np.zeros(1)
         for q in np.random.default_rng(5).uniform(-1, 1, (PLACES, self.n)) * self.size:
             F, K = self.at(q)
             there = np.abs(np.column_stack((F, K * self.length)))
             sizes = np.maximum(sizes, np.where(np.isfinite(there), there, 0).max(axis=1, initial=0))
         largest = float(sizes.max(initial=0)) or 1.0
         self.unit = np.where(sizes > NOTHING * largest, sizes, largest)
-        self.turning = np.array([t and self._is_periodic(a) for a, t in enumerate(turning)], dtype=bool)
+        self.turning = np.array([x == "rad" and self._is_periodic(a) for a, x in enumerate(units)], dtype=bool)
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
         """Further outputs and columns of the kernel."""
@@ -125,7 +130,7 @@ class RestSearch:
         rng = np.random.default_rng(self.within.seed)
         rows = [np.zeros((1, self.n)), rng.uniform(-1, 1, (self.within.count, self.n)) * self.size]
         if self.within.starts is not None:
-            n, given = self.model.dof, np.atleast_2d(numeric(self.within.starts, "/starts"))
+            n, given = len(self.model.positions), np.atleast_2d(numeric(self.within.starts, "/starts"))
             if given.ndim != 2 or given.shape[1] != n:
                 message = f"shape {given.shape} found, (N, {n}) expected"
                 raise InvalidArgument.at("/starts", "wrong-length", message)
@@ -162,12 +167,16 @@ class RestSearch:
         found: list[Array] = []
         for start in starts:
             q = self.solve(start, moving)
-            if q is not None and not any(self.distance(q, other) < SAME for other in found):
+            if q is not None and not any(self.is_same(q, other, moving) for other in found):
                 found.append(q)
         if found and self.n:
             found = [found[i] for i in np.lexsort(np.round(found / self.length, 6).T[::-1])]
         regular = [q for q in found if not self.is_singular(q)]
         return regular, len(found) - len(regular)
+
+    def is_same(self, q: Array, other: Array, _: Sequence[int]) -> bool:
+        """Whether two places are told as one."""
+        return self.distance(q, other) < SAME
 
     def is_singular(self, _: Array) -> bool:
         """Whether the coordinates fail there, which the linearisation of an equilibrium tells."""
@@ -210,15 +219,15 @@ class RestSearch:
         # pi - (pi - q mod 2 pi)
         return np.where(self.turning, np.pi - np.mod(np.pi - q, 2 * np.pi), q)
 
-    def _last_step(self, q: Array, moving: Sequence[int]) -> Array:
-        """One step of Newton's method, of least size where K is singular."""
+    def _last_step(self, q: Array, moving: Sequence[int], most: float = 1e-3) -> Array:
+        """One step of Newton's method, of least size where K is singular; none if it is as large as ``most``."""
         F, K = self.at(q)
         if not (np.isfinite(F).all() and np.isfinite(K).all()):
             return np.zeros(len(moving))
         # K dq = Q, with F = -Q
         length = self.length[moving]
         step = np.linalg.lstsq(K[:, moving] * length, -F, rcond=1e-10)[0]
-        return np.asarray(step * length if np.abs(step).max(initial=0) < 1e-3 else np.zeros(len(moving)))
+        return np.asarray(step * length if np.abs(step).max(initial=0) < most else np.zeros(len(moving)))
 
     def distance(self, p: Array, q: Array) -> float:
         """Largest difference of coordinates, of angles by the shorter way, of distances over the reach."""
@@ -228,7 +237,64 @@ class RestSearch:
     def advice(self, q: Array, held: Sequence[int]) -> str:
         """Why there is none."""
         F, _ = self.at(q)
-        names = ", ".join(f"'{self.model.coordinates[a]}'" for a in held if abs(F[a]) > RESIDUAL)
-        if names:
+        constant, rest = (
+            dict(zip(self.model.coordinates, np.abs(F), strict=True)),
+            [self.model.positions[a] for a in held],
+        )
+        if names := ", ".join(f"'{name}'" for name in rest if constant.get(name, 0) > RESIDUAL):
             return f"nothing balances the constant force on {names}: change gravity or inputs, or add a spring"
         return "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"
+
+
+class BallSearch(RestSearch):
+    """The same with ball joints: K by all numbers of a state. Of families (turns about the vertical) one is told."""
+
+    def _ran(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        model, found = self.model, super()._ran(values)
+        found["K"] = found["K"] @ by_displacements(model.positions, model.coordinates, model.balls, values["q"])
+        return found
+
+    def starts(self) -> Array:
+        """Those given, no turn, and random ones, with quaternions of length 1."""
+        rows = super().starts()
+        for some in self.quaternions:
+            rows[~rows[:, some].any(axis=1), some[0]] = 1
+        return np.array([self.wound(row) for row in rows])
+
+    def _of_all(self, rows: Array) -> Array:
+        return with_unit_quaternions(self.model.positions, self.model.balls, rows, "/starts")
+
+    def is_same(self, q: Array, other: Array, moving: Sequence[int]) -> bool:
+        """Also where q comes to the other one along its family, on which K leaves a direction free."""
+        for _ in range(SLIDES):
+            if self.distance(q, other) < SAME:
+                return True
+            _, sizes, ways = np.linalg.svd(self.at(q)[1][:, moving])
+            free, before, q = ways[int(np.sum(sizes > FREE * sizes.max(initial=0))) :], q, q.copy()
+            step = free.T @ (free @ (self._beside(q, other) - q)[moving])
+            q[moving] += step * min(1.0, STEP / (np.linalg.norm(step) or 1.0))
+            for _ in range(3):
+                q[moving] += self._last_step(q, moving, STEP)
+            q = self.wound(q)
+            if self.distance(q, before) < SAME:
+                break
+        return False
+
+    def _beside(self, q: Array, other: Array) -> Array:
+        """The same as ``other``: of both quaternions that turn alike the one that is nearer to q."""
+        result = other.copy()
+        for some in self.quaternions:
+            result[some] *= 1.0 if q[some] @ other[some] >= 0 else -1.0
+        return result
+
+    def wound(self, q: Array) -> Array:
+        """Angles in (-pi, pi], quaternions of length 1, of both that turn alike the one with w > 0."""
+        result = super().wound(q)
+        for some in self.quaternions:
+            unit = result[some] / np.linalg.norm(result[some])
+            result[some] = unit if unit[int((np.abs(unit) > SAME).argmax())] > 0 else -unit
+        return result
+
+    def distance(self, p: Array, q: Array) -> float:
+        """As of others, of quaternions by the nearer sign."""
+        return super().distance(p, self._beside(p, q))

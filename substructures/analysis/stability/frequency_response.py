@@ -56,10 +56,11 @@ def frequency_response(
     outputs: Mapping[str, NumberOrExpression] | None = None,
     **point: Any,
 ) -> FrequencyResponse:
-    """G(i w) = C (i w - A)^-1 B + D of a tree without closures, linearised about one state.
+    """G(i w) = C (i w - A)^-1 B + D of a tree that is linearised about one state, on its closures and constraints.
 
     ``frequencies`` [rad/s]: by default from a tenth of the slowest pole to ten times the fastest. ``outputs``: y by
-    name, by default all coordinates; ``point``: further arguments of :func:`linearise`. Raises as that.
+    name, by default all coordinates, of ball joints their places and quaternions; ``point``: further arguments of
+    :func:`linearise`. Raises as that.
 
     >>> from substructures import couple, derive, frequency_response
     >>> tree = {"name": "clock", "gravity": [0, 0, -10]}
@@ -68,8 +69,8 @@ def frequency_response(
     >>> float(frequency_response(model, [0], frequencies=[0.0]).magnitude[0, 0, 0])
     0.1
     """
-    chosen = outputs or {name: name for name in model.coordinates}
-    system = linear_system(model, q, point, chosen)
+    chosen = outputs or {name: name for name in model.positions}
+    system = linear_system(model, q, point, chosen, "frequency-responses")
     poles = eigenvalues(system.A)
     w = _frequencies(frequencies, poles)
     shape = (len(w), len(system.outputs), len(system.inputs))

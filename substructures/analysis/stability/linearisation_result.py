@@ -66,6 +66,18 @@ class Linearisation:
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
+class BallLinearisation(Linearisation):
+    """Of a tree with ball joints, whose rates v are no derivatives: M dv' + D dv + K dq = F du, dq' = dv + R dq;
+    x = (dq, dv). Of such a joint dq are the displacement of a floating one [m] and the rotation vector [rad], in the
+    axes of the body that it carries, as its rates are: dQ = 1/2 Q (0, dq). ``R`` (n, n) is 0 at rest; ``positions``:
+    names of the numbers of a state.
+    """
+
+    positions: tuple[str, ...]
+    R: Array
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
 class ClosedLinearisation(Linearisation):
     """As Linearisation, with M, D, K (r, r), F (r, m), A (2r, 2r), ... in the coordinates ``independent`` (r names).
 

@@ -15,8 +15,9 @@ from substructures.analysis.equations.formulas import inputs_of, require_moving,
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
+from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
-from substructures.analysis.stability.linearisation_result import Linearisation
+from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.linearise_constrained import linearise_constrained
 from substructures.analysis.stability.meetings import with_sides
@@ -29,6 +30,8 @@ from substructures.quantities.numbers.states import States, read_states, symbol_
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces")
+#: R of dq' = dv + R dq of ball joints
+TURNING = "rates_by_position"
 
 
 def linearise(
@@ -51,8 +54,8 @@ def linearise(
     ``q``, ``qd``, ``qdd`` (n,) or (N, n), or by coordinate [rad, m, s]; ``qd`` is 0 by default, ``qdd`` that of the
     motion. ``t`` [s], ``parameters`` (in place of their defaults) and ``inputs`` [N m, N] (their defaults, or 0): one
     number, or (N,). ``outputs``: y by name, expressions in q, q', inputs, parameters and t; ``of_inputs``: the columns
-    of B and D (default all). With closures a ClosedLinearisation, about the closed state nearest to one given state, in
-    independent coordinates; ``kind``: velocity constraints (default: the tree's); ConstrainedLinearisation, one motion.
+    of B and D (default all). With ball joints a BallLinearisation, with closures a ClosedLinearisation (of the closed
+    state nearest to one); ``kind``: velocity constraints (the tree's); ConstrainedLinearisation, one motion.
 
     Numerical failures (a singular metric, loops that cannot be closed) are results with status ``failed`` and advice.
     Raises InvalidInput (``/q``, ``/outputs/y``, ``/of_inputs/i``, ...; ``not-smooth`` for forces without derivative)
@@ -83,8 +86,8 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     qdd = _accelerations(model, values, states)
     # M, D, K, F and the residual at (q, q', q'', u, t)
     values |= {f"{name}''": qdd[:, a] for a, name in enumerate(model.coordinates)}
-    moved = [f"{name}{prime}" for name in model.coordinates for prime in ("", "'")]
-    found = with_sides(lambda at: interpret_in_blocks(source, at, list(MATRICES), len(qdd)), values, moved)
+    moved, wanted = state_names(model), [name for name in (*MATRICES, TURNING) if name in source.outputs]
+    found = with_sides(lambda at: interpret_in_blocks(source, at, wanted, len(qdd)), values, moved)
     found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
     by_output = point.output_matrices(chosen, values, len(qdd))
     result = _assembled(model, (chosen, tuple(point.outputs)), found, by_output, qdd)
@@ -111,20 +114,22 @@ def _assembled(
 ) -> Linearisation:
     """All matrices, states first; ``names``: of inputs and outputs."""
     M, D, K, F = (found[name] for name in ("metric", "damping", "stiffness", "input"))
+    R = found.get(TURNING, np.zeros_like(M))
     pairs = []
-    for m, d, k, f in zip(M, D, K, F, strict=True):
+    for m, d, k, f, r in zip(M, D, K, F, R, strict=True):
         try:
-            pairs.append((first_order(m, d, k), input_matrix(m, f)))
+            pairs.append((first_order(m, d, k, r), input_matrix(m, f)))
         except np.linalg.LinAlgError:  # M^-1 does not exist: a failure, told below
             n = len(m)
             pairs.append((np.full((2 * n, 2 * n), np.nan), np.full((2 * n, f.shape[1]), np.nan)))
     A, B = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
-    return Linearisation(model.coordinates, *names, M, D, K, F, A, B, *by_output, qdd, found["residual"])
+    fields = model.coordinates, *names, M, D, K, F, A, B, *by_output, qdd, found["residual"]
+    return BallLinearisation(*fields, positions=model.positions, R=R) if TURNING in found else Linearisation(*fields)
 
 
 def _single(result: Linearisation) -> Linearisation:
-    names = ("M", "D", "K", "F", "A", "B", "C", "Dy", "qdd", "residual")
-    return replace(result, **{name: getattr(result, name)[0] for name in names})
+    names = ("M", "D", "K", "F", "A", "B", "C", "Dy", "qdd", "residual", "R")
+    return replace(result, **{name: getattr(result, name)[0] for name in names if hasattr(result, name)})
 
 
 def _judged(point: OperatingPoint, states: States, result: Linearisation, values: Mapping[str, Any]) -> Linearisation:

@@ -17,11 +17,12 @@ from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import StateArray, require_known
 from substructures.array import Array
-from substructures.expr.differentiate import gradient
-from substructures.expr.graph import Expr, Graph
+from substructures.expr.differentiate import gradient, in_directions
+from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model
 
 #: accelerations of an equilibrium, relative to the accelerations that its forces would cause one by one
@@ -75,18 +76,18 @@ class OperatingPoint:
 
 
 def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> Program:
-    """C (k, 2n) = dy/d(q, q') and D (k, m) = dy/du of the output ``output`` (k,)."""
-    graph = Graph()
-    k, m = source.outputs["output"].shape[0], len(inputs)
+    """C (k, 2n) = dy/d(q, q') and D (k, m) = dy/du of the output ``output`` (k,); of ball joints by displacements."""
+    workspace = Workspace(model)
+    graph, k, m = workspace.graph, source.outputs["output"].shape[0], len(inputs)
     entries = replay(source, graph, {})["output"].entries
     rows = [x if isinstance(x := entries.get((i,), graph.zero), Expr) else graph.number(x) for i in range(k)]
-    names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-    C, D = gradient(rows, names), gradient(rows, inputs)
+    states = [*workspace.displacements, *({f"{name}'": graph.one} for name in model.coordinates)]
+    C, D = in_directions(rows, states), gradient(rows, inputs)
     outputs = {
-        "C": array((k, len(names)), lambda i, j: C[i][j]),
+        "C": array((k, len(states)), lambda i, j: C[i][j]),
         "D": array((k, m), lambda i, j: D[i][j]),
     }
-    return program(graph, outputs, {s.name: s for s in source.symbols})
+    return program(graph, outputs, {s.name: s for s in source.symbols} | workspace.symbols)
 
 
 def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array, A: Array | None = None) -> str:

@@ -21,6 +21,7 @@ from substructures.analysis.stability.linearisation_result import (
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
+from substructures.quantities.numbers.quaternions import by_displacements, with_unit_quaternions
 from substructures.quantities.numbers.states import read_states
 from substructures.tree.model import Model
 
@@ -30,9 +31,10 @@ MAX_VALUES = 10_000
 
 @dataclass(frozen=True, repr=False)
 class RootLocus:
-    """Branches: ``eigenvalues`` (N, k) [1/s], ``q`` (N, n) and ``stability`` verdicts at ``values`` (N,). k is twice
-    the number of degrees of freedom (2n of a tree without closures); with velocity constraints those of the motions
-    that keep the gaps, without coordinates on which nothing depends.
+    """Branches: ``eigenvalues`` (N, k) [1/s], ``q`` (N, n), with ball joints (N, m) with quaternions, and
+    ``stability`` verdicts at ``values`` (N,). k is twice the number of degrees of freedom (2n of a tree without
+    closures); with velocity constraints those of the motions that keep the gaps, without coordinates on which nothing
+    depends.
 
     ``status`` ``failed``: the equilibrium was lost, ``message`` says where; the arrays end before.
     """
@@ -86,13 +88,15 @@ def root_locus(
             break
         near, roots, verdict = found
         rows.append((near, _followed(rows[-1][1], roots) if rows else roots, verdict))
-    return RootLocus(np.array(at[: len(rows)]), *_branches(rows, model.dof), status, message)
+    return RootLocus(np.array(at[: len(rows)]), *_branches(rows, model), status, message)
 
 
-def _branches(rows: Sequence[tuple[Array, ComplexArray, str]], n: int) -> tuple[Array, ComplexArray, tuple[str, ...]]:
-    """q (N, n), eigenvalues (N, 2r) and verdicts."""
-    count, width = len(rows), len(rows[0][1]) if rows else 2 * n
-    q = np.array([row[0] for row in rows]).reshape(count, n)
+def _branches(
+    rows: Sequence[tuple[Array, ComplexArray, str]], model: Model
+) -> tuple[Array, ComplexArray, tuple[str, ...]]:
+    """q (N, m), eigenvalues (N, 2r) and verdicts."""
+    count, width = len(rows), len(rows[0][1]) if rows else 2 * model.dof
+    q = np.array([row[0] for row in rows]).reshape(count, len(model.positions))
     roots = np.array([row[1] for row in rows], dtype=np.complex128).reshape(count, width)
     return q, roots, tuple(row[2] for row in rows)
 
@@ -102,9 +106,10 @@ def _start(model: Model, q: Any) -> Array:
     if isinstance(q, Mapping):
         return read_states(model, {"q": q}, 1).q[0]
     start = np.atleast_1d(numeric(q, "/q"))
-    if start.shape != (model.dof,):
-        raise InvalidArgument.at("/q", "wrong-length", f"shape {start.shape} found, ({model.dof},) expected")
-    return start
+    n = len(model.positions)
+    if start.shape != (n,):
+        raise InvalidArgument.at("/q", "wrong-length", f"shape {start.shape} found, ({n},) expected")
+    return with_unit_quaternions(model.positions, model.balls, start[None])[0]
 
 
 def _nearest(
@@ -114,7 +119,8 @@ def _nearest(
     found = equilibria(model, starts=q, count=0, parameters=parameters, inputs=inputs).found
     if not found:
         return None
-    near = min(found, key=lambda e: float(np.abs(e.q - q).max(initial=0)))
+    moved = by_displacements(model.positions, model.coordinates, model.balls, q)
+    near = min(found, key=lambda e: float(np.abs(moved @ (e.q - q)).max(initial=0)))
     if near.at.stability is None:
         return None
     return near.q, _eigenvalues(near.at), near.at.stability.verdict

@@ -70,7 +70,7 @@ class SteadySearch(RestSearch):
         known = symbol_values(model, vars(conditions), states, NEEDS)
         self.known = {name: float(np.ravel(x)[0]) for name, x in known.items()}
         self._compile(steady_formulas(model, moving))
-        self._sized([model.joints[a] == "R" for a in self.still])
+        self._sized([model.state_units["q"][model.coordinates[a]] for a in self.still])
 
     def _of_all(self, rows: Array) -> Array:
         return rows[:, self.still]

@@ -153,12 +153,11 @@ def _doubts(A: Array, values: ComplexArray, left: ComplexArray, right: ComplexAr
     return np.asarray(np.minimum(ROUNDED * size * condition, NEUTRAL * scale), dtype=np.float64)
 
 
-def first_order(M: Array, D: Array, K: Array) -> Array:
-    """A (2n, 2n) of x' = A x, x = (q, q')."""
-    n = len(M)
-    # A = [0 1; -M^-1 K  -M^-1 D]
+def first_order(M: Array, D: Array, K: Array, R: Array | None = None) -> Array:
+    """A (2n, 2n) of x' = A x, x = (q, q'); ``R`` of q' = v + R q, then x = (q, v)."""
+    # A = [R 1; -M^-1 K  -M^-1 D]
     lower = -np.linalg.solve(M, np.hstack([K, D]))
-    return np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower])
+    return np.vstack([np.hstack([np.zeros_like(M) if R is None else R, np.eye(len(M))]), lower])
 
 
 def input_matrix(M: Array, F: Array) -> Array:

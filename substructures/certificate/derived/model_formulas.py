@@ -18,6 +18,8 @@ from substructures.certificate.outputs import Outputs
 
 #: what one quantity has to be at a state
 Expectation = Callable[[ModelAt], Outputs]
+#: ``positions`` and ``velocities`` of ball joints
+BallRows = Sequence[Mapping[str, Sequence[str]]]
 
 
 def vector_of(result: Outputs, name: str, values: Sequence[Ball]) -> None:
@@ -98,12 +100,29 @@ def _inverse_dynamics_derivative(m: ModelAt) -> Outputs:
     return result
 
 
-def inverse_dynamics_jacobians(m: ModelAt) -> Outputs:
-    """dID_a/dq^b and dID_a/dq'^b."""
+def inverse_dynamics_jacobians(m: ModelAt, balls: BallRows = ()) -> Outputs:
+    """dID_a/dq^b, of ball joints along displacements, and dID_a/dq'^b."""
     result = _inverse_dynamics(m)
-    for name, primes in (("inverse_dynamics_q", ""), ("inverse_dynamics_qd", "'")):
-        columns = [m.changed({f"{q}{primes}": arb(1)}, m.second) for q in m.coordinates]
-        columns_of(result, name, m.n, columns)
+    rates = [{f"{name}'": arb(1)} for name in m.coordinates]
+    for name, directions in (("inverse_dynamics_q", displacements(m, balls)), ("inverse_dynamics_qd", rates)):
+        columns_of(result, name, m.n, [m.changed(each, m.second) for each in directions])
+    return result
+
+
+def displacements(m: ModelAt, balls: BallRows) -> list[dict[str, Ball]]:
+    """Of each coordinate the change of a state with it alone."""
+    return [moved(m, balls, [arb(int(a == b)) for b in range(m.n)]) for a in range(m.n)]
+
+
+def moved(m: ModelAt, balls: BallRows, rates: Sequence[Ball]) -> dict[str, Ball]:
+    """The change of a state at rates: q', of ball joints p' = R v and Q' = 1/2 Q (0, w)."""
+    result = dict(zip(m.coordinates, rates, strict=True))
+    for ball in balls:
+        names, w = ball["positions"], [result.pop(name) for name in ball["velocities"]]
+        Q = [m.values[name] for name in names[-4:]]
+        half = [x / 2 for x in quaternion_product(Q, (arb(0), *w[-3:]))]
+        place = (turn_of(Q) * vector(*w[:3])).entries() if len(names) > len(Q) else []
+        result |= dict(zip(names, (*place, *half), strict=True))
     return result
 
 
@@ -229,22 +248,16 @@ def simulated(m: ModelAt) -> Outputs:
     return result
 
 
-def simulated_in_rates(positions: Sequence[str], balls: Sequence[Mapping[str, Sequence[str]]]) -> Expectation:
+def simulated_in_rates(positions: Sequence[str], balls: BallRows) -> Expectation:
     """The same with ball joints: changes of the ``positions`` of states, accelerations, power."""
     return partial(_simulated_in_rates, positions, balls)
 
 
-def _simulated_in_rates(positions: Sequence[str], balls: Sequence[Mapping[str, Sequence[str]]], m: ModelAt) -> Outputs:
-    result, moved = Outputs(), dict(zip(m.coordinates, m.rates, strict=True))
-    for ball in balls:
-        names, w = ball["positions"], [m.values[f"{name}'"] for name in ball["velocities"]]
-        Q = [m.values[name] for name in names[-4:]]
-        half = [x / 2 for x in quaternion_product(Q, (arb(0), *w[-3:]))]
-        place = (turn_of(Q) * vector(*w[:3])).entries() if len(names) > len(Q) else []
-        moved |= dict(zip(names, (*place, *half), strict=True))
-    vector_of(result, "position_rates", [moved[name] for name in positions])
+def _simulated_in_rates(positions: Sequence[str], balls: BallRows, m: ModelAt) -> Outputs:
+    result, changes = Outputs(), moved(m, balls, m.rates)
+    vector_of(result, "position_rates", [changes[name] for name in positions])
     vector_of(result, "forward_dynamics", m.accelerations())
-    along = m.along(m.time() | {name: moved[name] for name in positions})
+    along = m.along(m.time() | {name: changes[name] for name in positions})
     work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True))
     result.scalar("power", work + along.scalar("potential_energy"))
     return result

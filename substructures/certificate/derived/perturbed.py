@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
+from itertools import product
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
 from substructures.certificate.derived.model_at import ModelAt, times, total
 from substructures.certificate.derived.model_formulas import (
+    BallRows,
     Expectation,
     columns_of,
+    displacements,
     inverse_dynamics_jacobians,
+    moved,
     symmetric_of,
     vector_of,
 )
-from substructures.certificate.linear import Ball
+from substructures.certificate.linear import Ball, cross, vector
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.stored import Pruned, Stored, operations_in_balls, pruned
@@ -24,22 +28,40 @@ from substructures.certificate.texts import slope
 from substructures.expr.operations import Output
 
 
-def perturbed(inputs: Sequence[str], multipliers: Sequence[str]) -> Expectation:
-    """M, D, K, F and the residual; with closures also G and its derivatives along the motion."""
-    return partial(_perturbed, inputs, multipliers)
+def perturbed(inputs: Sequence[str], multipliers: Sequence[str], balls: BallRows) -> Expectation:
+    """M, D, K, F and the residual; with closures also G and its derivatives along the motion; with balls R."""
+    return partial(_perturbed, inputs, multipliers, balls)
 
 
-def _perturbed(inputs: Sequence[str], multipliers: Sequence[str], m: ModelAt) -> Outputs:
-    result, found = Outputs(), inverse_dynamics_jacobians(m)
+def _perturbed(inputs: Sequence[str], multipliers: Sequence[str], balls: BallRows, m: ModelAt) -> Outputs:
+    result, found = Outputs(), inverse_dynamics_jacobians(m, balls)
     symmetric_of(result, "metric", m.matrix("metric"))
     result["damping"], result["stiffness"] = found["inverse_dynamics_qd"], found["inverse_dynamics_q"]
     # F = dQ/du
     # of driven coordinates that are inputs, the inertia, too
     columns_of(result, "input", m.n, [[-x for x in m.changed({name: arb(1)}, m.second)] for name in inputs])
     result["residual"] = found["inverse_dynamics"]
+    if balls:
+        columns_of(result, "rates_by_position", m.n, _displacement_rates(m, balls))
     if multipliers:
         _closed(result, m, [m.values[name] for name in multipliers])
     return result
+
+
+def _displacement_rates(m: ModelAt, balls: BallRows) -> list[list[Ball]]:
+    """R d of unit displacements d: of ball joints -w x d, of floating ones before it -w x d - v x d_turn."""
+    columns = [[arb(0)] * m.n for _ in range(m.n)]
+    for ball, (a, column) in product(balls, enumerate(columns)):
+        at, unit = [m.coordinates.index(name) for name in ball["velocities"]], [arb(int(a == b)) for b in range(m.n)]
+        place, turn = at[:-3], at[-3:]
+        w, turned = (vector(*(x[b] for b in turn)) for x in (m.rates, unit))
+        changes = (-cross(w, turned)).entries()
+        if place:
+            v, d = (vector(*(x[b] for b in place)) for x in (m.rates, unit))
+            changes = (-cross(w, d) - cross(v, turned)).entries() + changes
+        for b, x in zip(at, changes, strict=True):
+            column[b] = x
+    return columns
 
 
 def _closed(result: Outputs, m: ModelAt, multipliers: Sequence[Ball]) -> None:
@@ -112,26 +134,38 @@ def _constrained(source: Stored, velocities: Sequence[str], inputs: Sequence[str
     return result
 
 
-def first_order(texts: Sequence[Any], inputs: Sequence[str]) -> Expectation:
+def first_order(texts: Sequence[Any], inputs: Sequence[str], positions: Sequence[str], balls: BallRows) -> Expectation:
     """A, B, C, D, x' and y; ``texts``: of y."""
-    return partial(_first_order, texts, inputs)
+    return partial(_first_order, texts, inputs, positions, balls)
 
 
-def _first_order(texts: Sequence[Any], inputs: Sequence[str], m: ModelAt) -> Outputs:
-    result, found, states = Outputs(), m.accelerations(), [*m.coordinates, *(f"{name}'" for name in m.coordinates)]
+def _first_order(
+    texts: Sequence[Any], inputs: Sequence[str], positions: Sequence[str], balls: BallRows, m: ModelAt
+) -> Outputs:
+    result, found, zero = Outputs(), m.accelerations(), [arb(0)] * m.n
+    by_rate, by_input = ([{name: arb(1)} for name in some] for some in ([f"{q}'" for q in m.coordinates], inputs))
+    by_position = displacements(m, balls)
+    own = [[arb(int(a == b)) for a in range(m.n)] for b in range(m.n)]
+    turned = _displacement_rates(m, balls)
 
-    def column(name: str) -> list[Ball]:
-        """Of A or B: d(q', q'')/dz."""
-        own = [arb(int(f"{q}'" == name)) for q in m.coordinates]
-        return [*own, *m.solved([-x for x in m.changed({name: arb(1)}, found)])]
+    def column(kinematic: Sequence[Ball], along: Mapping[str, Ball]) -> list[Ball]:
+        """Of A or B: the changes of d' = dv + R d, and of q''."""
+        return [*kinematic, *m.solved([-x for x in m.changed(along, found)])]
 
-    columns_of(result, "A", 2 * m.n, [column(name) for name in states])
-    columns_of(result, "B", 2 * m.n, [column(name) for name in inputs])
-    for matrix, names in (("C", states), ("D", inputs)):
-        columns_of(result, matrix, len(texts), [[slope(text, m.values, name) for text in texts] for name in names])
-    vector_of(result, "derivative", [*m.rates, *found])
+    pairs = [*zip(turned, by_position, strict=True), *zip(own, by_rate, strict=True)]
+    columns_of(result, "A", 2 * m.n, [column(*pair) for pair in pairs])
+    columns_of(result, "B", 2 * m.n, [column(zero, along) for along in by_input])
+    for matrix, directions in (("C", [*by_position, *by_rate]), ("D", by_input)):
+        columns_of(result, matrix, len(texts), [[_slope_along(text, m, each) for text in texts] for each in directions])
+    changes = moved(m, balls, m.rates)
+    vector_of(result, "derivative", [*(changes[name] for name in positions), *found])
     vector_of(result, "output", [Numbers(m.values).read(text) for text in texts])
     return result
+
+
+def _slope_along(text: Any, m: ModelAt, along: Mapping[str, Ball]) -> Ball:
+    """The change of an expression."""
+    return total(slope(text, m.values, name) * x for name, x in along.items())
 
 
 def by_parameters(parameters: Sequence[str], quantities: Sequence[str]) -> Expectation:
@@ -228,36 +262,4 @@ def _steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[s
         phi, G, rows = here.elements("closure.residual"), here.matrix("closure.jacobian"), range(len(multipliers))
         vector_of(result, "closure.residual", [phi.get((k,), arb(0)) for k in rows])
         columns_of(result, "closure.jacobian", len(rows), [[G[k, a] for k in rows] for a in still])
-    return result
-
-
-def adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str]) -> Expectation:
-    """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``."""
-    return partial(_adjoint, controls, costs, varied_by)
-
-
-def _adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str], m: ModelAt) -> Outputs:
-    result, rates = Outputs(), [f"{name}'" for name in m.coordinates]
-    running, terminal = costs["running"], costs["terminal"]
-    costates = [m.values[f"lambda.{name}"] for name in (*m.coordinates, *rates)]
-    mu, weight = [m.values[f"mu.{name}"] for name in m.coordinates], m.values["lambda.0"]
-    read = Numbers(m.values).read
-
-    def rate(name: str) -> Ball:
-        """d(lambda_0 l - mu . ID)/dz."""
-        needed = m.changed({name: arb(1)}, m.second)
-        return weight * slope(running, m.values, name) - total(x * y for x, y in zip(mu, needed, strict=True))
-
-    symmetric_of(result, "metric", m.matrix("metric"))
-    vector_of(result, "force", [-x for x in m.needed([arb(0)] * m.n)])
-    result.scalar("running_cost", read(running))
-    pairs = zip(costates, [*m.rates, *m.second], strict=True)
-    result.scalar("hamiltonian", weight * read(running) + total(x * y for x, y in pairs))
-    vector_of(result, "adjoint_q", [-rate(name) for name in m.coordinates])
-    vector_of(result, "adjoint_qd", [-(costates[a] + rate(name)) for a, name in enumerate(rates)])
-    vector_of(result, "control_gradient", [rate(name) for name in controls])
-    vector_of(result, "parameter_gradient", [rate(name) for name in varied_by])
-    result.scalar("terminal_cost", read(terminal))
-    for name, by in (("q", m.coordinates), ("qd", rates), ("parameters", varied_by)):
-        vector_of(result, f"terminal_{name}", [slope(terminal, m.values, z) for z in by])
     return result

@@ -8,6 +8,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument
+from substructures.mechanics.balls import quaternion_rates, turned_by
 from substructures.mechanics.state_names import BallRow
 
 #: how far the norm of a quaternion that is given may be from 1
@@ -22,15 +23,34 @@ def with_unit_quaternions(positions: Sequence[str], balls: Sequence[BallRow], ro
     if not balls:
         return rows
     result = rows.copy()
-    for ball in balls:
-        names = ball["positions"][-4:]
-        some = [positions.index(name) for name in names]
+    for ball, some in zip(balls, quaternions_in(positions, balls), strict=True):
         norms = np.linalg.norm(rows[:, some], axis=1)
         wrong = np.flatnonzero(~(np.abs(norms - 1) <= TOLERANCE))
         if len(wrong):
-            message = (
-                f"the norm of the quaternion {', '.join(names)} is {norms[wrong[0]]:.9g} in state {wrong[0]}, not 1"
-            )
+            names = ", ".join(ball["positions"][-4:])
+            message = f"the norm of the quaternion {names} is {norms[wrong[0]]:.9g} in state {wrong[0]}, not 1"
             raise InvalidArgument.at(place, "not-a-unit-quaternion", f"{message}: 1, 0, 0, 0 turns nothing")
         result[:, some] = rows[:, some] / norms[:, None]
+    return result
+
+
+def quaternions_in(positions: Sequence[str], balls: Sequence[BallRow]) -> list[list[int]]:
+    """The places (w, x, y, z) of all quaternions in a state q."""
+    return [[positions.index(name) for name in ball["positions"][-4:]] for ball in balls]
+
+
+def by_displacements(positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array) -> Array:
+    """Displacements (n, m) of the changes of the m numbers of a state q, in the axes of bodies as rates are."""
+    columns, rows = ({name: i for i, name in enumerate(some)} for some in (positions, coordinates))
+    result = np.zeros((len(coordinates), len(positions)))
+    own = [name for name in coordinates if name in columns]
+    result[[rows[name] for name in own], [columns[name] for name in own]] = 1
+    for ball in balls:
+        at, moved = [columns[name] for name in ball["positions"]], [rows[name] for name in ball["velocities"]]
+        quaternion, square = q[at[-4:]].tolist(), float(q[at[-4:]] @ q[at[-4:]])
+        # d = 2 Q^-1 dQ, and R^T dp
+        turns = [quaternion_rates(quaternion, e, 2.0 / square) for e in np.eye(3).tolist()]
+        result[np.ix_(moved[-3:], at[-4:])] = np.array(turns)
+        if len(at) > len(quaternion):
+            result[np.ix_(moved[:3], at[:3])] = np.array(turned_by(quaternion, 2 / square))
     return result

@@ -16,6 +16,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
+from substructures.part.balls import position_rates
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS, require_stored
 
@@ -109,6 +110,23 @@ class Workspace:
         for (a, b), x in matrix.items():
             entries[(a,)] = entries.get((a,), self.graph.zero) + x * self.velocity_symbol(b)
         return entries
+
+    def moved(self, rates: Sequence[Expr]) -> dict[str, Expr]:
+        """By what a state q consists of its change at ``rates`` (n,): q', of ball joints p' = R v, Q' = Q (0, w)/2."""
+        found, units = dict(zip(self.model.coordinates, rates, strict=True)), self.model.state_units["q"]
+        for ball in self.model.balls:
+            moving = [found.pop(name) for name in ball["velocities"]]
+            self.symbols |= {name: Symbol(name, "coordinate", units[name]) for name in ball["positions"]}
+            changes = position_rates(self.graph, ball["positions"], moving)
+            found |= dict(zip(ball["positions"], changes, strict=True))
+        return {name: found[name] for name in self.model.positions}
+
+    @cached_property
+    def displacements(self) -> list[dict[str, Expr]]:
+        """Of each coordinate how a state q changes with it alone; of rates of ball joints in the axes of their body."""
+        zero, one = self.graph.zero, self.graph.one
+        moved = (self.moved([one if b == a else zero for b in range(self.n)]) for a in range(self.n))
+        return [{name: x for name, x in changes.items() if not x.is_zero} for changes in moved]
 
     @cached_property
     def momenta(self) -> list[Expr]:

@@ -96,13 +96,16 @@ class Tied(Protocol):
 
 
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
-TAKES_BALLS = ("simulations", "TreeMotion", "forward_dynamics", "reactions")
+TAKES_BALLS = (
+    *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
+    *("frequency-responses", "regulators", "equilibria", "root-loci"),
+)
 
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
-    "velocity_dynamics",
+    *("velocity_dynamics", "frequency-responses"),
 )
 TAKES_CONTACTS = ("simulations", "ensembles")
 #: with the kind of motion that has them
