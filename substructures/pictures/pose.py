@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.mechanics.state_names import resting_state
 from substructures.part.part import Part
 from substructures.part.poses import HOME, posed
 from substructures.quantities.numbers.evaluation import evaluate
@@ -52,11 +53,8 @@ def poses(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limit
 
 def state_of(model: Model, values: Mapping[str, float]) -> list[float]:
     """q with the values of coordinates and of places; no quaternion turns anything."""
-    known: dict[str, float] = {}
-    for ball in model.balls:
-        known |= dict.fromkeys(ball["positions"], 0.0) | {ball["positions"][-4]: 1.0}
-    known |= values
-    return [known[name] for name in model.positions]
+    resting = zip(model.positions, resting_state(model.positions, model.balls), strict=True)
+    return [values.get(name, x) for name, x in resting]
 
 
 def _first(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limits) -> list[float]:

@@ -152,6 +152,21 @@ def test_its_part_is_drawn_too_and_imports_are_previewed(client: TestClient) -> 
     assert told.json()["preview"]["dof"] == 6, told.text
 
 
+def test_it_is_published_and_mounted_again(satellite: TestClient) -> None:
+    made = satellite.post("/v1/trees/satellite/publish", json={"name": "as-a-part"})
+    assert made.status_code == 201, made.text
+    tree = {**TREE, "name": "again", "instances": [{"name": "x", "substructure": "as-a-part"}]}
+    again = satellite.post("/v1/trees", json=tree)
+    assert again.json()["balls"][0]["positions"] == [f"x.{name.replace('.', '_')}" for name in POSITIONS[:-1]], (
+        again.text
+    )
+    body = {"quantities": ["bias"], "q": [1, 2, 3, 0.6, 0.8, 0, 0, 0.5], "qd": [1, 2, 3, 1, 2, 3, 4]}
+    ours, theirs = (
+        satellite.post(f"/v1/trees/{name}/evaluations", json=body).json() for name in ("satellite", "again")
+    )
+    np.testing.assert_allclose(theirs["bias"], ours["bias"], rtol=1e-12)
+
+
 def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
     file = satellite.get("/v1/trees/satellite/export?target=urdf&bind=s.J:0")
     assert file.status_code == 200, file.text
@@ -168,7 +183,6 @@ def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
 @pytest.mark.parametrize(
     ("path", "body"),
     [
-        ("publish", {}),
         ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
         ("steady-motions", {"rates": {}, "count": 1}),
         ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
