@@ -107,7 +107,7 @@ TAKES_CONSTRAINTS = (
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
     *("velocity_dynamics", "frequency-responses"),
 )
-TAKES_CONTACTS = ("simulations", "ensembles")
+TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them
 TIES = {
     "velocity_constraints": (TAKES_CONSTRAINTS, "ConstrainedMotion"),
