@@ -44,6 +44,9 @@ def test_random_trees_by_differences(seed: int) -> None:
     model, q, v, given = at_a_state(seed)
     found, n, h = linearise(model, q, qd=v, **given), model.dof, 1e-5
     assert isinstance(found, BallLinearisation)
+    if np.linalg.cond(found.M) > 1e9:  # massless bodies between two balls have no accelerations
+        assert "singular" in found.message
+        return
     assert found.status == "finished"
 
     def second(at: np.ndarray, rates: np.ndarray, inputs: Plain) -> np.ndarray:
