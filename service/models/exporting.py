@@ -54,6 +54,8 @@ OF_TREES, OF_PARTS = ("metric", "christoffel", "forces"), ("metric", "christoffe
 ROBOT = re.compile(r"[A-Za-z0-9][A-Za-z0-9_.-]{0,63}")
 #: a tree as a model to be simulated, with its energies and the poses of its frames where nothing is named
 FMU, FMU2 = "fmu", "fmu2"
+#: what moves ball joints there
+CHANGES = "position_rates"
 MOVING = (FMU, "simulink")  # targets that need accelerations
 #: versions of FMUs, precisions, standards of C; the first ones are the defaults
 FMI, PRECISIONS, STANDARDS = ("3.0", "2.0"), ("double", "single"), ("c99", "c89")
@@ -150,10 +152,7 @@ def tree_package(
     known = askable(sources.model.program.outputs)
     chosen = OF_FMUS if request.target == FMU else OF_TREES
     names = request.quantities or tuple(name for name in chosen if name in known)
-    if request.target in MOVING:
-        # with velocity constraints the motion is one in independent velocities
-        motion = VELOCITY_DYNAMICS if request.target == FMU and sources.model.velocity_constraints else FORWARD
-        names = tuple(dict.fromkeys((motion, *names)))
+    names = tuple(dict.fromkeys((*_motion(sources.model, request), *names)))
     laws, more = _contacts(sources.model, request)
     if laws:
         names, others = (CONTACTS, *names), {**others, **more}
@@ -168,6 +167,15 @@ def tree_package(
     name, flags = prefix(request.name, called), (request.together, request.packed)
     exported = exported_model(sources, interface, names, name, numbers, *flags, words, others)
     return _package(replace(exported, contacts=laws), request, limit)
+
+
+def _motion(model: Model, request: ExportRequest) -> tuple[str, ...]:
+    """The quantities of the motion, for targets that move."""
+    if request.target != FMU:
+        return (FORWARD,) if request.target in MOVING else ()
+    # with velocity constraints the motion is one in independent velocities
+    motion = VELOCITY_DYNAMICS if model.velocity_constraints else FORWARD
+    return (motion, CHANGES) if model.balls else (motion,)
 
 
 def _contacts(

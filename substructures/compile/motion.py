@@ -50,14 +50,15 @@ class SaddlePoint:
 @dataclass(frozen=True)
 class CompiledRates:
     """x' = (q', q'', power) as calls of kernels, one after the other, that share memory: they read ``t`` (1,) and ``x``
-    (1, 2n), and write ``second`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
-    ``saddle``: q'' is its solution, in place of what kernels write to ``second``.
+    (1, 2n), and write ``written`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
+    ``saddle``: q'' is its solution, in place of what kernels write. Where q' is no part of x it is ``written``, too:
+    those as many as x has are all but the power.
     """
 
     calls: tuple[BoundCall, ...]
     t: Array
     x: Array
-    second: Array
+    written: Array
     power: Array | None
     folder: Path | None = None
     saddle: SaddlePoint | None = None
@@ -100,7 +101,8 @@ class CompiledRun:
         row = [self._rows.address + 8 * rows * k for k in range(3)]
         power = 0 if rates.power is None else address(rates.power)
         own = [runtime.loaded.names["drive"], address(calls), len(calls)]
-        own += [address(rates.t), address(rates.x), address(rates.second), power, rates.x.size // 2, size, rows]
+        sizes = [rates.x.size - rates.written.size, rates.written.size, size, rows]
+        own += [address(rates.t), address(rates.x), address(rates.written), power, *sizes]
         own += [target.math_library()["pow"], address(self._memory), row[0], row[2], row[1], address(self._steps)]
         saddle = None if rates.saddle is None else rates.saddle.words(width)
         own.append(0 if saddle is None else address(saddle[0]))

@@ -16,7 +16,7 @@ from substructures.compile.saddle import saddle_point
 
 #: words of a run: addresses, sizes, and how many steps are tried at most
 RUN = (
-    *("drive", "calls", "n_calls", "time", "state", "second", "power", "n", "size", "rows"),
+    *("drive", "calls", "n_calls", "time", "state", "written", "power", "n_copied", "n_written", "size", "rows"),
     *("pow", "numbers", "y", "stages", "new", "steps", "saddle", "most"),
 )
 #: squares of the two errors, summed up
@@ -59,13 +59,13 @@ def stepping(tableau: Tableau, width: int) -> str:
 
 
 def _rates(width: int) -> str:
-    """x' = (q', q'', power) of (t, x), by the calls of a run one after the other, and its saddle point."""
+    """x' of (t, x): numbers of x behind these, what the calls of a run and its saddle point write, and the power."""
     w = AssemblyWriter(width)
     c = w.words("%run", RUN)
-    at = {name: w.pointer(c[name]) for name in ("drive", "calls", "time", "state", "second", "power")}
+    at = {name: w.pointer(c[name]) for name in ("drive", "calls", "time", "state", "written", "power")}
     w.put(f"store double %t, ptr {at['time']}, align 8")
-    twice = w.arithmetic("shl", c["n"], 1)
-    with w.loop("0", twice) as i:
+    width_of_x = w.arithmetic("add", c["n_copied"], c["n_written"])
+    with w.loop("0", width_of_x) as i:
         _copy(w, w.offset("%x", i, "double"), w.offset(at["state"], i, "double"))
     with w.loop("0", c["n_calls"]) as k:
         context = w.pointer(w.do(f"load i64, ptr {w.offset(at['calls'], k, 'i64')}, align 8"))
@@ -73,13 +73,15 @@ def _rates(width: int) -> str:
         w.put(f"store i64 0, ptr {w.pointer(w.do(f'load i64, ptr {place}, align 8'))}, align 8")
         w.put(f"call void {at['drive']}(ptr {context})")
     with w.when(w.do(f"icmp ne i64 {c['saddle']}, 0")):
-        w.put(f"call void @saddle_point(ptr {w.pointer(c['saddle'])}, ptr {at['second']})")
-    with w.loop("0", c["n"]) as i:
-        behind = w.arithmetic("add", i, c["n"])
+        w.put(f"call void @saddle_point(ptr {w.pointer(c['saddle'])}, ptr {at['written']})")
+    with w.loop("0", c["n_copied"]) as i:
+        behind = w.arithmetic("add", i, c["n_copied"])
         _copy(w, w.offset("%x", behind, "double"), w.offset("%f", i, "double"))
-        _copy(w, w.offset(at["second"], i, "double"), w.offset("%f", behind, "double"))
-    with w.when(w.do(f"icmp sgt i64 {c['size']}, {twice}")):
-        _copy(w, at["power"], w.offset("%f", twice, "double"))
+    with w.loop("0", c["n_written"]) as i:
+        behind = w.arithmetic("add", i, c["n_copied"])
+        _copy(w, w.offset(at["written"], i, "double"), w.offset("%f", behind, "double"))
+    with w.when(w.do(f"icmp sgt i64 {c['size']}, {width_of_x}")):
+        _copy(w, at["power"], w.offset("%f", width_of_x, "double"))
     return w.function("rates", "ptr %run, double %t, ptr %x, ptr %f")
 
 

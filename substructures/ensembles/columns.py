@@ -122,7 +122,7 @@ class MotionColumns:
         wanted = {name: c.quantity for name, c in self.columns.items() if c.quantity is not None}
         if not wanted:
             return None
-        model, n = self.sources.model, self.sources.model.dof
+        model, m = self.sources.model, len(self.sources.model.positions)
         asked = require_columns(wanted, model)
         given: dict[str, Any] = {
             "inputs": {name: values[name] for name in model.input_names if name in values},
@@ -132,11 +132,11 @@ class MotionColumns:
         }
         if any("qdd" in TABLE[name].requires for name in asked):
             if second is None:
-                moved = evaluate(self.sources, FORWARD, state[:, :n], state[:, n:], **given)
-                given["qdd"] = moved[FORWARD].reshape(-1, n)
+                moved = evaluate(self.sources, FORWARD, state[:, :m], state[:, m:], **given)
+                given["qdd"] = moved[FORWARD].reshape(-1, model.dof)
             else:
                 given["qdd"] = second()
-        return evaluate(self.sources, asked, state[:, :n], state[:, n:], **given)
+        return evaluate(self.sources, asked, state[:, :m], state[:, m:], **given)
 
 
 def _compiled(

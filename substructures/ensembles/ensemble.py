@@ -12,6 +12,7 @@ import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
+from substructures.analysis.motion.ball_motion import conditions_in_rates, with_lengths
 from substructures.analysis.motion.judges import AlongMotion, Condition, MotionStates, conditions
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion
@@ -151,7 +152,10 @@ class _Run:
         progress, count = self.integrator.progress, self.members.count
         return lambda done: progress is None or progress((begin + done) / count) is not False
 
-    def _integrals(self) -> FirstIntegrals:
+    def _integrals(self) -> FirstIntegrals | None:
+        """None with ball joints, of which energy and norms are known."""
+        if self.members.model.balls:
+            return None
         model, zero = self.members.model, self.members.zero
         given = {*self.members.conditions.formulas, *self.members.varied, *self.members.constants}
         acting = [name for name in model.input_names if name in given and name not in zero]
@@ -167,7 +171,7 @@ class _Run:
             self.failures.append(Failure(begin + k, float(found.reached[k]), why))
 
     def _part(
-        self, chosen: slice, grid: Array, x: Array, rates: KernelRates, integrals: FirstIntegrals
+        self, chosen: slice, grid: Array, x: Array, rates: KernelRates, integrals: FirstIntegrals | None
     ) -> dict[str, Array]:
         """Columns, verdicts and states of a part of the members."""
         n = rates.n
@@ -180,6 +184,10 @@ class _Run:
         if equations is not None:
             second = partial(accelerations, equations, values, x[..., : rates.held])
             held = kept_gaps(equations, values, states)
+        model = self.members.model
+        if model.balls:
+            held = list(conditions_in_rates(model, motions, not self.members.conditions.varied_potential()))
+            states = np.concatenate([with_lengths(model, states[..., :n]), states[..., n:]], axis=-1)
         columns = self.columns.of(values, states, integrals_to_end, second)
         found = {f"columns.{name}": v for name, v in columns.items()}
         found["violation"] = self._judged(motions, integrals, held)
@@ -187,12 +195,13 @@ class _Run:
             found |= {"q": states[..., :n], "qd": states[..., n:]}
         return found
 
-    def _judged(self, motions: MotionStates, integrals: FirstIntegrals, held: Sequence[Condition]) -> Array:
+    def _judged(self, motions: MotionStates, integrals: FirstIntegrals | None, held: Sequence[Condition]) -> Array:
         """The largest violation of each member in units of what is allowed."""
         model, limit = self.members.model, self.integrator.drift_limit
         largest = np.full(len(motions.t), np.nan)
         with np.errstate(invalid="ignore", divide="ignore"):
-            for each in chain(conditions(AlongMotion.of(model, integrals, motions)), held):
+            own = () if integrals is None else conditions(AlongMotion.of(model, integrals, motions))
+            for each in chain(own, held):
                 # whether energy has to fall is not seen from some times of a motion; its balance is kept at all of them
                 if not isinstance(each, Condition) or each.about[1] == "falling":
                     continue
@@ -233,6 +242,7 @@ class _Run:
             whole.get("q"),
             whole.get("qd"),
             is_cancelled,
+            positions=self.members.model.positions if self.members.model.balls else (),
         )
 
 

@@ -14,6 +14,7 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.nonholonomic.solved import ACCELERATION as QUASI_ACCELERATION
 from substructures.analysis.equations.nonholonomic.solved import RATES, solved
+from substructures.analysis.motion.ball_motion import kernel_in_rates
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions, state_names
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion, usual_kind
 from substructures.analysis.motion.problems.problem import Start
@@ -30,16 +31,18 @@ from substructures.expr.program import Program
 from substructures.quantities.numbers.states import StateInput, given_values, read_states, with_input_defaults
 from substructures.tree.model import Model
 
+#: output of equations with ball joints
+CHANGES = "position_rates"
 #: by name: a number, (M,) one for each member, or (inputs) an expression in coordinates, velocities, parameters and t
 Given = Mapping[str, Any]
 
 
 @dataclass(frozen=True)
 class Members:
-    """``count`` = M motions from ``start`` (M, 2n), x = (q, q'); ``varied``: values (M,) of parameters and constant
-    inputs that are not the same for all; ``conditions``: what is, as of the first member; ``equations``: of motions
-    with constraints in p quasi-velocities, where ``start`` is (M, n+p), x = (q, v); ``first``: what is given of the
-    first member.
+    """``count`` = M motions from ``start`` (M, 2n), x = (q, q'), with ball joints (M, m+n), x = (q, v); ``varied``:
+    values (M,) of parameters and constant inputs that are not the same for all; ``conditions``: what is, as of the
+    first member; ``equations``: of motions with constraints in p quasi-velocities, where ``start`` is (M, n+p),
+    x = (q, v); ``first``: what is given of the first member.
     """
 
     model: Model
@@ -53,7 +56,7 @@ class Members:
     def start_of(self, k: int) -> Start:
         """What is given of a member of a tree without constraints."""
         own = {name: float(x[k]) for name, x in self.varied.items()}
-        q, qd = np.hsplit(self.start[k], [self.model.dof])
+        q, qd = np.hsplit(self.start[k], [len(self.model.positions)])
         return Start(
             q,
             qd,
@@ -106,10 +109,10 @@ def read_members(
     values |= given_values(numbers, "inputs", "/inputs", count, model.input_names, model.units)
     varied = {name: x for name, x in values.items() if np.ndim(x) and len(x) == count and count > 1}
     first = {name: float(np.ravel(x)[0]) for name, x in values.items()}
-    start = np.concatenate([np.broadcast_to(x, (count, model.dof)) for x in (states.q, states.qd)], axis=1)
+    start = np.concatenate([np.broadcast_to(x, (count, x.shape[1])) for x in (states.q, states.qd)], axis=1)
     begin = Start(
-        start[0, : model.dof],
-        start[0, model.dof :],
+        states.q[0],
+        states.qd[0],
         {name: first[name] for name in parameters},
         {name: x if isinstance(x, str) else first[name] for name, x in given.items()},
     )
@@ -144,7 +147,8 @@ class KernelRates:
         first: int = 0,
     ) -> None:
         self.members, self.first, model = members, first, members.model
-        self.n = model.dof
+        #: of positions, which are not n with ball joints
+        self.n = len(model.positions)
         #: length of (q, q'), or of (q, v), and names of what is in it
         self.held, self._own = members.start.shape[1], members.columns
         self.kernel, self._kinematics = _kernels(members, folder)
@@ -175,6 +179,8 @@ class KernelRates:
             names = state_names(self.members.model)
             moving = [(names[:n], x[:, :n]), (names[n:], rates)]
             runs = [self._kinematics.bind({RATES: rates}, values, columns=own)]
+        elif self.members.model.balls:
+            runs = []
         else:
             velocities = x[:, n:held]
             runs = [lambda: np.copyto(rates, velocities)]
@@ -185,6 +191,7 @@ class KernelRates:
             columns, moving = ([*some, (list(self._formulas), followed)] for some in (own, moving))
         second = ACCELERATION if self._kinematics is None else QUASI_ACCELERATION
         outputs = {second: found[:, n:held]} | ({POWER: found[:, held]} if self.has_power else {})
+        outputs |= {CHANGES: rates} if self.members.model.balls else {}
         runs.append(self.kernel.bind(outputs, values, columns=columns))
         if self._integrands is not None:
             places = {INTEGRANDS: found[:, self.size - self.integrals :]}
@@ -200,6 +207,8 @@ class KernelRates:
 
 def _kernels(members: Members, folder: Path | None) -> tuple[Kernel, Kernel | None]:
     """Of accelerations and power, and of q' where that is no part of the state."""
+    if members.model.balls:
+        return kernel_in_rates(members.model, members.zero, folder), None
     if members.equations is None:
         return forward_kernel(members.model, members.zero, folder), None
     source = solved(members.equations, members.zero)

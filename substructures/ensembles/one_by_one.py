@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.motion.ball_motion import simulate_balls
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.contacts import contacts_of
 from substructures.analysis.motion.problems.events import Event
@@ -86,16 +87,15 @@ class OneByOne:
     def _moved(self, k: int) -> Trajectory | None:
         """The motion of a member; None where it cannot begin."""
         try:
-            return simulate_tree(
-                TreeProblem(
-                    model=self.members.model,
-                    start=self.members.start_of(k),
-                    times=OutputTimes(self.times.span, OutputGrid(self.grid)),
-                    integrator=replace(self.integrator, progress=self._told(k)),
-                    events=self.events,
-                    kind=self.kind,
-                )
+            problem = TreeProblem(
+                model=self.members.model,
+                start=self.members.start_of(k),
+                times=OutputTimes(self.times.span, OutputGrid(self.grid)),
+                integrator=replace(self.integrator, progress=self._told(k)),
+                events=self.events,
+                kind=self.kind,
             )
+            return simulate_balls(problem, self.kind) if self.members.model.balls else simulate_tree(problem)
         except InvalidInput as error:
             if any(fault.code not in OF_ONE for fault in error.faults):
                 raise
@@ -117,10 +117,10 @@ class OneByOne:
 
     def _noted(self, k: int, motion: Trajectory | None) -> dict[str, Any]:
         """What a member is worth, by name."""
-        names, n = self.columns.columns, self.members.model.dof
+        names, n = self.columns.columns, len(self.members.model.positions)
         row: dict[str, Any] = {f"columns.{name}": np.nan for name in names} | {"violation": np.nan}
         row |= {"impacts": 0, "energy_change": 0.0, "ends": float(self.grid[0])}
-        states = np.full((len(self.grid), 2 * n), np.nan)
+        states = np.full((len(self.grid), n + self.members.model.dof), np.nan)
         if motion is not None:
             self.steps += motion.steps
             self.evaluations += int(motion.figures.get("evaluations", 0))
@@ -190,6 +190,7 @@ class OneByOne:
             whole.get("qd"),
             len(rows) < self.members.count,
             Happened(tuple(self.happened), **of_one),
+            self.members.model.positions if self.members.model.balls else (),
         )
 
 

@@ -44,8 +44,8 @@ class Ensemble:
     largest of all conditions in units of what is allowed, so that a motion is right up to 1; not a number where it
     failed or nothing could be checked. ``checks``: of each condition the largest violation relative to its scale, and
     how many members violate it. ``q``, ``qd`` (M, K, n) [rad, m; per s] where they are asked for, not a number after
-    the end of a member. ``steps``: of all. ``happened``: where members have contacts or events, each is a motion of its
-    own, as by ``simulate``.
+    the end of a member; ``positions``: the columns of ``q``, where they are not the coordinates. ``steps``: of all.
+    ``happened``: where members have contacts or events, each is a motion of its own, as by ``simulate``.
     """
 
     coordinates: tuple[str, ...]
@@ -63,6 +63,7 @@ class Ensemble:
     qd: Array | None = None
     cancelled: bool = False
     happened: Happened | None = None
+    positions: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         names = ", ".join(self.columns) or "none"
@@ -81,6 +82,7 @@ class Ensemble:
         states = {} if self.q is None else {"q": self.q, "qd": self.qd}
         return {
             "coordinates": list(self.coordinates),
+            **({"positions": list(self.positions)} if self.positions else {}),
             "count": self.count,
             "t": self.t,
             "is_right": self.is_right,

@@ -15,6 +15,7 @@ from substructures.ensembles.samples import Distribution, Sampler, Samples
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.units.dimensions import Dimensioned
 from substructures.expr.units.unit_check import dimension_of
+from substructures.quantities.numbers.quaternions import at_zero
 from substructures.quantities.numbers.states import longest, read_states
 from substructures.tree.model import Model
 
@@ -45,9 +46,10 @@ def with_samples(
         places = {*named, *(f"{name}'" for name in model.coordinates)}
         found["v"] = _quasi_velocities(given.get("v"), {name: x for name, x in drawn.items() if name in places})
     for field, primes in STATE.items() if kind is None else [("q", "")]:
-        columns = {a: drawn[c + primes] for a, c in enumerate(model.coordinates) if c + primes in drawn}
+        names = model.positions if field == "q" else model.coordinates
+        columns = {a: drawn[c + primes] for a, c in enumerate(names) if c + primes in drawn}
         if columns or field == "q":
-            found[field] = _state(model, given.get(field), columns, sampler.size)
+            found[field] = _state(model, field, given.get(field), columns, sampler.size)
     return found
 
 
@@ -60,8 +62,10 @@ def _quasi_velocities(v: Any, drawn: Mapping[str, Array]) -> Any:
     return {**(v or {}), **drawn}
 
 
-def _state(model: Model, given: Any, columns: Mapping[int, Array], count: int) -> Array:
-    base = np.zeros((1, model.dof)) if given is None else read_states(model, {"q": given}, 1).q
+def _state(model: Model, field: str, given: Any, columns: Mapping[int, Array], count: int) -> Array:
+    start = {"q": at_zero(model.positions, model.balls)} | ({} if given is None else {field: given})
+    states = read_states(model, start, 1)
+    base = states.q if field == "q" else states.qd
     state = np.repeat(base, count, axis=0)
     for a, column in columns.items():
         state[:, a] = column

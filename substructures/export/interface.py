@@ -44,7 +44,7 @@ _KINDS = {
 @dataclass(frozen=True)
 class Vector:
     """What stands where in an argument: names, SI units (empty where none was given), defaults (NaN: there is none; of
-    inputs only where one has a default, 0 for the others).
+    inputs only where one has a default, 0 for the others; of q only with ball joints, 1 for w of quaternions).
     """
 
     symbol: str

@@ -20,6 +20,7 @@ from substructures.export.languages.c import head_of
 from substructures.export.languages.matlab import structures
 from substructures.export.software import SOFTWARE
 from substructures.expr.operations import flat
+from substructures.tree.given.ties import require_chains
 
 _DYNAMICS = "forward_dynamics"
 _STAND_IN = "// Not executed in Simulink: the tests of the generator have a stand-in for its header alone."
@@ -44,6 +45,7 @@ def _source(exported: Exported) -> list[str]:
     if dynamics is None or not exported.interface.vectors["q"].names:
         message = "an S-function needs the accelerations of a tree that moves: make a tree of the part"
         raise InvalidArgument.at("/target", "not-a-tree", message)
+    require_chains(exported.interface.vectors["q"].defaults, "take an FMU")
     further = next((each for each in exported.functions if each.further.names), None)
     if further is not None:
         message = f"'{further.quantity}' depends on more than states, inputs and parameters: no output can be that"

@@ -47,10 +47,12 @@ def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Inte
 
 def _states(coordinates: Sequence[str], joints: str, balls: Sequence[BallRow]) -> dict[str, Vector]:
     found, units = {"t": TIME}, state_units(coordinates, joints, balls)
+    upright = {ball["positions"][-4] for ball in balls}
     for symbol, primes in _PRIMES.items():
         # of ball joints quaternions and places stand in place of coordinates
         names = positions_of(coordinates, balls) if symbol == "q" else tuple(f"{name}{primes}" for name in coordinates)
-        found[symbol] = Vector(symbol, names, tuple(units[symbol].values()))
+        starts = tuple(float(name in upright) for name in names) if symbol == "q" and balls else ()
+        found[symbol] = Vector(symbol, names, tuple(units[symbol].values()), starts)
     return found
 
 

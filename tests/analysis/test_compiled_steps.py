@@ -7,14 +7,16 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import catalogue_model, shipped
+from ball_trees import random_balls, random_position
 from catalogue_entries import CHAINS
 from closed_trees import at, four_bar
 from in_depth import deep
-from random_trees import Plain
+from random_trees import Plain, model_of
 from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.analysis.closed.reductions import Projected
+from substructures.analysis.motion.ball_motion import BallRates
 from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
@@ -203,3 +205,26 @@ def test_cancelled_between_steps() -> None:
     assert found.steps == 20
     assert told == sorted(told)
     assert found.t[-1] < 20
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+def test_ball_joints(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Quaternions, which kernels write as well as rates, against SciPy's steps, with inputs of both kinds."""
+    model = model_of(random_balls(3, 2, 8)[0])
+    q = random_position(np.random.default_rng(3), model).tolist()
+    given = dict(zip(model.coordinates, np.linspace(-1, 1, model.dof).tolist(), strict=True))
+    inputs = {model.input_names[0]: "0.3*sin(5*t)", model.input_names[1]: Table([0, 0.2, 0.5], [0, 1, 0])}
+    values = {s.name: 0.7 for s in model.program.symbols if s.kind == "parameter"}
+    request: Plain = {"q": q, "qd": given, "span": (0, 0.5), "times": [0, 0.3, 0.5], "inputs": inputs}
+    request |= {"parameters": values, "method": method, "relative_tolerance": 1e-8, "absolute_tolerance": 1e-8}
+    made = list[bool]()
+    compiled = BallRates.compiled
+    monkeypatch.setattr(BallRates, "compiled", lambda f: made.append((x := compiled(f)) is not None) or x)
+    ours = simulated(model, **request)
+    assert made
+    assert all(made)
+    monkeypatch.setattr(BallRates, "compiled", lambda _: None)
+    plain = simulated(model, **request)
+    assert (ours.status, ours.is_right, ours.steps) == (plain.status, plain.is_right, plain.steps)
+    for one, two in ((ours.q, plain.q), (ours.qd, plain.qd), (ours.series["work"], plain.series["work"])):
+        np.testing.assert_allclose(one, two, rtol=0, atol=1e-9 * (1 + np.abs(two).max()))

@@ -22,7 +22,7 @@ def solved(saddle: SaddlePoint, *rows: list[int]) -> list[Array]:
         saddle.rows[:] = chosen
         run.begin(0.0, np.zeros(2 * n), 0.0, 1.0)
         run.advance()
-        found.append(rates.second[0].copy())
+        found.append(rates.written[0].copy())
     return found
 
 

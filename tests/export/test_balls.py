@@ -9,11 +9,16 @@ import numpy as np
 import pytest
 from exported_models import LIMIT, write
 from run_code import agree, by_output, call_c, load_python, shared, state
+from simulated import simulated
 
 from substructures import Model, couple, derive
-from substructures.errors import InvalidDocument
+from substructures.errors import InvalidArgument, InvalidDocument
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.quantities.numbers.evaluation import Sources
+
+fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
+from fmpy.validation import validate_fmu  # noqa: E402
+from fmu_instances import instance  # noqa: E402
 
 QUANTITIES = (
     "forward_dynamics",
@@ -63,7 +68,68 @@ def test_functions_are_those_of_the_interpreter(model: Model, tmp_path: Path) ->
         agree(by_output(function, called(*map(np.array, given))), function, values)
 
 
-def test_an_fmu_is_refused(model: Model) -> None:
+@pytest.fixture(scope="module")
+def made(model: Model, tmp_path_factory: pytest.TempPathFactory) -> dict[str, Path]:
+    folder, found = tmp_path_factory.mktemp("fmu"), {}
+    for target in ("fmu", "fmu2"):
+        found[target] = folder / f"{target}.fmu"
+        found[target].write_bytes(files(exported_of(model), target, 10**6)["demo.fmu"])
+    return found
+
+
+def starts(model: Model) -> dict[str, float]:
+    """Turned about oblique axes, and with a spin; by the names of variables of FMUs."""
+    q = dict(zip(model.positions, [0.1, 0.2, 0.3, 0.5, 0.5, -0.5, 0.5, 0.6, 0, 0.8, 0, 0.4], strict=True))
+    rates = [name if name not in model.positions else f"{name}_d" for name in model.coordinates]
+    return q | {name: 1.2 - 0.3 * i for i, name in enumerate(rates)}
+
+
+@pytest.mark.parametrize("kind", ["ModelExchange", "CoSimulation"])
+@pytest.mark.parametrize("target", ["fmu", "fmu2"])
+def test_an_fmu_moves_as_here(model: Model, made: dict[str, Path], target: str, kind: str) -> None:
+    assert validate_fmu(str(made[target])) == []
+    start, m = starts(model), len(model.positions)
+    found = fmpy.simulate_fmu(
+        str(made[target]), fmi_type=kind, start_values=start, stop_time=1, output_interval=0.2, output=list(start),
+        relative_tolerance=1e-12,
+    )  # fmt: skip
+    values, fine = list(start.values()), {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12, "method": "DOP853"}
+    ours = simulated(model, q=values[:m], qd=values[m:], span=(0, 1), times=found["time"], **fine)
+    assert np.abs(np.diff(ours.q, axis=0)).max() > 0.1
+    shown = np.stack([found[name] for name in start], axis=1)
+    np.testing.assert_allclose(shown, np.hstack([ours.q, ours.qd]), rtol=0, atol=1e-8)
+    if kind == "CoSimulation":
+        np.testing.assert_allclose(np.linalg.norm(shown[:, 3:7], axis=1), 1, atol=1e-15)
+
+
+def test_an_fmu_says_what_its_states_are(made: dict[str, Path]) -> None:
+    told = {each.name: each for each in fmpy.read_model_description(str(made["fmu"])).modelVariables}
+    assert [told[f"x.q_hull_{axis}"].start for axis in "wxyz"] == ["1.0", "0.0", "0.0", "0.0"]
+    units = {"x.r_hull_x": "m", "x.q_hull_w": None, "x.v_hull_x": "m/s", "x.w_hull_x": "rad/s", "x.q_d": "rad/s"}
+    units |= {"der(x.q_hull_w)": "1/s", "der(x.r_hull_x)": "m/s", "der(x.w_hull_x)": "rad/s^2", "der(x.q)": "rad/s"}
+    assert {name: told[name].unit for name in units} == units
+    assert "position_rates" not in told
+
+
+def test_directional_derivatives_are_differences(model: Model, made: dict[str, Path]) -> None:
+    start, rng = starts(model), np.random.default_rng(3)
+    by = [*start, *(f"tau.{name}" for name in model.coordinates)]
+    with instance(made["fmu"], "ModelExchange", **start) as (one, at):
+        places = [*(at[f"der({name})"] for name in start), at["kinetic_energy"]]
+        seed = rng.uniform(-1, 1, len(by))
+        found = np.array(one.getDirectionalDerivative(places, [at[name] for name in by], list(seed), len(places)))
+        begin, values = np.array([*start.values(), *[0.0] * model.dof]), []
+        for h in (1e-5, -1e-5):
+            one.setFloat64([at[name] for name in by], list(begin + h * seed))
+            values.append(np.array(one.getFloat64(places)))
+    expected = (values[0] - values[1]) / 2e-5
+    np.testing.assert_allclose(found, expected, atol=1e-6 * np.abs(expected).max())
+
+
+def test_what_cannot_be_is_refused(model: Model) -> None:
     with pytest.raises(InvalidDocument) as caught:
-        files(exported_of(model), "fmu", LIMIT)
+        files(exported_of(model), "simulink", LIMIT)
     assert caught.value.faults[0].code == "has-balls"
+    interface = interface_of_model(model, "demo@1", "sha256:1")
+    with pytest.raises(InvalidArgument, match="position_rates"):
+        files(exported_model(Sources(model), interface, ("forward_dynamics",), "demo"), "fmu", LIMIT)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from typing import Any
 
 import numpy as np
@@ -96,6 +98,15 @@ def test_it_moves(satellite: TestClient) -> None:
         assert answer.status_code == 200, (kind, answer.text[:300])
     wrong = satellite.post("/v1/trees/satellite/simulations", json={**start, "friction": "exact"})
     assert wrong.json()["errors"][0]["code"] == "not-supported", wrong.text
+
+
+def test_the_satellite_leaves_as_an_fmu(satellite: TestClient) -> None:
+    answer = satellite.get("/v1/trees/satellite/export?target=fmu&quantities=kinetic_energy")
+    assert answer.status_code == 200, answer.text
+    told = zipfile.ZipFile(io.BytesIO(answer.content)).read("modelDescription.xml").decode()
+    assert f'name="der({POSITIONS[3]})"' in told
+    refused = satellite.get("/v1/trees/satellite/export?target=simulink")
+    assert refused.json()["errors"][0]["code"] == "has-balls", refused.text
 
 
 def test_the_linearised_satellite(satellite: TestClient) -> None:

@@ -38,7 +38,7 @@ def _linearisation(source: Source, read: LinearisationRequest, _: ProgressReport
 
 def _response(source: Source, read: FrequencyResponseRequest, _: ProgressReport) -> Any:
     model = source.model
-    outputs = len(read.outputs) or model.dof
+    outputs = len(read.outputs) or len(model.positions)
     check_size(source, len(read.frequencies or ()) or COUNT, 4 * outputs * len(model.input_names))
     return frequency_response(model, **arguments(read))
 

@@ -10,7 +10,7 @@ tells how well they were integrated. Results have them at length 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -24,7 +24,7 @@ from substructures.analysis.motion.conditions import Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
-from substructures.analysis.motion.judges import energy_balance, unbalanced
+from substructures.analysis.motion.judges import ROUNDING, Condition, MotionStates, energy_balance, spread, unbalanced
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import acting
@@ -32,10 +32,12 @@ from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.verdict import Check
+from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 from substructures.certificate.derived.model_formulas import simulated_in_rates
 from substructures.compile import Kernel, compile_program
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
@@ -46,6 +48,8 @@ from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 OUTPUTS = ("position_rates", "forward_dynamics", "power")
+NORMS = "|Q| = 1 of all quaternions: Q' = 1/2 Q (0, w) keeps their lengths"
+BALANCE = "T + V changes by the work of forces without potential"
 SINGULAR = "the accelerations are not determined at the start: look at masses, inertias and forces"
 
 
@@ -70,6 +74,11 @@ def _kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
     return compile_program(equations_in_rates(model.source, zero), OUTPUTS, folder)
 
 
+def kernel_in_rates(model: Model, zero: frozenset[str] = frozenset(), folder: Path | None = None) -> Kernel:
+    """The compiled equations_in_rates(model, zero), with the outputs OUTPUTS; the same object for the same model."""
+    return _kernel(Known(model.program.digest, model), zero, folder)
+
+
 class BallRates:
     """x' of x = (q, v, W), (m,), (n,) and one number. Not for several threads at a time."""
 
@@ -78,18 +87,27 @@ class BallRates:
         self.m, self.n = len(model.positions), model.dof
         self._t, self._x = np.zeros(1), np.zeros((1, self.m + self.n))
         self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
-        self._out = {name: np.zeros((1, *size)) for name, size in zip(OUTPUTS, ((self.m,), (self.n,), ()), strict=True)}
-        kernel = _kernel(Known(model.program.digest, model), conditions.zero, folder)
+        self._rates, self._power, self._folder = np.zeros((1, self.m + self.n)), np.zeros(1), folder
+        parts = self._rates[:, : self.m], self._rates[:, self.m :], self._power
+        kernel = kernel_in_rates(model, conditions.zero, folder)
         columns = [(state_names(model), self._x), *self.inputs.columns]
-        self._run = kernel.bind(self._out, conditions.values | {"t": self._t}, columns=columns)
+        outputs = dict(zip(OUTPUTS, parts, strict=True))
+        self._run = kernel.bind(outputs, conditions.values | {"t": self._t}, columns=columns)
 
     def __call__(self, t: float, x: Array) -> Array:
         """At a state; not finite where the metric is singular."""
         self._t[0], self._x[0] = t, x[:-1]
         self.inputs.fill()
         self._run()
-        moved, second, power = (self._out[name] for name in OUTPUTS)
-        return np.concatenate((moved[0], second[0], power))
+        return np.concatenate((self._rates[0], self._power))
+
+    def compiled(self) -> CompiledRates | None:
+        """The function as calls of kernels; None where it is more than these."""
+        runs = [*given, self._run] if (given := self.inputs.runs()) is not None else []
+        calls = tuple(run for run in runs if isinstance(run, BoundCall))
+        if not calls or len(calls) < len(runs):
+            return None
+        return CompiledRates(calls, self._t, self._x, self._rates, self._power, self._folder)
 
 
 def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
@@ -165,8 +183,7 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
     energy = unbalanced(varied) if varied else energy_balance(t, series, not x[:, -1].any(), limit)
     series["energy"] = series["kinetic_energy"] + series["potential_energy"]
     norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in quaternions_in(model.positions, model.balls)])
-    reason = "|Q| = 1 of all quaternions: Q' = 1/2 Q (0, w) keeps their lengths"
-    kept = Check.of(("quaternions", "zero", reason, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
+    kept = Check.of(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
     unit = partial(with_lengths, model)
     span = _reached(model, t, x, m)
     return Trajectory(
@@ -191,11 +208,32 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
 
 
 def with_lengths(model: Model, q: Array) -> Array:
-    """States (K, m) with quaternions of length 1."""
+    """States (..., m) with quaternions of length 1."""
     result = q.copy()
     for some in quaternions_in(model.positions, model.balls):
-        result[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
+        result[..., some] /= np.linalg.norm(q[..., some], axis=-1, keepdims=True)
     return result
+
+
+def conditions_in_rates(model: Model, states: MotionStates, is_balanced: bool) -> Iterator[Condition]:
+    """What must hold along many motions (..., K): the balance of energy, if it is known, and the norms of quaternions,
+    which are as they were integrated.
+    """
+    everywhere, ones = np.ones(states.t.shape[:-1], dtype=bool), np.ones(states.t.shape[:-1])
+    if is_balanced and states.work is not None:
+        found = states.found(model, model.program, ["metric", "potential_energy"])
+        kinetic = 0.5 * np.einsum("...kab,...ka,...kb->...k", found["metric"], states.qd, states.qd)
+        potential, work = found["potential_energy"], states.work
+        energy = kinetic + potential
+        known = ROUNDING * np.abs(energy).max(axis=-1, initial=0)
+        sizes = [np.abs(x).max(axis=-1, initial=0) for x in (kinetic, potential - potential[..., :1], work)]
+        scale = np.max(sizes, axis=0)
+        about: About = ("energy", "constant", BALANCE, "J")
+        drift = spread((energy - work).T).T
+        yield Condition(about, drift, np.where(scale > known, scale, known / ROUNDING), known, everywhere)
+    places = quaternions_in(model.positions, model.balls)
+    norms = np.stack([np.linalg.norm(states.q[..., some], axis=-1) for some in places])
+    yield Condition(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), ones, 0 * ones, everywhere)
 
 
 def _reached(model: Model, t: Array, x: Array, m: int) -> tuple[Array, Array]:

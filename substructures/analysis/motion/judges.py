@@ -49,7 +49,7 @@ class MotionStates:
     def symbols(self, model: Model) -> dict[str, float | Array]:
         """Values of all symbols, one after the other where they vary."""
         values = {name: np.ravel(x) if np.ndim(x) else x for name, x in self.values.items()} | {"t": np.ravel(self.t)}
-        values |= {name: np.ravel(self.q[..., a]) for a, name in enumerate(model.coordinates)}
+        values |= {name: np.ravel(self.q[..., a]) for a, name in enumerate(model.positions)}
         return values | {f"{name}'": np.ravel(self.qd[..., a]) for a, name in enumerate(model.coordinates)}
 
     def found(self, model: Model, source: Program, names: Sequence[str]) -> dict[str, Array]:

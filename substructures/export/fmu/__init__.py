@@ -2,8 +2,8 @@
 
 An FMU has its description, C sources (functions of :mod:`substructures.export.languages.c`, and a simulation that is
 written once, in ``runtime/``), and libraries of the platforms for which there is a compiler. States are coordinates and
-velocities, with velocity constraints those of independent coordinates (q' = T v beside); inputs those of the tree,
-parameters tunable, outputs the other quantities of the export.
+velocities, with velocity constraints those of independent coordinates (q' = T v beside), with ball joints quaternions,
+places and rates; inputs those of the tree, parameters tunable, outputs the other quantities of the export.
 """
 
 from __future__ import annotations
@@ -14,26 +14,25 @@ from uuid import UUID
 
 from substructures.export.archive import archive
 from substructures.export.c_files import c_core
-from substructures.export.contacts import require_planar
+from substructures.export.contacts import require_few
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu import model
 from substructures.export.fmu.binaries import libraries
 from substructures.export.fmu.description import build_description, description2, description3, terminals
 from substructures.export.fmu.tangents import OF_ALL, OF_STATE, tangent
 from substructures.export.fmu.variables import Layout, layout_of
-from substructures.tree.given.ties import require_chains
 
 _SHARED = ("simulation.h", "simulation.c", "fmi.h")
 _OF_CONTACTS = ("contacts.h", "contacts.c", "complementarity.h", "complementarity.c")
 
 
-def _differentiated(layout: Layout) -> tuple[Function, tuple[tuple[str, ...], tuple[str, ...]]]:
-    """The function of the accelerations, without the power, and what it is differentiated by."""
+def _differentiated(layout: Layout) -> tuple[list[Function], tuple[tuple[str, ...], tuple[str, ...]]]:
+    """The functions of the motion, without the power, and what they are differentiated by."""
     motion = layout.motion
     if layout.is_tree:
-        return motion, (OF_STATE, ())
+        return [*([layout.changes] if layout.changes else []), motion], (OF_STATE, ())
     kept = motion.program.select(["rates", "acceleration", "second"])
-    return Function(motion.quantity, kept, motion.interface), (("q", "u"), layout.velocities.names)
+    return [Function(motion.quantity, kept, motion.interface)], (("q", "u"), layout.velocities.names)
 
 
 def fmu(exported: Exported, version: str, limit: int) -> bytes:
@@ -41,15 +40,13 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
 
     Raises InvalidArgument where there is nothing to be simulated, MissingValue, TooLarge.
     """
-    q, qd = (exported.interface.vectors[symbol].names for symbol in ("q", "qd"))
-    require_chains(q if len(q) != len(qd) else ())
     layout = layout_of(exported)
     motion, by = _differentiated(layout)
     tangents = (
-        tangent("dynamics_tangent", [motion], layout.interface, *by),
+        tangent("dynamics_tangent", motion, layout.interface, *by),
         tangent("outputs_tangent", layout.outputs, layout.interface, OF_ALL),
     )
-    require_planar(exported.contacts)
+    require_few(exported.contacts)
     core = Exported(f"{exported.name}_core", exported.interface, (*exported.functions, *tangents), exported.form)
     sources = c_core(core, limit)
     runtime = files(__package__) / "runtime"

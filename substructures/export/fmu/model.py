@@ -15,6 +15,7 @@ _OF_STATE = "double t, const double *q, const double *v, const double *u, const 
 _TANGENT = "double t, const double *q, const double *v, const double *qdd, const double *u, const double *p"
 _DECLARATIONS = (
     "extern const unsigned FMU_SIZES[]; /* numbers of the variable that begins here, or 0 */",
+    "extern const unsigned FMU_QUATERNIONS[]; /* where in q each one begins */",
     "void fmu_start(double *q, double *v, double *u, double *p);",
     "/* der(q), der(v) and, where FMU_NA is not 0, the accelerations of all coordinates */",
     f"void fmu_dynamics({_OF_STATE}, double *dq, double *dv, double *qdd);",
@@ -25,7 +26,7 @@ _DECLARATIONS = (
 )
 _SEEN = "double *gap, double *rows, double *rate, double *bias, double *acts, double *metric"
 _DECLARATIONS_OF_CONTACTS = (
-    "extern const int FMU_IS_LINE[];",
+    "extern const int FMU_TANGENTS[];",
     "extern const double FMU_RESTITUTION[], FMU_FRICTION[], FMU_REST_VELOCITY[];",
     "/* (k), (k, 3, n), (k, 3), (k, 3), (k), (n, n): along the normal and two tangents */",
     f"void fmu_contacts({_OF_STATE}, {_SEEN});",
@@ -40,7 +41,8 @@ def header(layout: Layout, token: str) -> str:
     sizes["V"] = layout.begins["v"]
     sizes["NY"] = layout.size - layout.begins["y"]
     lines = ["#ifndef SUBSTRUCTURES_MODEL_H", "#define SUBSTRUCTURES_MODEL_H", "", f'#define FMU_TOKEN "{token}"']
-    lines += [f"#define FMU_TOLERANCE {TOLERANCE!r}", f"#define FMU_CONTACTS {len(layout.exported.contacts)}", "enum {"]
+    lines += [f"#define FMU_TOLERANCE {TOLERANCE!r}", f"#define FMU_CONTACTS {len(layout.exported.contacts)}"]
+    lines += [f"#define FMU_BALLS {len(layout.quaternions)}", "enum {"]
     lines += [f"    FMU_{name} = {size}," for name, size in sizes.items()]
     more = _DECLARATIONS_OF_CONTACTS if layout.exported.contacts else ()
     return "\n".join([*lines, "};", "", *_DECLARATIONS, *more, "", "#endif", ""])
@@ -53,24 +55,33 @@ def source(layout: Layout, core: Exported, tangents: tuple[Function, Function]) 
         sizes[each.at] = each.size
     lines = ['#include "model.h"', "", f'#include "{core.name}.h"', "", "#include <string.h>", ""]
     lines += ["const unsigned FMU_SIZES[] = {", *_wrapped(map(str, sizes)), "};", ""]
-    lines += ["void fmu_start(double *q, double *v, double *u, double *p)", "{"]
-    lines += ["    memset(q, 0, FMU_NQ * sizeof *q);", "    if (FMU_NV > 0) memset(v, 0, FMU_NV * sizeof *v);"]
-    lines += ["    if (FMU_NU > 0) memset(u, 0, FMU_NU * sizeof *u);"]
-    lines += [f"    u[{i}] = {x!r};" for i, x in enumerate(layout.interface.vectors["u"].defaults) if x]
-    lines += [f"    {core.name}_defaults(p);", "}", ""]
+    if layout.quaternions:
+        lines += [f"const unsigned FMU_QUATERNIONS[] = {{{', '.join(map(str, layout.quaternions))}}};", ""]
+    lines += _start(layout, core)
     lines += _dynamics(layout, core)
     lines += _function(
         f"fmu_outputs({_OF_ALL}, double *y)", "t q qd qdd u p y", _calls(core, list(layout.outputs), "y")
     )
     of_motion, of_outputs = tangents
     # the velocities of a tree are der(q)
-    body = ["memcpy(dx, d + FMU_V, FMU_NQ * sizeof *dx);"] if layout.is_tree else []
-    body += _tangent(layout, core, of_motion, "dx + FMU_NQ" if layout.is_tree else "dx")
+    is_plain = layout.is_tree and layout.changes is None
+    body = ["memcpy(dx, d + FMU_V, FMU_NQ * sizeof *dx);"] if is_plain else []
+    body += _tangent(layout, core, of_motion, "dx + FMU_NQ" if is_plain else "dx")
     head = f"fmu_dynamics_tangent({_TANGENT}, const double *d, double *dx)"
     lines += _function(head, "t q v qdd u p d dx", body)
     head = f"fmu_outputs_tangent({_OF_ALL}, const double *d, double *y)"
     lines += _function(head, "t q qd qdd u p d y", _tangent(layout, core, of_outputs, "y"))
     return "\n".join([*lines, *_contacts(layout, core)])
+
+
+def _start(layout: Layout, core: Exported) -> list[str]:
+    """Zeros, quaternions that turn nothing, and defaults."""
+    lines = ["void fmu_start(double *q, double *v, double *u, double *p)", "{"]
+    lines += ["    memset(q, 0, FMU_NQ * sizeof *q);", "    if (FMU_NV > 0) memset(v, 0, FMU_NV * sizeof *v);"]
+    lines += ["    if (FMU_NU > 0) memset(u, 0, FMU_NU * sizeof *u);"]
+    lines += [f"    q[{i}] = 1.0;" for i in layout.quaternions]
+    lines += [f"    u[{i}] = {x!r};" for i, x in enumerate(layout.interface.vectors["u"].defaults) if x]
+    return [*lines, f"    {core.name}_defaults(p);", "}", ""]
 
 
 def _contacts(layout: Layout, core: Exported) -> list[str]:
@@ -80,7 +91,7 @@ def _contacts(layout: Layout, core: Exported) -> list[str]:
         return []
     seen = next(each for each in layout.exported.functions if each.quantity == CONTACTS)
     numbers: dict[str, list[float | int]] = {
-        "int FMU_IS_LINE": [int(law.is_line) for law in laws],
+        "int FMU_TANGENTS": [law.tangents for law in laws],
         "double FMU_RESTITUTION": [law.restitution for law in laws],
         "double FMU_FRICTION": [law.friction for law in laws],
         "double FMU_REST_VELOCITY": [law.rest_velocity for law in laws],
@@ -96,8 +107,10 @@ def _dynamics(layout: Layout, core: Exported) -> list[str]:
     head = f"fmu_dynamics({_OF_STATE}, double *dq, double *dv, double *qdd)"
     motion, names = layout.motion, "t q v u p dq dv qdd"
     if layout.is_tree:
-        called = f"{core.called(motion)}({', '.join(_arguments(motion, {'qd': 'v'}))}, dv);"
-        return _function(head, names, ["memcpy(dq, v, FMU_NQ * sizeof *dq);", called])
+        moved = "memcpy(dq, v, FMU_NQ * sizeof *dq);"
+        if layout.changes is not None:
+            (moved,) = _calls(core, [layout.changes], "dq", {"qd": "v"})
+        return _function(head, names, [moved, *_calls(core, [motion], "dv", {"qd": "v"})])
     found = {"rates": "dq", "acceleration": "dv", "second": "qdd"}
     results = [found.get(name, "&power") for name in motion.program.outputs]
     own = layout.velocities.place

@@ -3,7 +3,8 @@
 time | q | v | der(q) | der(v) | q'' | u | p | solver_step, solver_tolerance | contacts | outputs
 
 Of a tree v are the velocities of all coordinates, and q'' is der(v); with velocity constraints v are those of the
-independent ones, der(q) = T(q) v the velocities of all, and q'' stands behind.
+independent ones, der(q) = T(q) v the velocities of all, and q'' stands behind. With ball joints v are rates, and der(q)
+the changes of places and quaternions.
 """
 
 from __future__ import annotations
@@ -28,6 +29,8 @@ MOST = 100_000
 TOLERANCE = 1e-8
 #: what gives accelerations: of a tree, and with velocity constraints
 MOTIONS, PRIME = (FORWARD, VELOCITY_DYNAMICS), "'"
+#: what gives der(q) of ball joints
+CHANGES = "position_rates"
 
 
 #: an output that changes at events alone; what is zero there
@@ -86,12 +89,22 @@ class Layout:
     @property
     def outputs(self) -> Sequence[Function]:
         """All functions but that of the accelerations."""
-        return [each for each in self.exported.functions if each.quantity not in (*MOTIONS, CONTACTS)]
+        return [each for each in self.exported.functions if each.quantity not in (*MOTIONS, CHANGES, CONTACTS)]
 
     @cached_property
     def motion(self) -> Function:
         """That of the accelerations."""
         return next(each for each in self.exported.functions if each.quantity in MOTIONS)
+
+    @cached_property
+    def changes(self) -> Function | None:
+        """That of der(q), of trees with ball joints."""
+        return next((each for each in self.exported.functions if each.quantity == CHANGES), None)
+
+    @property
+    def quaternions(self) -> list[int]:
+        """Where in q each one begins."""
+        return [i for i, x in enumerate(self.interface.vectors["q"].defaults) if x]
 
     @property
     def is_tree(self) -> bool:
@@ -139,24 +152,8 @@ class Layout:
     @cached_property
     def variables(self) -> list[Variable]:
         """All of them. Raises MissingValue for parameters without value, InvalidArgument for bad names, TooLarge."""
-        vectors = self.interface.vectors
-        q, v, u, p = vectors["q"], self.velocities, vectors["u"], vectors["p"]
-        begins = self.begins
-        found = [Variable("time", 0, "independent", "s")]
-        found += [Variable(n, begins["q"] + i, "output", x, start=0.0) for i, (n, x) in _named(q.names, q.units)]
-        rates = [f"{name.removeprefix('v.').removesuffix(PRIME)}_d" for name in v.names]
-        found += [Variable(n, begins["v"] + i, "output", x, start=0.0) for i, (n, x) in _named(rates, v.units)]
-        for symbol, of, names, units in (
-            ("dq", "q", q.names, vectors["qd"].units),
-            ("dv", "v", rates, vectors["qdd"].units if self.is_tree else [f"{unit}^2" for unit in v.units]),
-        ):
-            found += [
-                Variable(f"der({n})", begins[symbol] + i, "local", x, of=begins[of] + i)
-                for i, (n, x) in _named(names, units)
-            ]
-        if not self.is_tree:
-            second, units = [f"{name}_dd" for name in q.names], vectors["qdd"].units
-            found += [Variable(n, begins["qdd"] + i, "output", x) for i, (n, x) in _named(second, units)]
+        u, p, begins = self.interface.vectors["u"], self.interface.vectors["p"], self.begins
+        found = [Variable("time", 0, "independent", "s"), *self._states()]
         starts = u.defaults or (0.0,) * len(u)
         inputs = [name.replace("''", "_dd").replace("'", "_d") for name in u.names]
         found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(inputs, u.units)]
@@ -177,6 +174,27 @@ class Layout:
         if found[-1].at + found[-1].size > MOST:
             raise TooLarge("the outputs of an FMU (in numbers)", found[-1].at + found[-1].size, MOST)
         return found
+
+    def _states(self) -> Iterator[Variable]:
+        """q, v, their derivatives and, where it is not among these, q''."""
+        vectors, begins = self.interface.vectors, self.begins
+        q, v = vectors["q"], self.velocities
+        plain = [name.removeprefix("v.").removesuffix(PRIME) for name in v.names]
+        # rates of ball joints are no derivatives
+        rates = [f"{name}_d" if name in q.place else name for name in plain]
+        starts = q.defaults or (0.0,) * len(q)
+        for i, (name, unit) in _named(q.names, q.units):
+            yield Variable(name, begins["q"] + i, "output", unit, start=starts[i])
+        for i, (name, unit) in _named(rates, v.units):
+            yield Variable(name, begins["v"] + i, "output", unit, start=0.0)
+        changes = vectors["qd"].units if self.changes is None else [f"{unit or '1'}/s" for unit in q.units]
+        second = vectors["qdd"].units if self.is_tree else [f"{unit}^2" for unit in v.units]
+        for symbol, of, names, units in (("dq", "q", q.names, changes), ("dv", "v", rates, second)):
+            for i, (name, unit) in _named(names, units):
+                yield Variable(f"der({name})", begins[symbol] + i, "local", unit, of=begins[of] + i)
+        if not self.is_tree:
+            for i, (name, unit) in _named([f"{name}_dd" for name in q.names], vectors["qdd"].units):
+                yield Variable(name, begins["qdd"] + i, "output", unit)
 
     def _contacts(self, begin: int = 0) -> list[Variable]:
         """What contacts do, as an instance has it."""
@@ -220,6 +238,9 @@ def layout_of(exported: Exported) -> Layout:
         raise InvalidArgument.at("/target", "not-a-tree", message)
     if not len(exported.interface.vectors["q"]):
         raise InvalidArgument.at("/target", "no-coordinates", "nothing moves: there is nothing to be simulated")
+    if exported.interface.vectors["q"].defaults and all(each.quantity != CHANGES for each in exported.functions):
+        message = f"ball joints: an FMU needs the quantity '{CHANGES}', too"
+        raise InvalidArgument.at("/quantities", "missing", message)
     others = (each for each in exported.functions if each.quantity not in (VELOCITY_DYNAMICS, CONTACTS))
     further = next((each for each in others if each.further.names), None)
     if further is not None:

@@ -25,7 +25,7 @@ def with_unit_quaternions(positions: Sequence[str], balls: Sequence[BallRow], ro
     result = rows.copy()
     for ball, some in zip(balls, quaternions_in(positions, balls), strict=True):
         norms = np.linalg.norm(rows[:, some], axis=1)
-        wrong = np.flatnonzero(~(np.abs(norms - 1) <= TOLERANCE))
+        wrong = np.flatnonzero(np.abs(norms - 1) > TOLERANCE)
         if len(wrong):
             names = ", ".join(ball["positions"][-4:])
             message = f"the norm of the quaternion {names} is {norms[wrong[0]]:.9g} in state {wrong[0]}, not 1"
@@ -37,6 +37,13 @@ def with_unit_quaternions(positions: Sequence[str], balls: Sequence[BallRow], ro
 def quaternions_in(positions: Sequence[str], balls: Sequence[BallRow]) -> list[list[int]]:
     """The places (w, x, y, z) of all quaternions in a state q."""
     return [[positions.index(name) for name in ball["positions"][-4:]] for ball in balls]
+
+
+def at_zero(positions: Sequence[str], balls: Sequence[BallRow]) -> Array:
+    """The state q (m,) of zeros, whose quaternions turn nothing."""
+    result = np.zeros(len(positions))
+    result[[some[0] for some in quaternions_in(positions, balls)]] = 1
+    return result
 
 
 def by_displacements(positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array) -> Array:

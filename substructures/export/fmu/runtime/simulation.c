@@ -57,16 +57,16 @@ static int accelerations(const State *s, double t, const double *x, double *rate
     fmu_dynamics(t, x, x + FMU_NQ, u, p, rates, rates + FMU_NQ, qdd);
 #if FMU_CONTACTS > 0
     Given at = {t, u, p};
-    double force[FMU_CONTACTS][2];
+    double force[FMU_CONTACTS][3];
     wrong = contacts_act(&s->contacts, &at, x, rates + FMU_NQ, force);
     if (told != NULL) {
         Seen seen;
         double found[FMU_INDICATORS];
         contacts_look(&at, x, &seen);
         contacts_indicate(&s->contacts, &at, x, force, found);
-        for (int i = 0; i < FMU_CONTACTS; ++i, told += 5) {
-            told[0] = seen.gap[i], told[1] = force[i][0], told[2] = force[i][1];
-            told[3] = found[2 * i], told[4] = found[2 * i + 1];
+        for (int i = 0; i < FMU_CONTACTS; ++i, told += OF_CONTACT) {
+            told[0] = seen.gap[i], told[1] = force[i][0], told[2] = force[i][1], told[3] = force[i][2];
+            told[4] = found[2 * i], told[5] = found[2 * i + 1];
         }
         told[0] = s->contacts.energy, told[1] = s->contacts.impacts, told[2] = s->contacts.last;
     }
@@ -91,7 +91,7 @@ int state_indicators(State *s, double *found)
 {
 #if FMU_CONTACTS > 0
     if (state_rates(s)) return 1;
-    for (size_t i = 0; i < 2 * FMU_CONTACTS; ++i) found[i] = s->v[AT_C + 5 * (i / 2) + 3 + i % 2];
+    for (size_t i = 0; i < 2 * FMU_CONTACTS; ++i) found[i] = s->v[AT_C + OF_CONTACT * (i / 2) + 4 + i % 2];
     return 0;
 #else
     (void)s, (void)found;
@@ -216,7 +216,7 @@ static int indicators(const State *s, double t, const double *x, double *found)
 {
     double rates[STATES], qdd[FMU_NA + 1], told[AT_Y - AT_C];
     if (accelerations(s, t, x, rates, qdd, told)) return 1;
-    for (size_t i = 0; i < FMU_INDICATORS; ++i) found[i] = told[5 * (i / 2) + 3 + i % 2];
+    for (size_t i = 0; i < FMU_INDICATORS; ++i) found[i] = told[OF_CONTACT * (i / 2) + 4 + i % 2];
     return 0;
 }
 
@@ -333,6 +333,20 @@ static int advance_adaptive(State *s, double to, const char **why)
     return 0;
 }
 
+/* quaternions back to length 1, on which nothing else depends */
+static void normalise(double *q)
+{
+#if FMU_BALLS > 0
+    for (size_t i = 0; i < FMU_BALLS; ++i) {
+        double *w = q + FMU_QUATERNIONS[i], size = 0.0;
+        for (size_t j = 0; j < 4; ++j) size += w[j] * w[j];
+        for (size_t j = 0; j < 4 && size > 0.0; ++j) w[j] /= sqrt(size);
+    }
+#else
+    (void)q;
+#endif
+}
+
 int state_advance(State *s, double to, const char **why)
 {
     int wrong = 0;
@@ -344,6 +358,7 @@ int state_advance(State *s, double to, const char **why)
     if (!wrong && to > s->v[AT_T] && FMU_NQ > 0)
         wrong = s->v[AT_STEP] > 0.0 ? advance_fixed(s, to, why) : advance_adaptive(s, to, why);
     if (!wrong) s->v[AT_T] = to;
+    normalise(s->v + AT_Q);
     s->has_rates = s->has_outputs = 0;
     return wrong;
 }
