@@ -35,6 +35,13 @@ SATELLITE: dict[str, Any] = {
         "torque": {"quantity": "inverse_dynamics", "of": "bus.wz", "over": STATE},
         "bias": {"quantity": "bias", "over": STATE, "take": "largest_absolute"},
         "turn": {"quantity": "forward_dynamics", "of": "bus.wx", "over": {"q": STATE["q"], "qd": STATE["qd"]}},
+        "spun": {
+            "analysis": "simulation",
+            "at": {"q": STATE["q"], "qd": STATE["qd"]},
+            "span": [0, 1],
+            "expression": "bus.wx'",
+            "take": "end",
+        },
         "specific": "torque/mass",
     },
 }
@@ -51,16 +58,15 @@ def test_rows_are_what_their_trees_are() -> None:
     np.testing.assert_allclose(found.columns["whole"], found.columns["mass"], rtol=1e-14)
     # masses of wheels, which lie in the origin, do not turn it
     assert len({float(x) for x in found.columns["torque"]}) == 6
+    assert len({float(x) for x in found.columns["spun"]}) == 12
 
 
 AT = {"at": {"q": STATE["q"]}}
-MOVED = {"span": [0, 1], "expression": "bus.wx'", "take": "end"}
 
 
 @pytest.mark.parametrize(
     ("column", "code"),
     [
-        ({"analysis": "simulation", **AT, **MOVED}, "has-balls"),
         ({"analysis": "reach", "of": "load.lens", "about": "bus.hub"}, "has-balls"),
         ({"analysis": "linearisation", **AT, "take": "lowest_frequency"}, "has-balls"),
         ({"quantity": "bias", "over": {"q": [0] * 11}, "take": "largest"}, "not-a-unit-quaternion"),
