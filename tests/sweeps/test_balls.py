@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from substructures import couple, simulate
 from substructures.errors import InvalidInput
 from substructures.sweeps.block import disagreement
+from tests.catalogue_entries import shipped_part
 from tests.sweeps.in_process import Sweep
 
 TURN = np.array([0.5, -0.1, 0.7, 0.2])
@@ -54,13 +56,24 @@ def test_rows_are_what_their_trees_are() -> None:
 
 
 AT = {"at": {"q": STATE["q"]}}
-MOVED = {"span": [0, 1], "expression": "bus.wx'", "take": "end"}
+
+
+def test_motions_are_those_of_one_tree() -> None:
+    """The rate of the hub, which wheels at full speed turn, after a second."""
+    motion = {"analysis": "simulation", "at": {"q": STATE["q"], "qd": STATE["qd"]}, "span": [0, 1], "take": "end"}
+    sweep = Sweep(SATELLITE, columns={"rate": {**motion, "expression": "bus.wx'"}}, choices={})
+    found = sweep.rows()
+    assert len(found.rows) == 6
+    for row in (0, 5):
+        parts = {name: shipped_part(entry) for name, entry in (("bus", "satellite-wheels"), ("load", "camera"))}
+        run = simulate(couple(sweep.plan.tree(row), parts), STATE["q"], (0, 1), qd=STATE["qd"])
+        assert run.is_right
+        assert found.columns["rate"][row] == pytest.approx(run.qd[-1, 3], rel=1e-6)
 
 
 @pytest.mark.parametrize(
     ("column", "code"),
     [
-        ({"analysis": "simulation", **AT, **MOVED}, "has-balls"),
         ({"analysis": "reach", "of": "load.lens", "about": "bus.hub"}, "has-balls"),
         ({"analysis": "linearisation", **AT, "take": "lowest_frequency"}, "has-balls"),
         ({"quantity": "bias", "over": {"q": [0] * 11}, "take": "largest"}, "not-a-unit-quaternion"),
