@@ -17,7 +17,6 @@ from substructures.quantities.numbers.states import read_states
 from substructures.sweeps.document import SimulationColumn
 from substructures.sweeps.grouped import alike, check_fields, inside
 from substructures.sweeps.shapes import Shape
-from substructures.tree.given.ties import require_untied
 
 STATE = ("q", "qd", "inputs")
 
@@ -42,7 +41,6 @@ def _moved(
     first, how = next(iter(columns.items()))
     with inside(f"/columns/{first}/at"):
         check_fields(how.at, STATE)
-        require_untied(shape.model, "ensembles")
         if "q" in how.at:
             read_states(shape.model, {name: how.at[name] for name in ("q", "qd") if name in how.at}, 1)
     wanted = {

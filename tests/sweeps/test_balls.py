@@ -7,8 +7,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from substructures import couple, simulate
 from substructures.errors import InvalidInput
 from substructures.sweeps.block import disagreement
+from tests.catalogue_entries import shipped_part
 from tests.sweeps.in_process import Sweep
 
 TURN = np.array([0.5, -0.1, 0.7, 0.2])
@@ -35,13 +37,6 @@ SATELLITE: dict[str, Any] = {
         "torque": {"quantity": "inverse_dynamics", "of": "bus.wz", "over": STATE},
         "bias": {"quantity": "bias", "over": STATE, "take": "largest_absolute"},
         "turn": {"quantity": "forward_dynamics", "of": "bus.wx", "over": {"q": STATE["q"], "qd": STATE["qd"]}},
-        "spun": {
-            "analysis": "simulation",
-            "at": {"q": STATE["q"], "qd": STATE["qd"]},
-            "span": [0, 1],
-            "expression": "bus.wx'",
-            "take": "end",
-        },
         "specific": "torque/mass",
     },
 }
@@ -58,10 +53,22 @@ def test_rows_are_what_their_trees_are() -> None:
     np.testing.assert_allclose(found.columns["whole"], found.columns["mass"], rtol=1e-14)
     # masses of wheels, which lie in the origin, do not turn it
     assert len({float(x) for x in found.columns["torque"]}) == 6
-    assert len({float(x) for x in found.columns["spun"]}) == 12
 
 
 AT = {"at": {"q": STATE["q"]}}
+
+
+def test_motions_are_those_of_one_tree() -> None:
+    """The rate of the hub, which wheels at full speed turn, after a second."""
+    motion = {"analysis": "simulation", "at": {"q": STATE["q"], "qd": STATE["qd"]}, "span": [0, 1], "take": "end"}
+    sweep = Sweep(SATELLITE, columns={"rate": {**motion, "expression": "bus.wx'"}}, choices={})
+    found = sweep.rows()
+    assert len(found.rows) == 6
+    for row in (0, 5):
+        parts = {name: shipped_part(entry) for name, entry in (("bus", "satellite-wheels"), ("load", "camera"))}
+        run = simulate(couple(sweep.plan.tree(row), parts), STATE["q"], (0, 1), qd=STATE["qd"])
+        assert run.is_right
+        assert found.columns["rate"][row] == pytest.approx(run.qd[-1, 3], rel=1e-6)
 
 
 @pytest.mark.parametrize(
