@@ -203,7 +203,7 @@ def right_hand_side(system: Mechanism) -> RightHandSide:
 def ours_fixed(system: Mechanism) -> list[Run]:
     """simulate with fixed steps of the classical Runge-Kutta method."""
     base = {"q": system.q, "qd": system.qd, "span": [0, system.span], "parameters": system.numbers}
-    steps = [system.span / (250 * 2**k) for k in range(7)]
+    steps = [system.span / (10 * 2**k) for k in range(11)]
 
     def once(h: float) -> Array:
         return simulate(system.model, **base, outputs=Outputs(count=2), integrator=Integrator(FixedStep(h))).q[-1]
@@ -249,7 +249,7 @@ def in_mujoco(system: Mechanism) -> list[Run]:
         mujoco.mj_step(system.twin, data, nstep=steps)
         return data.qpos[place]
 
-    return [timed(f"h = {system.span / s:.1e}", lambda s=s: once(s)) for s in (250 * 2**k for k in range(11))]
+    return [timed(f"h = {system.span / s:.1e}", lambda s=s: once(s)) for s in (10 * 2**k for k in range(15))]
 
 
 def evaluation_times(system: Mechanism, peers: dict[str, Callable[[float, Array], Array]]) -> dict[str, float]:
@@ -310,8 +310,9 @@ def measured(system: Mechanism) -> tuple[dict[str, float], Panel]:
     if find_spec("heyoka"):
         runs |= {"Taylor": ours(system, TAYLOR), "heyoka itself": heyoka_by_itself(system)}
     runs["SciPy, our kernel"] = in_scipy(right_hand_side(system), system)
-    runs |= {f"SciPy, {name}": in_scipy(f, system) for name, f in peers.items()}
     runs[f"MuJoCo {mujoco.__version__}"] = in_mujoco(system)
+    # last: the others have the same colours in all pictures
+    runs |= {f"SciPy, {name}": in_scipy(f, system) for name, f in peers.items()}
     reference = runs["DOP853"][-1].q
     return figures | table(runs, reference), diagram(system.title, runs, reference)
 

@@ -18,8 +18,12 @@ from substructures import Definition, Part, catalogue, derive
 QUICK = (
     *("camera", "simple-pendulum", "four-bar", "ball-pendulum", "cart-pendulum", "drill-spindle", "slider-crank"),
     *("linear-rail", "mobile-base", "parallel-gripper", "stewart-leg", "free-body", "satellite"),
+    *("quadruped-trunk-floating", "satellite-wheels"),
     *("furuta-pendulum", "quarter-car", "spherical-wrist", "scara", "flyball-governor", "planar-hopper", "puma560"),
 )
+
+#: entries whose joints have coordinates
+CHAINS = tuple(name for name in catalogue.names() if "velocities" not in str(catalogue.load(name)["bodies"]))
 
 #: what entries with loops have
 CLOSED = ("closures", "independent", "start", "ranges")

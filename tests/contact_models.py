@@ -53,6 +53,15 @@ def box() -> dict[str, Any]:
     }
 
 
+def point() -> dict[str, Any]:
+    """A mass that moves in space."""
+    axes = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}
+    joints = [{"type": "prismatic", "coordinate": name, "axis": axis, **PLACED} for name, axis in axes.items()]
+    names = ["base", "across", "along", "body"]
+    bodies = [{"name": name, "parent": names[i], "joint": joints[i]} for i, name in enumerate(names[1:])]
+    return {"name": "point", "bodies": [*bodies[:2], {**bodies[2], "mass": 2}]}
+
+
 def walker(foot: str) -> dict[str, Any]:
     """The simplest walking machine: a hip of 1 kg on two legs of 1 m with feet of this mass."""
     slide, turn = {"type": "prismatic", **PLACED}, {"type": "revolute", **PLACED, "axis": [0, 1, 0]}

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ball_trees import random_position
 from catalogue_entries import QUICK
 from catalogue_entries import shipped_part as derived
 from independent import defaults, value
@@ -36,7 +37,7 @@ def strings(data: Any) -> list[str]:
 
 
 def test_enough_entries() -> None:
-    assert len(names()) >= 51
+    assert len(names()) >= 54
     assert list(names()) == sorted(names())
     with pytest.raises(KeyError, match="no catalogue entry 'nothing'"):
         load("nothing")
@@ -93,7 +94,11 @@ def test_names_are_used_and_known(name: str) -> None:
             return []
         return [t for key, value in data.items() for t in (strings(value) if key in numeric else expressions(value))]
 
-    texts = [text for key in ("bodies", "ports", "loads", "relations") for text in expressions(entry.get(key, []))]
+    texts = [
+        text
+        for key in ("bodies", "ports", "loads", "relations", "closures")
+        for text in expressions(entry.get(key, []))
+    ]
     found = {word for text in texts for word in re.findall(r"[A-Za-z]\w*", text)} - {"pi", "sin", "cos", "sqrt"}
     assert found == parameters | inputs
 
@@ -132,7 +137,8 @@ def test_metric_is_positive_definite_at_the_default_values(part: Part) -> None:
     if not part.dof:
         assert model.coordinates == ()
         return
-    q = np.random.default_rng(5).uniform(-1, 1, (3, part.dof)).tolist()
-    answer = evaluate(model, ["metric", "forces"], q=q, qd=q)
+    rng = np.random.default_rng(5)
+    q = np.array([random_position(rng, model) for _ in range(3)])
+    answer = evaluate(model, ["metric", "forces"], q=q, qd=rng.uniform(-1, 1, (3, part.dof)))
     assert np.all(np.linalg.eigvalsh(np.array(answer["metric"])) > 0)
     assert np.isfinite(np.array(answer["forces"])).all()

@@ -9,7 +9,9 @@ from typing import Any
 
 import numpy as np
 import pytest
+from ball_trees import random_balls, random_position
 from catalogue_entries import all_entries, shipped_part
+from in_depth import seeds
 
 from substructures import Definition, catalogue, couple, derive
 from substructures.documents import read_json
@@ -79,7 +81,8 @@ def test_the_bodies_of_a_scene_have_the_metric_of_the_model(name: str) -> None:
     armature = np.diag(expected - g) if name in WITH_ARMATURE else np.zeros(model.dof)
     np.testing.assert_allclose(g + np.diag(armature), expected, atol=1e-12 * max(1.0, np.abs(expected).max(initial=0)))
     assert (armature >= -1e-15 * np.abs(expected).max(initial=0)).all()
-    assert [j["home"] for j in found["joints"]] == q
+    at = dict(zip(found["positions"], q, strict=True))
+    assert [j["home"] for j in found["joints"]] == [at.get(j["coordinate"], 0) for j in found["joints"]]
     assert all(j["limits"] is None or j["limits"][0] <= j["home"] <= j["limits"][1] for j in found["joints"])
 
 
@@ -95,6 +98,39 @@ def boxes(svg: str) -> Any:
     # a circle of the long half axis is as wide as the body or wider
     points += [(float(x) + s * float(r), float(y) + s * float(r)) for x, y, r in bodies for s in (-1, 1)]
     return np.array(points, float)
+
+
+@pytest.mark.parametrize("seed", seeds([7], 20))
+def test_mechanisms_with_balls_are_drawn_at_any_state(seed: int) -> None:
+    definition, rng = random_balls(seed)
+    for body in definition["bodies"]:
+        body["joint"].pop("armature", None)
+    _, _, model = drawn = alone(derive(Definition.read(definition)))
+    q, found = random_position(rng, model), scene(*drawn)
+    expected = evaluate(model, "metric", q)["metric"]
+    np.testing.assert_allclose(
+        metric_of_bodies(found, kinematics(model, q), model.dof), expected, atol=1e-12 * expected.max()
+    )
+    home = dict(zip(found["positions"], found["poses"]["home"], strict=True))
+    assert all(home[name] == name.endswith("_w") for ball in model.balls for name in ball["positions"])
+    assert [joint["coordinate"] for joint in found["joints"]] == list(model.coordinates)
+    assert str(picture(*drawn, q)) != str(picture(*drawn))
+
+
+def test_poses_name_the_place_of_a_floating_joint_and_no_rates() -> None:
+    body = {
+        "name": "b",
+        "parent": "base",
+        "mass": 1,
+        "inertia": {"xx": 1, "yy": 1, "zz": 1},
+        "joint": {"type": "floating"},
+    }
+    stands = {"name": "x", "bodies": [body], "poses": {"home": {"r_b_z": {"value": 90, "unit": "cm"}}}}
+    found = scene(*alone(derive(Definition.read(stands))))
+    assert found["poses"]["home"] == [0, 0, 0.9, 1, 0, 0, 0]
+    for name in ("v_b_x", "w_b_x", "q_b_w"):
+        with pytest.raises(InvalidDocument, match=f"there is no coordinate '{name}'"):
+            derive(Definition.read({**stands, "poses": {"home": {name: 1}}}))
 
 
 @pytest.mark.parametrize("name", [*all_entries(), "humanoid"])

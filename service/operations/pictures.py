@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import re
+from collections.abc import Sequence
 
 import orjson
 
@@ -14,6 +15,7 @@ from service.operations.modules import Subject, kept, made
 from service.queries.trees import Tree
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import InvalidArgument
+from substructures.mechanics.state_names import state_units
 from substructures.quantities.measured import si_values
 
 PoseValues = tuple[float, ...]
@@ -21,25 +23,26 @@ LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 
-def joints_of(tree: Tree) -> str:
-    """The kinds of a tree's joints, R and P."""
-    return str(orjson.loads(tree.summary)["joints"])
+def units_of(tree: Tree) -> Sequence[str]:
+    """The SI units of the numbers of a tree's states."""
+    told = orjson.loads(tree.summary)
+    return list(state_units(told["coordinates"], told["joints"], told.get("balls", ()))["q"].values())
 
 
-def read_pose(text: str | None, joints: str) -> PoseValues | None:
+def read_pose(text: str | None, units: Sequence[str]) -> PoseValues | None:
     """The pose of ``?q=0.1,30 deg``; None for the standard one. Raises Refused 422 with the pointer ``/query/q``.
 
-    ``joints``: the kind of every coordinate, R or P.
+    ``units``: in SI, of all of its numbers, empty of quaternions.
     """
     if text is None:
         return None
     fields = [field.strip() for field in text.split(",")] if text.strip() else []
-    if len(fields) != len(joints):
-        raise unprocessable("q", f"expected {len(joints)} comma separated numbers, found {len(fields)}", "/query/q")
-    return tuple(_coordinate(field, kind) for field, kind in zip(fields, joints, strict=True))
+    if len(fields) != len(units):
+        raise unprocessable("q", f"expected {len(units)} comma separated numbers, found {len(fields)}", "/query/q")
+    return tuple(_coordinate(field, unit) for field, unit in zip(fields, units, strict=True))
 
 
-def _coordinate(field: str, kind: str) -> float:
+def _coordinate(field: str, unit: str) -> float:
     """A number in rad or m, or one with its unit."""
     given = quantity_of(field)
     number = str(given.value) if isinstance(given, Quantity) else given
@@ -47,7 +50,7 @@ def _coordinate(field: str, kind: str) -> float:
     if _NUMBER.fullmatch(number) and math.isfinite(float(number)):
         try:
             plain = {"value": float(number), "unit": given.unit} if isinstance(given, Quantity) else float(number)
-            value = si_values(plain, {"R": "rad", "P": "m"}[kind], "/query/q")
+            value = si_values(plain, unit or "1", "/query/q")
         except InvalidArgument as error:
             (fault,) = error.faults
             raise unprocessable(fault.code, f"'{field[:40]}': {fault.message}", "/query/q") from None

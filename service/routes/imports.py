@@ -24,6 +24,7 @@ from service.schemas.entries import VISIBILITY, PartEntry, Visibility
 from service.schemas.imports import ImportView
 from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.kinds import KINDS
+from substructures.interchange.turning import Rotations
 from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/imports", tags=["imports"])
@@ -52,6 +53,9 @@ def import_file(
     parameters: Parameters = "inertia",
     fixed: Fixed = "ports",
     base: Base = "fixed",
+    rotations: Annotated[
+        Rotations, Query(description="of ball and free joints: yaw, pitch, roll, or without singular angles")
+    ] = "angles",
     cut: Annotated[
         str, Query(max_length=20_000, description="links, separated by commas: each begins a part of its own")
     ] = "",
@@ -66,7 +70,7 @@ def import_file(
         detail = f"send one of {accepted}; {received(request)} was received"
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept": accepted})
     links = tuple(text.strip() for text in cut.split(",") if text.strip())
-    wanted = Wanted(Options(parameters, fixed, base), kind, name, file, license, links)
+    wanted = Wanted(Options(parameters, fixed, base, rotations), kind, name, file, license, links)
     if not stored:
         return act.compute(lambda: json_answer(imports.answer_of(_read(store, act, body, wanted, preview))))
     act.require("write")

@@ -19,6 +19,7 @@ from service.operations.modules import Subject
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.schemas.scenes import SceneView
+from substructures.export import interface_of_part
 
 #: what is drawn, and who draws it, when it is not in memory
 Found = Callable[[], tuple[Subject, Worker]]
@@ -31,7 +32,7 @@ HEADERS = {
     "Content-Security-Policy": "default-src 'none'; frame-ancestors 'none'",
     "X-Content-Type-Options": "nosniff",
 }
-POSE = "pose: a number for every coordinate, in order, separated by commas; rad or m, or with a unit: 30 deg"
+POSE = "pose: the numbers of a state in order, separated by commas; rad or m, or with a unit: 30 deg"
 Q = Annotated[str | None, Query(max_length=50_000, description=POSE)]
 DRAWN: dict[int | str, dict[str, Any]] = {
     200: {"description": "The picture", "content": {MEDIA_TYPE: {"schema": {"type": "string"}}}}
@@ -50,7 +51,8 @@ async def get_substructure_picture(
         """In a thread."""
         with store.database.read() as connection:
             version = catalogue.find(connection, viewer, ref)
-        pose = pictures.read_pose(q, version.joints)
+            part = None if q is None else store.required_part(connection, version.digest)
+        pose = None if part is None else pictures.read_pose(q, interface_of_part(part).vectors["q"].units)
         find = partial(modules.of_version, store, version)
         return _picture(request, version.digest, pose, _lasts(ref, version), lambda: (find(), worker))
 
@@ -65,7 +67,7 @@ async def get_tree_picture(ref: str, request: Request, store: StoreOf, viewer: V
         """In a thread."""
         with store.database.read() as connection:
             tree = trees.find(connection, viewer, ref)
-        pose = pictures.read_pose(q, pictures.joints_of(tree))
+        pose = None if q is None else pictures.read_pose(q, pictures.units_of(tree))
         find = partial(modules.of_revision, store, tree, has_parts=True)
         return _picture(request, tree.digest, pose, _lasts(ref, tree), lambda: (find(), worker))
 

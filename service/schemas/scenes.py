@@ -30,7 +30,7 @@ class JointOfScene(Shape):
     axis: Vector = Field(description="in this frame; of a joint with several axes at home")
     limits: Vector | None
     unit: Literal["rad", "m"]
-    home: float
+    home: float = Field(description="0 of rates of ball and floating joints")
 
 
 class BodyOfScene(Shape):
@@ -85,4 +85,7 @@ class SceneView(Shape):
     closures: list[ClosureOfScene]
     gravity: Vector
     sphere: Sphere
-    poses: dict[str, Vector] = Field(description="values of all coordinates, `home` first")
+    positions: list[str] = Field(
+        description="what the numbers of a pose are: coordinates, of balls place and quaternion"
+    )
+    poses: dict[str, Vector] = Field(description="values of all positions, `home` first")

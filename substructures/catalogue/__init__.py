@@ -45,7 +45,8 @@ def load(name: str) -> dict[str, Any]:
 
 
 def load_tree(name: str) -> dict[str, Any]:
-    """A shipped tree of entries as plain data: ``humanoid``, 34 degrees of freedom in seven parts.
+    """A shipped tree of entries as plain data: ``humanoid``, 34 degrees of freedom in seven parts, and
+    ``humanoid-floating``, the same on a base without singular angles.
 
     Raises :class:`FileNotFoundError` for another name.
     """

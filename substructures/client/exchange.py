@@ -78,7 +78,7 @@ class ExchangeCaller(JobCaller):
 
     def import_file(self, content: bytes | Path, **options: Any) -> Answer:
         """A robot file, or a zip of one with its meshes, as a definition or a tree, with a report; ``options``: ``kind,
-        name, file, license, parameters, fixed, base, cut, preview, store``.
+        name, file, license, parameters, fixed, base, rotations, cut, preview, store``.
         """
         if isinstance(content, Path):
             options, content = {"file": content.name, **options}, content.read_bytes()

@@ -1,8 +1,7 @@
 """A robot that was read as the definition of a substructure: bodies, ports, parameters, and what was called how.
 
 Bodies carry the names of links, coordinates those of joints. Links on fixed joints are merged into the link that
-carries them (or kept as bodies), their frames stay as ports. Several joints of one link are a chain of massless bodies;
-``floating`` and ``ball`` are chains of prismatic and revolute joints (yaw, pitch, roll; singular at pitch = +-pi/2).
+carries them (or kept as bodies), their frames stay as ports. Several joints of one link are a chain of massless bodies.
 """
 
 from __future__ import annotations
@@ -17,6 +16,7 @@ from substructures.interchange.names import Names, library_name, title_of
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
 from substructures.interchange.report import Place, refuse
 from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion, Robot
+from substructures.interchange.turning import Rotations, is_turning, turning_joint
 from substructures.part.definition import MAX_BODIES
 from substructures.part.topology import BASE
 
@@ -25,8 +25,6 @@ Fixed = Literal["ports", "bodies", "dropped"]
 Base = Literal["fixed", "floating"]
 
 MAX_PORTS = 500
-FREE = ("x", "y", "z", "yaw", "pitch", "roll")
-TURNS = FREE[3:]
 _MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _UNITS = {"m": "kg", "c": "m", "I": "kg m^2", "p": "m", "r": "rad"}
 
@@ -37,12 +35,13 @@ class Options:
 
     ``parameters``: which numbers become named parameters with the file's values as defaults; ``fixed``: what links on
     fixed joints become besides being merged: ``ports``, ``bodies`` of their own instead, or nothing; ``base``: whether
-    the root link may move freely.
+    the root link may move freely; ``rotations``: with what ball and free joints turn.
     """
 
     parameters: Parameters = "inertia"
     fixed: Fixed = "ports"
     base: Base = "fixed"
+    rotations: Rotations = "angles"
 
 
 @dataclass(frozen=True)
@@ -84,6 +83,7 @@ class _Builder:
         self.ports: list[dict[str, Any]] = []
         self.loads: list[dict[str, Any]] = []
         self.parameters: dict[str, dict[str, Any]] = {}
+        self.velocities: dict[str, str] = {}  #: the names of rates that are no derivatives, by joint
         #: of every link the body that it is fixed in, and where
         self.seats: dict[str, tuple[str, Seat]] = {}
 
@@ -118,7 +118,7 @@ class _Builder:
         }
         return PartOfFile(
             {key: x for key, x in document.items() if x},
-            {**self.links.given, **self._joint_names()},
+            {**self.links.given, **self._joint_names(), **self.velocities},
             [self._binding(m) for m in left if {m.joint, m.of} <= self.joints.given.keys()],
             self.joints.given,
             loop_ports,
@@ -141,7 +141,8 @@ class _Builder:
         """Names of coordinates may not be those of parameters."""
         for body in self.bodies.values():
             coordinates = body.joint.get("coordinate", [])
-            for c in [coordinates] if isinstance(coordinates, str) else coordinates:
+            own = [coordinates] if isinstance(coordinates, str) else coordinates
+            for c in (*own, *body.joint.get("velocities", ())):
                 self.symbols.of(c)
 
     def _links(self) -> Iterator[Link]:
@@ -191,17 +192,14 @@ class _Builder:
 
     def _joint(self, motion: Motion, seat: Seat) -> dict[str, Any]:
         """The joint of a body as a document."""
+        if is_turning(motion):
+            turning, loads = turning_joint(motion, self.options.rotations, self.joints.new)
+            self.joints.given[motion.name] = ", ".join(turning["coordinate"])
+            if "velocities" in turning:
+                self.velocities[f"velocities {motion.name}"] = ", ".join(turning["velocities"])
+            self.loads += loads
+            return turning | _placement(seat)
         joint: dict[str, Any] = {"type": motion.type, **_placement(seat)}
-        if motion.type in ("free", "spherical"):
-            steps = FREE if motion.type == "free" else TURNS
-            joint["coordinate"] = [self.joints.new(f"{motion.name}_{step}") for step in steps]
-            self.joints.given[motion.name] = ", ".join(joint["coordinate"])
-            for law in ("stiffness", "damping", "armature"):  # of the slides; of the turns: a load, a moment of inertia
-                if motion.type == "free" and not is_zero(getattr(motion, law)):
-                    joint[law] = [*(getattr(motion, law),) * 3, 0, 0, 0]
-            turns = joint["coordinate"][-3:]
-            self.loads += [*motion.turning_damping(turns), *motion.turning_spring(turns)]
-            return joint
         joint["coordinate"] = self.joints.of(motion.name)
         if motion.axis != (ZERO, ZERO, ONE):
             joint["axis"] = list(motion.axis)

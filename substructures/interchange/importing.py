@@ -12,9 +12,10 @@ from substructures.interchange.as_part import Options, PartOfFile, as_part
 from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
-from substructures.interchange.report import MOST_REMARKS, Report
+from substructures.interchange.report import MOST_REMARKS, Report, refuse
 from substructures.interchange.robot import Robot
 from substructures.interchange.rows.cut import cut_rows
+from substructures.interchange.turning import is_turning
 
 #: most characters of the name of a file that are kept
 _LONGEST = 200
@@ -81,6 +82,7 @@ def import_file(
         definition = _told(definition, rows[0], data, file, license_of_file)
         return Imported(rows[0], definition, tree, rows[2].plain(), rows[2].checks(), {}, [])
     found, robot = read_robot(data, kind, included)
+    _require_open(robot, options)
     if cut:
         made = cut_robot(robot, cut, options, name)
         first = made.tree["instances"][0]
@@ -98,6 +100,19 @@ def import_file(
         message = f'gravity is that of a tree: give it "gravity": [{", ".join(map(str, gravity or ()))}]'
         report.warning(robot.gravity_place, message)
     return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings, gravity)
+
+
+def _require_open(robot: Robot, options: Options) -> None:
+    """Raises InvalidDocument for loops beside joints with quaternions."""
+    floats = options.base == "floating"
+    turning = [
+        link.place
+        for link in robot.links
+        if any(map(is_turning, link.motions)) or (floats and link.parent is None and not link.motions)
+    ]
+    if robot.loops and turning and options.rotations == "quaternions":
+        message = "the file has loops, which do not go with ball and floating joints: take rotations=angles"
+        raise refuse(turning[0], "has-balls", message)
 
 
 def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:

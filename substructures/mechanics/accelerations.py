@@ -48,6 +48,27 @@ def definite_solve(g: Array, f: Array) -> tuple[Array, Array]:
     return x, np.einsum("nkk->nk", L) ** 2 / np.einsum("nkk->nk", g)
 
 
+def saddle_solve(g: Array, G: Array, a: Array, b: Array) -> tuple[Array, Array]:
+    """x (N, n) and y (N, r) with g x + G^T y = a and G x = b for (N, n, n), (N, r, n) of independent rows, (N, n) and
+    (N, r); NaN in states where both are not determined. Without rows x is that of :func:`cholesky_solve`.
+    """
+    (count, r, n) = G.shape
+    if not r:
+        return cholesky_solve(g, a), np.zeros((count, 0))
+    whole, right = np.zeros((count, n + r, n + r)), np.concatenate([a, b], axis=1)
+    whole[:, :n, :n], whole[:, n:, :n], whole[:, :n, n:] = g, G, G.swapaxes(1, 2)
+    try:
+        found = np.linalg.solve(whole, right[..., None])[..., 0]
+    except np.linalg.LinAlgError:
+        half = count // 2
+        if not half:
+            return np.full((1, n), np.nan), np.full((1, r), np.nan)
+        parts = [saddle_solve(g[some], G[some], a[some], b[some]) for some in (slice(half), slice(half, None))]
+        x, y = (np.concatenate(both) for both in zip(*parts, strict=True))
+        return x, y
+    return found[:, :n], found[:, n:]
+
+
 def condition(g: Array) -> Array:
     """Condition number (N,) of g (N, n, n) after its rows and columns are scaled to a unit diagonal.
 

@@ -24,6 +24,12 @@ def positions_of(coordinates: Sequence[str], balls: Sequence[BallRow]) -> tuple[
     return tuple(name for q in coordinates for name in instead.get(q, (q,)))
 
 
+def resting_state(positions: Sequence[str], balls: Iterable[BallRow]) -> list[float]:
+    """A state q in which nothing is turned or shifted: 0, and of quaternions 1, 0, 0, 0."""
+    ones = {ball["positions"][-4] for ball in balls}
+    return [float(name in ones) for name in positions]
+
+
 def state_units(coordinates: Sequence[str], joints: str, balls: Sequence[BallRow]) -> dict[str, dict[str, str]]:
     """The SI units of positions, rates and accelerations by name, by the fields q, qd and qdd."""
     kinds = [(name, kind == "P") for name, kind in zip(coordinates, joints, strict=True)]

@@ -304,7 +304,7 @@ def _derived(
 def _opened(definition: Definition, is_stored: bool) -> tuple[Mechanism, UnitCheck, Entries]:
     m = mechanism(definition)
     require_relations(definition, m.topology.coordinates)
-    require_poses(definition, m.topology.coordinates)
+    require_poses(definition, m.topology)
     require_closures(definition, m.scope, [*m.bodies, *m.ports])
     require_reduction(definition, m.topology.coordinates)
     units = check_units(definition, m.topology)

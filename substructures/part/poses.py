@@ -11,14 +11,21 @@ from substructures.expr.graph import Graph
 from substructures.loads.scope import Scope, no_names
 from substructures.part.definition import Definition
 from substructures.part.frames import constant, cut_frames
+from substructures.part.topology import Topology
 
 #: the pose of pictures
 HOME = "home"
 
 
-def require_poses(definition: Definition, coordinates: Sequence[str]) -> None:
+def posed(topology: Topology) -> tuple[str, ...]:
+    """What poses give values to: coordinates that are no rates, and the places of floating joints."""
+    places = (name for ball in topology.balls for name in ball.place)
+    return (*(joint.coordinate for joint in topology.moving if not joint.is_rate), *places)
+
+
+def require_poses(definition: Definition, topology: Topology) -> None:
     """Raise InvalidDocument for coordinates that are not there, and for values that are no constants."""
-    scope = Scope(Graph())
+    scope, coordinates = Scope(Graph()), posed(topology)
     for pose, given in definition.poses.items():
         for name, value in given.items():
             pointer = f"/poses/{pose}/{name}"

@@ -124,6 +124,7 @@ class _Places:
     def poses(self) -> Iterator[Place]:
         """Values of coordinates."""
         kinds = {entry.coordinate: entry.s for entry in self.topology.joints}
+        kinds |= {name: 1 for ball in self.topology.balls for name in ball.place}
         for pose, given in self.definition.poses.items():
             for name, value in given.items():
                 yield f"/poses/{pose}/{name}", value, COORDINATE[kinds[name]]

@@ -21,9 +21,9 @@ DEPTH = np.cross(VIEW[0], VIEW[1])
 #: the least half axis of a body, so that rods are seen, and the radius of a point mass
 LEAST, POINT = 2.5, 6.0
 #: joints that hold nothing: no link is drawn across them
-LOOSE = "free"
+LOOSE = ("free", "floating")
 #: joints of several axes through one point
-BALLS = ("spherical", "universal")
+BALLS = ("spherical", "universal", "ball")
 
 
 @dataclass(frozen=True)
@@ -79,7 +79,7 @@ class _Projection:
     def __init__(self, scene: Mapping[str, Any], shown: Mapping[str, Array]) -> None:
         self.scene, self.shown = scene, shown
         self.colours = _colours(scene["frames"])
-        self.loose = {joint["frame"] for joint in scene["joints"] if joint["type"] == LOOSE}
+        self.loose = {joint["frame"] for joint in scene["joints"] if joint["type"] in LOOSE}
         self.scale, self.shift = 1.0, np.zeros(2)
         self._fit()
 
@@ -168,7 +168,7 @@ class _Projection:
         drawn = set()
         for joint in self.scene["joints"]:
             k, is_ball = joint["frame"], joint["type"] in BALLS
-            if joint["type"] == LOOSE or (is_ball and k in drawn):
+            if joint["type"] in LOOSE or (is_ball and k in drawn):
                 continue
             drawn.add(k)
             along = VIEW @ self.shown["rotation"][k] @ np.array(joint["axis"]) / np.linalg.norm(VIEW[0])

@@ -9,8 +9,9 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.mechanics.state_names import resting_state
 from substructures.part.part import Part
-from substructures.part.poses import HOME
+from substructures.part.poses import HOME, posed
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.document import TreeSpec
@@ -25,8 +26,8 @@ Limits = Mapping[int, tuple[float, float]]
 
 
 def kinematics(model: Model, q: Any) -> dict[str, Array]:
-    """Places and rotations of all frames, and their velocities in their own axes, at ``q`` (n,) and the defaults of
-    parameters, 1 where there is none. Raises InvalidDocument for a wrong ``q``.
+    """Places and rotations of all frames, and their velocities in their own axes, at the state ``q`` and the defaults
+    of parameters, 1 where there is none. Raises InvalidDocument for a wrong ``q``.
     """
     missing = {name: 1.0 for name, p in model.parameters.items() if p["value"] is None}
     found = evaluate(model, "kinematics", q, parameters=missing)["kinematics"]
@@ -34,7 +35,9 @@ def kinematics(model: Model, q: Any) -> dict[str, Array]:
 
 
 def poses(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limits) -> dict[str, list[float]]:
-    """All poses by name, ``home`` first [rad or m]; parts that have none of a name stay at home."""
+    """All poses by name, ``home`` first, as states q [rad or m] without turned quaternions; parts that have none of a
+    name stay at home.
+    """
     pose = dict(zip(model.coordinates, _first(spec, parts, model, limits), strict=True))
     given = {name: dict.fromkeys([HOME, *part.definition.poses]) for name, part in parts.items()}
     found = {}
@@ -43,9 +46,15 @@ def poses(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limit
         for name, part in parts.items():
             values = part.definition.poses.get(pose_name, part.definition.poses.get(HOME))
             if values is not None:
-                moved |= {f"{name}.{c}": default_number(values.get(c, 0)) for c in part.coordinates}
-        found[pose_name] = [moved[name] for name in model.coordinates]
+                moved |= {f"{name}.{c}": default_number(values.get(c, 0)) for c in posed(part.topology)}
+        found[pose_name] = state_of(model, moved)
     return found
+
+
+def state_of(model: Model, values: Mapping[str, float]) -> list[float]:
+    """q with the values of coordinates and of places; no quaternion turns anything."""
+    resting = zip(model.positions, resting_state(model.positions, model.balls), strict=True)
+    return [values.get(name, x) for name, x in resting]
 
 
 def _first(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limits) -> list[float]:
@@ -57,7 +66,8 @@ def _first(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limi
     loose = _loose(parts)
     apart = [pose[a] if model.coordinates[a] in loose else _apart(kinds[a] == "P", limits.get(a)) for a in places]
     slid = [apart[a] if kinds[a] == "P" else pose[a] for a in places]
-    shown = [kinematics(model, each) for each in (pose, slid, apart)] if model.dof else []
+    tried = [state_of(model, dict(zip(model.coordinates, each, strict=True))) for each in (pose, slid, apart)]
+    shown = [kinematics(model, each) for each in tried] if model.dof else []
     for instance in spec.instances:
         own = [a for a, name in enumerate(model.coordinates) if name.partition(".")[0] == instance.name]
         if not own or HOME in parts[instance.name].definition.poses:
@@ -70,12 +80,12 @@ def _first(spec: TreeSpec, parts: Mapping[str, Part], model: Model, limits: Limi
 
 
 def _loose(parts: Mapping[str, Part]) -> set[str]:
-    """Coordinates of free joints: what they move lies apart from nothing."""
+    """Coordinates of free joints: what they move lies apart from nothing. And rates of balls, which have none."""
     return {
         f"{name}.{joint.coordinate}"
         for name, part in parts.items()
         for joint in part.topology.joints
-        if part.definition.bodies[joint.body].joint.type == "free"
+        if joint.is_rate or part.definition.bodies[joint.body].joint.type == "free"
     }
 
 

@@ -21,7 +21,6 @@ from substructures.pictures.pose import kinematics, poses
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 INERTIA = ("xx", "yy", "zz", "xy", "xz", "yz")
@@ -35,11 +34,11 @@ def scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model) -> dict[str, 
 
     ``frames``: ``name``, ``parent``, ``instance``, ``kind`` (base, body, port); ``joints``, by coordinate: ``type`` of
     the whole joint, ``slides``, the ``frame`` that it moves, its ``axis`` there (of a joint with several axes at home),
-    ``limits`` or None, ``unit``, ``home``; ``bodies``: ``frame``, ``mass`` [kg], ``centre`` [m] in the frame,
-    principal ``moments`` about it [kg m^2] and their ``axes`` in columns; ``loads`` and ``closures``: their ``ends``,
-    each a frame and a point in it [m]; ``gravity`` [m/s^2]; ``sphere`` around all at home; ``poses`` by name.
+    ``limits`` or None, ``unit``, ``home`` (0 of rates); ``bodies``: ``frame``, ``mass`` [kg], ``centre`` [m] in the
+    frame, principal ``moments`` about it [kg m^2] and their ``axes`` in columns; ``loads`` and ``closures``: their
+    ``ends``, each a frame and a point in it [m]; ``gravity`` [m/s^2]; ``sphere`` around all at home; ``poses`` by name,
+    each a number for each of ``positions``.
     """
-    require_chains(model.balls)
     place = {name: i for i, name in enumerate(model.frames)}
     numbers = _Numbers(assemble(spec, parts), model, place)
     limits = numbers.limits()
@@ -55,6 +54,7 @@ def scene(spec: TreeSpec, parts: Mapping[str, Part], model: Model) -> dict[str, 
         "closures": list(numbers.closures()),
         "gravity": numbers.values(spec.gravity, ""),
         "sphere": _sphere(bodies, at_home),
+        "positions": list(model.positions),
         "poses": shown,
     }
 
@@ -81,6 +81,7 @@ def _joints(
     place: Mapping[str, int],
 ) -> Iterator[dict[str, Any]]:
     entries = {f"{name}.{j.coordinate}": (name, j) for name, part in parts.items() for j in part.topology.joints}
+    at = dict(zip(model.positions, home, strict=True))
     for a, coordinate in enumerate(model.coordinates):
         instance, entry = entries[coordinate]
         body = parts[instance].definition.bodies[entry.body]
@@ -95,7 +96,7 @@ def _joints(
             "axis": axis.tolist(),
             "limits": list(limits[a]) if a in limits else None,
             "unit": "m" if entry.s else "rad",
-            "home": home[a],
+            "home": at.get(coordinate, 0.0),
         }
 
 

@@ -26,8 +26,8 @@ INK = "#77838e"
 
 
 def picture(spec: TreeSpec, parts: Mapping[str, Part], model: Model, q: Any = None) -> Picture:
-    """SVG of a tree at ``q`` (n,), by default at home, and the default values of parameters (1 where there is none),
-    isometric view; notebooks show it.
+    """SVG of a tree at the state ``q``, by default at home, and the default values of parameters (1 where there is
+    none), isometric view; notebooks show it.
 
     Raises InvalidDocument for a wrong ``q``.
     """

@@ -29,6 +29,7 @@ from substructures.mechanics.composite_form import Inertia, moments_of_inertia, 
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
+from substructures.mechanics.state_names import BallRow, ball_rows
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
@@ -84,6 +85,7 @@ class RegressorModel:
     regrouping: Program
     closures: tuple[ClosureRows, ...] = ()
     driven: tuple[str, ...] = ()
+    balls: tuple[BallRow, ...] = field(default=(), hash=False)
 
     @property
     def labels(self) -> Mapping[str, Any]:
@@ -105,7 +107,7 @@ class RegressorModel:
         Arguments as for :func:`substructures.quantities.numbers.evaluation.evaluate`; N is dropped for one state with
         ``q`` (n,). Raises InvalidArgument (``qdd`` is needed) and MissingValue.
         """
-        model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {})
+        model = Model(self.program, self.coordinates, self.joints, (), self.parameters, {}, balls=self.balls)
         given = {"q": q, "qd": qd, "qdd": qdd, "parameters": parameters}
         states = read_states(model, given, limit)
         if states.qdd is None and model.dof:
@@ -143,6 +145,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
     result, names, parameters = formed("regressor", spec, parts, _outputs, regressor_outputs, max_nodes)
     assembly, used = assemble(spec, parts), {symbol.name for symbol in result.symbols}
     free = {name: kind for name, kind in all_coordinates(assembly).items() if name not in spec.driven}
+    pairs = list(zip(assembly.instances, assembly.mounted, strict=True))
     return RegressorModel(
         result,
         tuple(free),
@@ -153,6 +156,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         _regrouping(assembly),
         tuple(cut.rows for cut in assembly.cuts),
         driven_names(assembly),
+        ball_rows(assembly.balls, [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]),
     )
 
 

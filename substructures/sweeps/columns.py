@@ -12,6 +12,7 @@ from substructures.array import Array
 from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument, InvalidDocument, among
 from substructures.expr.syntax import RESERVED
+from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.numbers.states import longest, read_states
 from substructures.quantities.quantity import TABLE
@@ -172,7 +173,7 @@ def _quantities(
     with inside(f"/columns/{first}/over"):
         given = {name: over.get(name) for name in ("q", "qd", "qdd")}
         if given["q"] is None:
-            given["q"] = [0.0] * model.dof  # of what does not depend on it
+            given["q"] = resting_state(model.positions, model.balls)  # of what does not depend on it
         states = read_states(model, given, None)
         steps = max(states.count, longest({**over, "q": given["q"]}))
         arguments: dict[str, Any] = {"q": _tiled(states.q, rows, steps), "qd": _tiled(states.qd, rows, steps)}

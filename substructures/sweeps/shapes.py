@@ -23,7 +23,6 @@ from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.document import TreeSpec, read_instance
-from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model, couple_formulas
 from substructures.tree.shape import places_of, without_numbers
 from substructures.tree.units import differing_interfaces
@@ -114,7 +113,6 @@ def couple_shape(
         raise InvalidDocument.at(told["pointer"], told["code"], told["message"])
     spec, _ = without_numbers(spec)
     model = couple_formulas(spec, parts, max_nodes, christoffel, names)
-    require_chains(model.balls)
     return Shape(Sources(model, of_parts=of_parts(spec, parts, max_nodes)))
 
 

@@ -13,9 +13,10 @@ from scipy.integrate import solve_ivp
 
 from substructures import InvalidInput, MissingValue, Model
 from substructures.analysis.control.adjoint import adjoint_equations
+from substructures.analysis.control.closed_start import start_state
 from substructures.analysis.control.cost_gradient import cost_gradient
 from substructures.analysis.control.from_fields import control_arguments
-from substructures.analysis.control.problem import ControlProblem, Cost, initial_state, inputs_of
+from substructures.analysis.control.problem import ControlProblem, Cost, inputs_of
 from substructures.analysis.control.shooting import Shooting
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
@@ -67,10 +68,11 @@ def test_gradient_against_finite_differences(seed: int) -> None:
     segments = (1, 3)[seed // 3]
     vary = request["vary"]
     problem = ControlProblem(**{name: x for name, x in request.items() if name not in ("values", "vary")})
-    shooting = Shooting(model, problem, vary, segments)
+    begin = start_state(model, problem)
+    shooting = Shooting(model, problem, begin, vary, segments)
     rng, nominal = np.random.default_rng(seed), dict(shooting.values)
     controls = rng.uniform(-1, 1, (problem.nodes, 2))
-    start = initial_state(model, problem) + rng.uniform(-0.1, 0.1, (segments, 2 * model.dof))
+    start = begin.x + rng.uniform(-0.1, 0.1, (segments, 2 * model.dof))
     weight = rng.uniform(-1, 1, start.shape)
     slope = shooting.pullback(shooting.run(start, controls), np.stack([0 * weight, weight]), np.array([1.0, 0.3]))
 

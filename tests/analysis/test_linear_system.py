@@ -114,6 +114,51 @@ def test_the_cost_is_that_of_the_motions(cart: Model) -> None:
     assert solve_continuous_lyapunov(closed.T, -spent) == pytest.approx(found.cost, rel=1e-7)
 
 
+def test_closed_loops_are_those_of_their_free_coordinate() -> None:
+    """Two carts of 1 and 3 kg, welded, one on a spring: 1/(k - m w^2 + i d w) and the regulator of one cart of 4 kg."""
+
+    def cart(name: str, mass: float, **joint: float) -> Any:
+        moved = {"type": "prismatic", "coordinate": "x", **joint}
+        bodies = [{"name": "b", "parent": "base", "mass": mass, "joint": moved}]
+        return derive({"name": name, "bodies": bodies, "ports": [{"name": "top", "body": "b"}]})
+
+    spring = {"stiffness": 18, "damping": 0.5}
+    parts = {"a": cart("a", 1, **spring), "b": cart("b", 3), "one": cart("one", 4, **spring)}
+    weld = {"name": "weld", "type": "weld", "from": "a.top", "to": "b.top"}
+    pair = [{"name": name, "substructure": name} for name in "ab"]
+    closed = couple({"name": "t", "instances": pair, "closures": [weld]}, {name: parts[name] for name in "ab"})
+    single = couple({"name": "t", "instances": [{"name": "one", "substructure": "one"}]}, {"one": parts["one"]})
+    w = np.array([0.0, 1.0, 3.0])
+    found = frequency_response(closed, [0, 0], frequencies=w, of_inputs=["tau.a.x"])
+    assert found.outputs == ("a.x", "b.x")
+    for k in range(2):
+        assert found.response[:, k, 0] == pytest.approx(1 / (18 - 4 * w**2 + 0.5j * w), rel=1e-12)
+    # both carts count
+    two = regulator(closed, [0, 0], weights={"a.x": 1, "b.x": 4, "b.x'": 2}, of_inputs=["tau.b.x"])
+    one = regulator(single, [0], weights={"one.x": 5, "one.x'": 2})
+    assert two.gain == pytest.approx(one.gain, rel=1e-9)
+    assert (two.coordinates, two.is_right, two.controllable) in ((("a.x",), True, True), (("b.x",), True, True))
+
+
+def test_the_response_of_a_sledge() -> None:
+    """A knife edge along x: m x'' = u and no way aside, G = -1/(m w^2)."""
+    slide = {"type": "prismatic", "placement": {"position": [0, 0, 0]}}
+    bodies: Any = [
+        {"name": "a", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}, "mass": 1},
+        {"name": "b", "parent": "a", "joint": {**slide, "coordinate": "y", "axis": [0, 1, 0]}, "mass": 3},
+    ]
+    part = derive({"name": "sledge", "bodies": bodies, "ports": [{"name": "edge", "body": "b"}]})
+    tree: Any = {"name": "t", "instances": [{"name": "s", "substructure": "sledge"}]}
+    tree |= {"velocity_constraints": [{"name": "edge", "type": "knife_edge", "frame": "s.edge"}]}
+    model = couple(tree, {"s": part})
+    found = frequency_response(model, [0, 0], frequencies=[1.0, 2.0], of_inputs=["tau.s.x"])
+    assert found.response[:, 0, 0] == pytest.approx([-1 / 4, -1 / 16], rel=1e-12)
+    assert np.abs(found.response[:, 1, 0]).max() < 1e-14
+    with pytest.raises(InvalidInput) as caught:
+        regulator(model, [0, 0])
+    assert caught.value.faults[0].code == "has-velocity-constraints"
+
+
 def test_what_no_input_moves_and_no_weight_sees_is_told() -> None:
     part = derive("simple-pendulum")
     instances = [{"name": name, "substructure": "simple-pendulum"} for name in ("a", "b")]

@@ -70,17 +70,19 @@ class Numbers:
 
 
 class Reduced:
-    """Another engine with joints that follow others: q = N y + q_0 of our coordinates y."""
+    """Another engine with joints that follow others: q = N y + q_0 of our coordinates y; ``positions``: N of states q
+    that are no coordinates.
+    """
 
-    def __init__(self, twin: Any, N: Array, q0: Array) -> None:
-        self.twin, self.N, self.q0 = twin, N, q0
+    def __init__(self, twin: Any, N: Array, q0: Array, positions: Array | None = None) -> None:
+        self.twin, self.N, self.q0, self.positions = twin, N, q0, N if positions is None else positions
 
     def numbers(self, q: Array, qd: Array, qdd: Array) -> Numbers:
         """At a state of ours."""
         N = self.N
-        found = self.twin.numbers(N @ q + self.q0, N @ qd, N @ qdd)
+        found = self.twin.numbers(self.positions @ q + self.q0, N @ qd, N @ qdd)
         M, needed = N.T @ found.metric @ N, N.T @ found.inverse_dynamics
-        is_regular = np.linalg.matrix_rank(M) == len(q)
+        is_regular = np.linalg.matrix_rank(M) == len(qd)
         forward = qdd - np.linalg.solve(M, needed) if is_regular else None
         return Numbers(M, N.T @ found.gravity, N.T @ found.bias, needed, forward)
 

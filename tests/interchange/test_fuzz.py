@@ -99,6 +99,7 @@ def fuzz(cases: int, seed: int) -> int:
             rng.choice(("none", "inertia", "all")),
             rng.choice(("ports", "bodies", "dropped")),
             rng.choice(("fixed", "floating")),
+            rng.choice(("angles", "quaternions")),
         )
         try:
             read += survives(data, options, rng.choice(CUTS))

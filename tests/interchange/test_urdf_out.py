@@ -9,7 +9,9 @@ from xml.etree import ElementTree as Tree
 
 import numpy as np
 import pytest
-from catalogue_entries import open_entry, shipped_part
+from ball_trees import random_balls, random_position
+from catalogue_entries import CHAINS, open_entry, shipped_part
+from in_depth import seeds
 from related import reduction
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
@@ -17,6 +19,7 @@ from substructures.errors import InvalidDocument, MissingValue
 from substructures.export.urdf import urdf_of_part, urdf_of_tree
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
+from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
@@ -24,7 +27,7 @@ from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
 
 sys.path.insert(0, str(Path(__file__).parent))
-from engines import Reduced
+from engines import Reduced, euler_matrix, euler_rates, quaternion
 from package_files import included, mjcf_files, urdf_files
 
 FILES = {**urdf_files(), **mjcf_files()}
@@ -148,7 +151,7 @@ def test_read_again_they_are_the_same(name: str) -> None:
 
 
 @pytest.mark.deep
-@pytest.mark.parametrize("name", catalogue.names())
+@pytest.mark.parametrize("name", CHAINS)
 def test_pinocchio_has_the_same_numbers_of_all_shipped_parts(name: str, tmp_path: Path) -> None:
     part = bare(name)
     assert worst_in_pinocchio(urdf_of(part), at_world(part), list(part.coordinates), tmp_path / "a.urdf") < 1e-12
@@ -238,3 +241,34 @@ def test_names_and_titles_cannot_leave_their_places() -> None:
     names = [child.attrib["name"] for child in root if child.tag == "link"]
     assert len(names) == len(set(names))
     assert import_file(data).report is not None
+
+
+@pytest.mark.parametrize("seed", seeds([7], 30))
+def test_floating_joints_come_back_as_such_and_balls_as_yaw_pitch_roll(seed: int) -> None:
+    """With v = T q' of the angles, the metric read again is T^T g T, and gravity T^T Q."""
+    definition, rng = random_balls(seed)
+    for body in definition["bodies"]:
+        body["joint"].pop("armature", None)
+    part = derive(Definition.read(definition))
+    data = urdf_of(part)
+    floating = {f"{body['name']}_floating" for body in definition["bodies"] if body["joint"]["type"] == "floating"}
+    assert {joint.get("name") for joint in Tree.fromstring(data).iterfind("joint[@type='floating']")} == floating  # noqa: S314 -- our own
+    found = import_file(data, Options("none", rotations="quaternions"))
+    model, again = at_world(part), at_world(derive(Definition.read(found.definition)))
+    q, slope, angles = random_position(rng, model), np.eye(model.dof), {}
+    for ball in (each for each in model.balls if len(each["positions"]) == 4):
+        yaw, pitch, roll = rng.uniform(-1.2, 1.2, 3)
+        a, first = model.coordinates.index(ball["velocities"][0]), model.positions.index(ball["positions"][0])
+        slope[a : a + 3, a : a + 3] = euler_rates(pitch, roll, 0, 0)[0]
+        q[first : first + 4] = quaternion(euler_matrix(yaw, pitch, roll))
+        angles |= dict(zip(ball["positions"], ([yaw], [pitch], [roll], []), strict=True))
+    there = [x for name, value in zip(model.positions, q, strict=True) for x in angles.get(name, [value])]
+    ours, theirs = (evaluate(each, ["metric", "gravity"], at) for each, at in ((model, q), (again, there)))
+    np.testing.assert_allclose(
+        theirs["metric"], slope.T @ ours["metric"] @ slope, rtol=0, atol=1e-12 * ours["metric"].max()
+    )
+    np.testing.assert_allclose(theirs["gravity"], slope.T @ ours["gravity"], rtol=0, atol=1e-12 * ours["metric"].max())
+    damped = [
+        body["name"] for body in definition["bodies"] if "velocities" in body["joint"] and "damping" in body["joint"]
+    ]
+    assert data.count(b"<!-- the damping of the joint of") == len(damped)

@@ -13,8 +13,6 @@ from random_trees import Plain
 
 from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue
 from substructures.analysis.closed.loops import loop_state
-from substructures.analysis.control.adjoint import adjoint_equations
-from substructures.analysis.control.problem import Cost
 from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.perturbation import state_space
@@ -104,7 +102,6 @@ def refused() -> list[tuple[str, Callable[[Model], Any]]]:
         ("evaluate it", lambda m: derived(m, FD)),
         ("linearisations", lambda m: derived(m, f"{FD}_derivative")),
         ("independent coordinates", curvature),
-        ("state space", lambda m: adjoint_equations(m, ["tau.x.crank"], Cost(running="tau.x.crank^2"))),
         ("perturbation", state_space),
         ("first integrals", routh),
         ("simulations", lambda m: variational(m, [])),

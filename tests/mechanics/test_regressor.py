@@ -10,6 +10,7 @@ from typing import Any
 import independent
 import numpy as np
 import pytest
+from ball_trees import random_position
 from catalogue_entries import all_entries, shipped_part
 from in_depth import seeds
 from random_cuts import all_cuts, cut_tree
@@ -48,8 +49,10 @@ def inverse_dynamics(spec: TreeSpec, parts: dict[str, Part], states: Plain, arma
 
 def check(spec: TreeSpec, parts: dict[str, Part], armature: Any) -> RegressorModel:
     Y = regressor(spec, parts)
-    n = len(Y.coordinates)
-    states = random_states(np.random.default_rng(n), N, n)
+    n, rng, model = len(Y.coordinates), np.random.default_rng(len(Y.coordinates)), couple(spec, parts)
+    states = random_states(rng, N, n)
+    if model.balls:
+        states["q"] = np.array([random_position(rng, model) for _ in range(N)])
     expected = inverse_dynamics(spec, parts, states, armature)
     found = Y.evaluate(**states)
     assert found["regressor"].shape == (N, n, len(Y.names))

@@ -115,6 +115,10 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
         lambda: adjoint.adjoint_equations(model(), CONTROLS, Cost("tau.x.x^2*y.x'", "x.y^2*y.y'*x.l"), ["x.l"]),
         "adjoint_q",
     ),
+    "adjoint of closed loops": (
+        lambda: adjoint.adjoint_equations(model(closed=True), CONTROLS, Cost("tau.x.x^2*y.x'", "y.y'*x.l"), ["x.l"]),
+        "adjoint_qd",
+    ),
     "velocity equations": (
         lambda: quasi_velocities.quasi_velocity_equations(
             model(), CONSTRAINTS, velocities={"v": "cos(x.y)*x.x' + x.y'", "w": "y.y'"}

@@ -33,8 +33,8 @@ FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {
     "curvatures": (curvature_values, {"model", "limit", "engine", "formulas"}),
     "cost-gradients": (cost_gradient, {"model"}),
     "optimal-controls": (optimal_control, {"model", "progress"}),
-    "excitations": (excitation, {"base"}),
-    "identifications": (identify, {"base", "model"}),
+    "excitations": (excitation, {"base", "closed"}),
+    "identifications": (identify, {"base", "model", "closed"}),
 }
 #: fields that say what base parameters are found from, what is known of the model, and where the motion stands
 OF_BASE = {"log", "drives", "known", "consistent", "prior_deviation"}

@@ -122,10 +122,69 @@ def test_the_linearised_satellite(satellite: TestClient) -> None:
     assert len(space["state"]) == 14
 
 
+def test_it_is_drawn_at_rest_and_at_any_state(satellite: TestClient) -> None:
+    scene = satellite.get("/v1/trees/satellite/scene").json()
+    assert scene["positions"] == POSITIONS
+    assert scene["poses"] == {"home": [0, 0, 0, 1, 0, 0, 0, 0]}
+    assert len({shape.text for shape in (drawn(satellite, q) for q in (None, "0,0,0,1,0,0,0,0"))}) == 1
+    assert drawn(satellite, "1 m,2,3,0.6,0.8,0,0,30 deg").text != drawn(satellite, None).text
+    part = satellite.get("/v1/trees/satellite").json()["instances"][0]
+    assert part["name"] == "s"
+    for q, told in (("0,0,0,0,0,0,0", "expected 8"), ("0,0,0,1 m,0,0,0,0", "'1 m'"), ("0,0,0,1,1,0,0,0", "norm")):
+        answer = satellite.get(f"/v1/trees/satellite/picture?q={q}")
+        assert (answer.status_code, told in answer.text) == (422, True), answer.text
+
+
+def drawn(client: TestClient, q: str | None) -> Any:
+    answer = client.get("/v1/trees/satellite/picture", params={} if q is None else {"q": q})
+    assert answer.status_code == 200, answer.text
+    return answer
+
+
+def test_its_part_is_drawn_too_and_imports_are_previewed(client: TestClient) -> None:
+    made = client.post("/v1/substructures", json=TREE["instances"][0]["definition"])
+    assert made.status_code == 201, made.text
+    scene = client.get("/v1/substructures/on-a-wheel@1/scene").json()
+    assert scene["positions"][3:5] == ["q_hull_w", "q_hull_x"]
+    assert client.get("/v1/substructures/on-a-wheel@1/picture?q=0,0,0,0,1,0,0,0.5").status_code == 200
+    file = '<mujoco><worldbody><body><freejoint name="f"/><geom size=".1"/></body></worldbody></mujoco>'
+    told = client.post(
+        "/v1/imports?rotations=quaternions&preview=true", content=file, headers={"Content-Type": "text/xml"}
+    )
+    assert told.json()["preview"]["dof"] == 6, told.text
+
+
+def test_it_is_published_and_mounted_again(satellite: TestClient) -> None:
+    made = satellite.post("/v1/trees/satellite/publish", json={"name": "as-a-part"})
+    assert made.status_code == 201, made.text
+    tree = {**TREE, "name": "again", "instances": [{"name": "x", "substructure": "as-a-part"}]}
+    again = satellite.post("/v1/trees", json=tree)
+    assert again.json()["balls"][0]["positions"] == [f"x.{name.replace('.', '_')}" for name in POSITIONS[:-1]], (
+        again.text
+    )
+    body = {"quantities": ["bias"], "q": [1, 2, 3, 0.6, 0.8, 0, 0, 0.5], "qd": [1, 2, 3, 1, 2, 3, 4]}
+    ours, theirs = (
+        satellite.post(f"/v1/trees/{name}/evaluations", json=body).json() for name in ("satellite", "again")
+    )
+    np.testing.assert_allclose(theirs["bias"], ours["bias"], rtol=1e-12)
+
+
+def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
+    file = satellite.get("/v1/trees/satellite/export?target=urdf&bind=s.J:0")
+    assert file.status_code == 200, file.text
+    assert '<joint name="s.hull_floating" type="floating">' in file.text
+    query = "name=again&parameters=none&rotations=quaternions&store=true"
+    made = satellite.post(f"/v1/imports?{query}", content=file.content, headers={"Content-Type": "application/xml"})
+    assert made.status_code == 201, made.text
+    rates = made.json()["names"]["velocities s.hull_floating"].split(", ")
+    assert rates == [f"s_hull_floating_{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
+    whole = {"name": "whole", "instances": [{"name": "x", "substructure": "again"}]}
+    assert satellite.post("/v1/trees", json=whole).json()["balls"][0]["positions"][3] == "x.s_hull_floating_qw"
+
+
 @pytest.mark.parametrize(
     ("path", "body"),
     [
-        ("publish", {}),
         ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
         ("steady-motions", {"rates": {}, "count": 1}),
         ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
@@ -135,5 +194,3 @@ def test_what_refuses_it_says_why(satellite: TestClient, path: str, body: dict[s
     answer = satellite.post(f"/v1/trees/satellite/{path}", json=body)
     assert answer.status_code == 422, answer.text
     assert answer.json()["errors"][0]["code"] == "has-balls", answer.text
-    for name in ("scene", "picture", "urdf"):
-        assert satellite.get(f"/v1/trees/satellite/{name}").status_code in (404, 422), name

@@ -174,7 +174,7 @@ def test_best_parameters(tied: TestClient) -> None:
 REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("periodic-orbits", {"q": [0, 0, 0], "period": 1}),
     ("cost-gradients", {"q": [0, 0, 0], "cost": {"running": "t"}, "horizon": 1}),
-    ("frequency-responses", {"q": [0, 0, 0]}),
+    ("regulators", {"q": [0, 0, 0]}),
     ("loop-states", {"q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["forward_dynamics"], "q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["reactions"], "q": [0, 0, 0], "qdd": [0, 0, 0]}),

@@ -24,6 +24,7 @@ from substructures.interchange.files.archive import PACKAGE, Beside, main_of
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.kinds import KINDS
 from substructures.interchange.sides import sides
+from substructures.interchange.turning import Rotations
 
 #: an included file or mesh is read when it is in the folder of the file, or below it
 _MOST_BYTES = 64 * 2**20
@@ -97,6 +98,7 @@ def read(
     parameters: Annotated[Parameters, typer.Option(help="What becomes a parameter.")] = "inertia",
     fixed: Annotated[Fixed, typer.Option(help="What links on fixed joints become.")] = "ports",
     base: Annotated[Base, typer.Option(help="Whether the root moves.")] = "fixed",
+    rotations: Annotated[Rotations, typer.Option(help="With what ball and free joints turn.")] = "angles",
     cut: Annotated[str, typer.Option(metavar="LINK,...", help="Links that begin parts of their own, in a tree.")] = "",
     license: Annotated[str, typer.Option(help="Licence of the file.")] = "",  # noqa: A002 -- name of the option
     out: Annotated[
@@ -106,7 +108,7 @@ def read(
     json: Annotated[bool, typer.Option("--json", help="Print JSON: also the report, and what was stored.")] = False,
 ) -> int:
     """Read a robot file as a definition, with a report of what became of everything in it."""
-    chosen = Options(parameters, fixed, base)
+    chosen = Options(parameters, fixed, base, rotations)
     links = [text.strip() for text in cut.split(",") if text.strip()]
     found = read_robot_file(file, chosen, kind=kind, name=name, license_of_file=license, cut=links)
     document = found.definition if found.tree is None else found.tree

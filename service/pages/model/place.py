@@ -55,31 +55,8 @@ def view(shown: Shown, picture: str) -> Html:
 
 def sliders(shown: Shown) -> Html:
     """The state, as a form that works without scripts, too."""
-    vector = shown.interface.vectors["q"]
-    rows = []
-    for k, (name, unit, (low, high)) in enumerate(zip(vector.names, vector.units, shown.ranges, strict=True)):
-        at = repr(shown.pose[k] if shown.pose else 0.0)
-        span = {"min": repr(low), "max": repr(high), "step": repr((high - low) / STEPS)}
-        rows.append(
-            tag(
-                "div",
-                tag("label", name, for_=f"q{k}", title=name),
-                tag("input", type="range", id=f"q{k}", value=at, data_q=k, **span),
-                tag(
-                    "input",
-                    type="number",
-                    name="q",
-                    value=at,
-                    step="any",
-                    data_number=k,
-                    aria_label=f"{name} in {unit}",
-                ),
-                tag("span", unit, class_="quiet unit"),
-                tag("input", type="number", value="0", step="any", data_rate=k, aria_label=f"rate of {name}"),
-                tag("span", f"{unit}/s", class_="quiet unit"),
-                class_="slider",
-            )
-        )
+    values = shown.chart.values(shown.pose or shown.chart.rest)
+    rows = [_slider(shown, k, name, values[k]) for k, name in enumerate(shown.chart.labels)]
     random = tag("button", "random", type="button", id="random", hidden="hidden")
     send = tag("button", "Numbers in this pose", type="submit", id="send")
     told = tag(
@@ -87,6 +64,23 @@ def sliders(shown: Shown) -> Html:
     )
     return tag(
         "form", rows, tag("p", random, send), told if rows else None, method="get", action=shown.path, id="sliders"
+    )
+
+
+def _slider(shown: Shown, k: int, name: str, value: float) -> Html:
+    """A row of the state: a slider with its number, and its rate."""
+    unit, (low, high), at = {"P": "m", "R": "rad"}[shown.joints[k]], shown.ranges[k], repr(value)
+    span = {"min": repr(low), "max": repr(high), "step": repr((high - low) / STEPS)}
+    told = name if name in shown.chart.positions else f"rotation vector, with the rate {name}"
+    return tag(
+        "div",
+        tag("label", name, for_=f"q{k}", title=told),
+        tag("input", type="range", id=f"q{k}", value=at, data_q=k, **span),
+        tag("input", type="number", name="q", value=at, step="any", data_number=k, aria_label=f"{name} in {unit}"),
+        tag("span", unit, class_="quiet unit"),
+        tag("input", type="number", value="0", step="any", data_rate=k, aria_label=f"rate of {shown.coordinates[k]}"),
+        tag("span", f"{unit}/s", class_="quiet unit"),
+        class_="slider",
     )
 
 
@@ -126,7 +120,7 @@ def requests(shown: Shown, address: str) -> Html:
 
 
 def _numbers(shown: Shown, address: str) -> dict[str, str]:
-    pose = list(shown.pose or (0.0,) * len(shown.coordinates))
+    pose = list(shown.pose or shown.chart.rest)
     body = orjson.dumps({"q": pose, "quantities": ["metric"]}).decode()
     url = f"{address}/v1/trees/{shown.reference}/evaluations"
     return {

@@ -20,6 +20,7 @@ from service.pages.details import part_page, tree_page
 from service.pages.html import html
 from service.pages.layout import answer, document
 from service.pages.model.assets import scripted, with_scripts
+from service.pages.model.chart import Chart
 from service.pages.model.grid import posed
 from service.pages.model.motion import motion_page
 from service.pages.model.place import requests, view
@@ -48,7 +49,8 @@ from service.queries import aliases, uses, versions
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
-from substructures.export import interface_of_model, interface_of_part
+from substructures.export import Interface, interface_of_model, interface_of_part
+from substructures.mechanics.state_names import ball_rows
 from substructures.part.outputs import with_own_inertia
 from substructures.part.part import Part
 from substructures.tree.model import Model
@@ -189,22 +191,25 @@ def _address(request: Request) -> str:
 
 def of_part(version: Version, part: Part, pose: str | None, q: list[str] | None) -> Shown:
     """A part as it stands alone."""
+    joints = [joint.coordinate for joint in part.topology.joints]
+    interface, chart = interface_of_part(part), Chart(part.coordinates, ball_rows(part.topology.balls, joints))
     return Shown(
         "substructures",
         f"{version.name}@{version.version}",
         (version.digest, version.program),
         part.joints,
-        interface_of_part(part),
+        interface,
         part.program.outputs,
         lambda names: with_own_inertia(part, part.program.select(list(names))),
-        _pose(pose, q, part.joints),
+        chart,
+        _pose(pose, q, chart, interface, part.joints),
     )
 
 
 def of_tree(found: Tree, model: Model, pose: str | None, q: list[str] | None) -> Shown:
     """A revision of a tree."""
     reference, program = f"{found.name}@{found.revision}", model.program
-    interface = interface_of_model(model)
+    interface, chart = interface_of_model(model), Chart(model.coordinates, model.balls)
     return Shown(
         "trees",
         reference,
@@ -213,7 +218,8 @@ def of_tree(found: Tree, model: Model, pose: str | None, q: list[str] | None) ->
         interface,
         program.outputs,
         lambda _: program,
-        _pose(pose, q, model.joints),
+        chart,
+        _pose(pose, q, chart, interface, model.joints),
     )
 
 
@@ -233,8 +239,12 @@ def _found(
         return shown, lambda: modules.of_version(store, version)
 
 
-def _pose(pose: str | None, q: list[str] | None, joints: str) -> tuple[float, ...]:
-    return pictures.read_pose(",".join(q) if q else pose, joints) or ()
+def _pose(pose: str | None, q: list[str] | None, chart: Chart, interface: Interface, joints: str) -> tuple[float, ...]:
+    """The state that is asked for, by where sliders are or as it is; none for that at home."""
+    if q:
+        values = pictures.read_pose(",".join(q), [{"P": "m", "R": "rad"}[kind] for kind in joints])
+        return chart.state(values or ())
+    return pictures.read_pose(pose, interface.vectors["q"].units) or ()
 
 
 def _answer(request: Request, page: bytes, script: str = "main.js") -> Response:

@@ -27,11 +27,6 @@ Text = Annotated[str, Query(max_length=50_000)]
 Poses = Annotated[str | None, Query(max_length=50_000)]
 Numbers = Annotated[list[str] | None, Query(alias="q", max_length=2_000)]
 Slice = Annotated[int, Query(alias="slice", ge=0, le=100_000)]
-#: in place of sliders where positions are quaternions
-NO_POSES = (
-    "Joints of this model have quaternions and no angles: there is no picture of it here. Its formulas and numbers are "
-    "in the interface."
-)
 Subject = Callable[[], modules.Subject]
 
 
@@ -56,8 +51,6 @@ def first_screen(store: Store, shown: Shown, subject: Subject, worker: Worker, a
     :func:`entry_of`."""
     if not shown.coordinates:
         return Html()
-    if len(shown.coordinates) != len(shown.interface.vectors["qd"]):
-        return tag("p", NO_POSES)
     quantity = chosen_tab(shown, (read_entry(asked.entry) or (asked.tab,))[0])
     has_numbers = bool(asked.q) and quantity != INTEGRALS
 

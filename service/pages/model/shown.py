@@ -8,6 +8,7 @@ from functools import cached_property
 from math import isfinite, pi
 from typing import Any
 
+from service.pages.model.chart import Chart
 from substructures.array import Array
 from substructures.errors import MissingValue
 from substructures.export import Interface
@@ -42,7 +43,8 @@ TITLES = {
 @dataclass(frozen=True)
 class Shown:
     """``kind``: ``trees`` or ``substructures``; ``digests``: of what it is and of its formulas; ``outputs``: of its
-    program by name; ``program``: makes the one that is evaluated; ``pose``: of ``?pose=``, empty where none was given.
+    program by name; ``program``: makes the one that is evaluated; ``chart``: what its sliders are of states; ``pose``:
+    the state of ``?pose=``, empty where none was given.
     """
 
     kind: str
@@ -52,6 +54,7 @@ class Shown:
     interface: Interface
     outputs: Mapping[str, Output]
     program: Callable[[Sequence[str]], Program]
+    chart: Chart
     pose: tuple[float, ...] = ()
 
     @property
@@ -62,7 +65,7 @@ class Shown:
     @property
     def coordinates(self) -> tuple[str, ...]:
         """Their names."""
-        return self.interface.vectors["q"].names
+        return self.chart.coordinates
 
     @property
     def tabs(self) -> tuple[str, ...]:
@@ -75,7 +78,7 @@ class Shown:
     def values(self) -> dict[str, float]:
         """Values of all symbols: the pose, zeros, defaults; parameters without default are left out."""
         vectors = self.interface.vectors
-        found = dict(zip(self.coordinates, self.pose or (0.0,) * len(self.coordinates), strict=True))
+        found = dict(zip(self.chart.positions, self.pose or self.chart.rest, strict=True))
         found |= dict.fromkeys([*vectors["qd"].names, *vectors["qdd"].names, "t"], 0.0)
         for symbol in ("u", "p"):
             vector = vectors[symbol]
@@ -136,4 +139,5 @@ def read_entry(text: str) -> tuple[str, tuple[int, ...]] | None:
 def described(shown: Shown) -> dict[str, Any]:
     """What the scripts of the page begin with."""
     low_high = [[low, high] for low, high in shown.ranges]
-    return {"kind": shown.kind, "reference": shown.reference, "ranges": low_high, "joints": shown.joints}
+    told = {"kind": shown.kind, "reference": shown.reference, "ranges": low_high, "joints": shown.joints}
+    return told | {"names": shown.chart.labels, "turns": shown.chart.turns}

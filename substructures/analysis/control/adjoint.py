@@ -9,8 +9,14 @@ ID(q, q', q'', u) = g q'' + Gamma q' q' - Q = 0 and the solution mu of g mu = la
 
     lambda_qd . dq''/dz = -mu . dID/dz        dH/dz = d/dz (lambda_0 l - mu . ID + lambda_q . q')
 
-for every z, at fixed q'' and mu. One walk in reverse mode over ID and l gives the derivatives by all states, controls
-and parameters together, for a small multiple of the operations of inverse dynamics.
+for every z, at fixed q'' and mu. Closures phi(q) = 0 with G = dphi/dq and c = G' q' act by multipliers rho, and
+
+    g q'' + Gamma q' q' - Q - G^T rho = 0,  G q'' + c = 0         g mu + G^T nu = lambda_qd,  G mu = 0
+    lambda_qd . dq''/dz = -mu . d(ID - G^T rho)/dz - nu . d(G q'' + c)/dz
+
+so that the gradient is that of motions on the closures for states that stay there. One walk in reverse mode over ID and
+l gives the derivatives by all states, controls and parameters together, for a small multiple of the operations of
+inverse dynamics.
 
 ===================  =========  ======================================================================
 output               shape      meaning
@@ -29,8 +35,11 @@ terminal_qd          n          dphi/dq'
 terminal_parameters  r          dphi/dp
 ===================  =========  ======================================================================
 
+With closures also ``closure.jacobian`` G (k, n) and ``closure.acceleration`` c (k,).
+
 Symbols beside those of the model: accelerations ``x.q1''``, costates ``lambda.x.q1`` (of q) and ``lambda.x.q1'`` (of
-q'), ``mu.x.q1``, and ``lambda.0``, which is 1 except where the end alone is judged.
+q'), ``mu.x.q1``, of each row of closures ``rho.loop.x`` and ``nu.loop.x``, and ``lambda.0``, which is 1 except where
+the end alone is judged.
 """
 
 from __future__ import annotations
@@ -39,21 +48,25 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.analysis.arguments import exact
-from substructures.analysis.control.problem import LINEAR, Cost, declared, read_costs
+from substructures.analysis.control.problem import Cost, declared, read_costs
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import require_known
-from substructures.certificate.derived.perturbed import adjoint
+from substructures.certificate.derived.adjoint import adjoint
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
+from substructures.quantities.certificate import DYNAMICS as NEEDS
 from substructures.quantities.certificate import certified
 from substructures.quantities.formulas import derived
-from substructures.tree.model import Model, require_open
+from substructures.tree.document import require_undriven
+from substructures.tree.model import Model
 
 ID = "inverse_dynamics"
 WEIGHT = "lambda.0"
+#: G and c of closures
+HOLDING = ("closure.jacobian", "closure.acceleration")
 #: among what is varied it stands for the horizon, on which all times but the first depend
 HORIZON = "t"
 MOTION = ("metric", "force", "running_cost")
@@ -63,12 +76,13 @@ TERMINAL = ("terminal_cost", "terminal_q", "terminal_qd", "terminal_parameters")
 
 @dataclass(frozen=True, repr=False)
 class AdjointEquations:
-    """The program of the table above, and the names of what it is written in."""
+    """The program of the table above, and the names of what it is written in; ``rows``: of closures, closure.row."""
 
     program: Program
     coordinates: tuple[str, ...]
     controls: tuple[str, ...]
     varied: tuple[str, ...]
+    rows: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         sizes = f"n={len(self.coordinates)}, controls={len(self.controls)}, varied={len(self.varied)}"
@@ -78,6 +92,11 @@ class AdjointEquations:
         """The symbols of coordinates (velocities: primes ', accelerations: ''), or of costates by their prefix."""
         return [f"{prefix}{name}{primes}" for name in self.coordinates]
 
+    @property
+    def motion(self) -> tuple[str, ...]:
+        """The outputs that accelerations and the cost follow from."""
+        return (*MOTION, *HOLDING) if self.rows else MOTION
+
 
 def adjoint_equations(
     model: Model, controls: Sequence[str], cost: Cost, varied: Sequence[str] = ()
@@ -85,60 +104,82 @@ def adjoint_equations(
     """The adjoint equations of a model for controls (names of inputs), a cost, and ``varied`` parameters.
 
     Raises InvalidInput for names that are not known (``/controls/i``, ``/varied/i``), for faults in the cost
-    (``/cost/running``), and for closures. HORIZON among ``varied`` gives the derivatives by time there.
+    (``/cost/running``), and for driven coordinates beside closures. HORIZON among ``varied`` gives the derivatives by
+    time there.
     """
     require_known("controls", "input", controls, inputs_of(model))
     require_known("varied", "parameter", varied, {*model.parameters, HORIZON})
-    require_open(model.closures, LINEAR)
+    require_undriven(model.driven if model.closures else (), "take simulations")
     scope = Scope(Graph())
     source = derived(model, ID)
     declared(model, scope, {s.name: s for s in (*source.symbols, *model.program.symbols)})
     running, terminal = read_costs(model, cost, scope)
-    rows, metric, force = _equations(model, source, scope.graph)
-    costates = [_declare(scope, f"lambda.{name}") for name in model.coordinates]
-    speeds = [_declare(scope, f"lambda.{name}'") for name in model.coordinates]
-    mu = [_declare(scope, f"mu.{name}") for name in model.coordinates]
-    weight = _declare(scope, WEIGHT)
+    needed, metric, force = _equations(model, source, scope.graph)
+    own = _Multipliers.of(model, scope)
+    held, opened, holding = _closed(model, scope, own.rho)
     n, rates = model.dof, [f"{name}'" for name in model.coordinates]
     names = [*model.coordinates, *rates, *controls, *varied]
     moving = [*model.coordinates, *rates, *varied]
-    # d(lambda_0 l - mu . ID)/dz for every z of q, q', u, p in one walk
-    slope = pullback([running, *rows], [weight, *(-x for x in mu)], names)
+    missing = [x - y for x, y in zip(needed, held, strict=True)] if own.labels else needed
+    # d(lambda_0 l - mu . (ID - G^T rho) - nu . (G q'' + c))/dz for every z of q, q', u, p in one walk
+    slope = pullback([running, *missing, *opened], [own.weight, *(-x for x in (*own.mu, *own.nu))], names)
     # dphi/d(q, q', p)
     end = pullback([terminal], [scope.graph.one], moving)
     accelerations = (scope.names[f"{name}''"] for name in model.coordinates)
     rate = [scope.names[name] for name in rates]
     # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
-    pairs = zip([*costates, *speeds], [*rate, *accelerations], strict=True)
+    pairs = zip(own.costates, [*rate, *accelerations], strict=True)
     outputs = {
         "metric": metric,
         "force": force,
         "running_cost": Formulas((), {(): running}),
-        "hamiltonian": Formulas((), {(): weight * running + scope.graph.sum(x * y for x, y in pairs)}),
+        "hamiltonian": Formulas((), {(): own.weight * running + scope.graph.sum(x * y for x, y in pairs)}),
         # -dH/dq, and -dH/dq' = -(lambda_q + slope)
         "adjoint_q": array((n,), lambda a: -slope[a]),
-        "adjoint_qd": array((n,), lambda a: -(costates[a] + slope[n + a])),
+        "adjoint_qd": array((n,), lambda a: -(own.costates[a] + slope[n + a])),
         "control_gradient": array((len(controls),), lambda i: slope[2 * n + i]),
         "parameter_gradient": array((len(varied),), lambda i: slope[2 * n + len(controls) + i]),
         "terminal_cost": Formulas((), {(): terminal}),
         "terminal_q": array((n,), lambda a: end[a]),
         "terminal_qd": array((n,), lambda a: end[n + a]),
         "terminal_parameters": array((len(varied),), lambda i: end[2 * n + i]),
-    }
+    } | holding
     texts = {name: exact(getattr(cost, name), f"/cost/{name}") for name in ("running", "terminal")}
-    own = [*(f"{prefix}{name}" for prefix in ("lambda.", "mu.") for name in (*model.coordinates, *rates)), WEIGHT]
     result = certified(
         program(scope.graph, outputs, scope.symbols),
         model,
-        adjoint(controls, texts, varied),
+        adjoint(controls, texts, varied, own.labels),
         "adjoint equations",
-        more=dict.fromkeys(own, "input"),
+        needs=(*NEEDS, HOLDING[1]) if own.labels else NEEDS,
+        more=dict.fromkeys(own.names, "input"),
     )
-    return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied))
+    return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied), own.labels)
 
 
-def _declare(scope: Scope, name: str) -> Expr:
-    return scope.declare(name, "input")
+@dataclass(frozen=True)
+class _Multipliers:
+    """Symbols of the adjoint: costates of q and q' (2 n), mu (n), rho and nu of the rows ``labels`` of closures, and
+    lambda_0.
+    """
+
+    costates: list[Expr]
+    mu: list[Expr]
+    rho: list[Expr]
+    nu: list[Expr]
+    weight: Expr
+    labels: tuple[str, ...]
+    names: tuple[str, ...]
+
+    @classmethod
+    def of(cls, model: Model, scope: Scope) -> _Multipliers:
+        """Declared in the scope."""
+        labels = tuple(f"{closure.name}.{row}" for closure in model.closures for row in closure.rows)
+        states = [f"{name}{prime}" for prime in ("", "'") for name in model.coordinates]
+        groups = (("lambda", states), ("mu", model.coordinates), ("rho", labels), ("nu", labels))
+        names = [[f"{prefix}.{name}" for name in some] for prefix, some in groups]
+        costates, mu, rho, nu = ([scope.declare(name, "input") for name in some] for some in names)
+        told = (*(name for some in names for name in some), WEIGHT)
+        return cls(costates, mu, rho, nu, scope.declare(WEIGHT, "input"), labels, told)
 
 
 def _equations(model: Model, source: Program, graph: Graph) -> tuple[list[Expr], Formulas, Formulas]:
@@ -149,3 +190,16 @@ def _equations(model: Model, source: Program, graph: Graph) -> tuple[list[Expr],
     force: dict[tuple[int, ...], Expr | int] = {}
     force |= {(a,): own["forces"].entries.get((a,), zero) - own["bias"].entries.get((a,), zero) for a in range(n)}
     return [zero + found.get((a,), zero) for a in range(n)], own["metric"], Formulas((n,), force)
+
+
+def _closed(model: Model, scope: Scope, rho: Sequence[Expr]) -> tuple[list[Expr], list[Expr], dict[str, Formulas]]:
+    """G^T rho (n,), G q'' + c (k,), and G and c; nothing without closures."""
+    if not model.closures:
+        return [], [], {}
+    graph, k = scope.graph, len(rho)
+    found = replay(model.program, graph, {}, HOLDING)
+    G, c = (found[name].entries for name in HOLDING)
+    second = [scope.names[f"{name}''"] for name in model.coordinates]
+    held = [graph.sum(G[i, a] * rho[i] for i in range(k) if (i, a) in G) for a in range(model.dof)]
+    moved = (graph.sum(G[i, a] * x for a, x in enumerate(second) if (i, a) in G) for i in range(k))
+    return held, [x + c.get((i,), graph.zero) for i, x in enumerate(moved)], {name: found[name] for name in HOLDING}

@@ -9,14 +9,15 @@ from typing import Any, Literal
 import numpy as np
 
 from substructures.analysis.arguments import positive
+from substructures.analysis.control.closed_start import start_state
 from substructures.analysis.control.problem import (
     ERROR_LIMIT,
     ControlProblem,
-    initial_state,
     per_node,
     require_solvable,
 )
-from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.control.rollout import Rollout, Slope
+from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.step_error import gradient_checks
 from substructures.analysis.given import require_known
 from substructures.analysis.motion.limits import with_limits
@@ -107,9 +108,9 @@ def _gradient(
 ) -> CostGradient:
     controls = per_node(problem, values, "values")
     # x_0 = (q, q') and dJ/dx_0 = lambda_0
-    start = initial_state(model, problem)
-    shooting = Shooting(model, problem, vary)
-    run = shooting.run(start[None], controls)
+    start = start_state(model, problem, {f"/vary/{i}": name for i, name in enumerate(vary)})
+    shooting = Shooting(model, problem, start, vary)
+    run = shooting.run(start.x[None], controls)
     # W = 1: of the cost alone, no end state
     slope = shooting.pullback(run, np.zeros((1, 1, 2 * model.dof)), np.ones(1))
     judged = replace(trajectory(shooting, run, slope), checks=gradient_checks(shooting, run, slope, limit))

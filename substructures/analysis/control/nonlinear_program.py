@@ -11,10 +11,12 @@ from __future__ import annotations
 import numpy as np
 
 from substructures.analysis.control.adjoint import HORIZON
+from substructures.analysis.control.closed_start import independent_demands, start_state
 from substructures.analysis.control.demands import Demands, bounds_of, demanded, ranges_of, segments_of
 from substructures.analysis.control.path_limits import PathLimits
-from substructures.analysis.control.problem import ControlProblem, initial_state, per_node
-from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.control.problem import ControlProblem, per_node
+from substructures.analysis.control.rollout import Rollout, Slope
+from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.warm_start import WarmStart, warm_start
 from substructures.analysis.given import require_known
 from substructures.array import Array
@@ -41,8 +43,10 @@ class ShootingProgram:
         if not (problem.controls or self.varied):
             message = "nothing is unknown: name controls, 'free_parameters', or a 'free_horizon'"
             raise InvalidArgument.at("/controls", "too-short", message)
-        self.demands = [*demanded(model, wanted.end.q, "q", 0), *demanded(model, wanted.end.qd, "qd", model.dof)]
-        self.first = initial_state(model, problem)
+        demands = [*demanded(model, wanted.end.q, "q", 0), *demanded(model, wanted.end.qd, "qd", model.dof)]
+        named = {f"/free_parameters/{escape(name)}": name for name in wanted.free_parameters}
+        start = start_state(model, problem, named)
+        self.first, self.demands = start.x, independent_demands(start, demands)
         self.bounds = bounds_of(problem.controls, wanted)
         self.ranges = ranges_of(wanted)
         self.m = len(problem.controls)
@@ -55,7 +59,7 @@ class ShootingProgram:
                 f"{size:,} variables and conditions; the limit is {MAX_VARIABLES:,}: take fewer intervals or segments"
             )
             raise InvalidArgument.at("/intervals", "too-large", message)
-        self.shooting = Shooting(model, problem, self.varied, self.S)
+        self.shooting = Shooting(model, problem, start, self.varied, self.S)
         self.limits_on_path = PathLimits(model, wanted.path, problem.controls, self.varied) if wanted.path else None
         self.earlier = None if wanted.warm_start is None else warm_start(wanted.warm_start, model.coordinates)
         self._at: tuple[bytes, Rollout, Slope] | None = None

@@ -33,7 +33,8 @@ from substructures.analysis.control.cost_gradient import trajectory
 from substructures.analysis.control.demands import Demands
 from substructures.analysis.control.nonlinear_program import BEYOND, ShootingProgram
 from substructures.analysis.control.problem import ERROR_LIMIT, ControlProblem, require_solvable
-from substructures.analysis.control.shooting import Rollout, Shooting
+from substructures.analysis.control.rollout import Rollout
+from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.step_error import motion_checks
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory

@@ -25,9 +25,8 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
 from substructures.loads.scope import Scope
 from substructures.quantities.measured import numeric
-from substructures.quantities.numbers.states import read_states
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 MAX_INTERVALS = 10_000
 MAX_STEPS = 10_000
@@ -37,8 +36,6 @@ MAX_NUMBERS = 50_000_000
 #: relative error by the size of steps that a right result may have
 ERROR_LIMIT = 1e-3
 
-#: what takes closures
-LINEAR = "use the state space of linearisations, and simulations to try controls"
 #: how a control runs between its nodes
 Hold = Literal["constant", "linear"]
 HOLDS = ("constant", "linear")
@@ -100,9 +97,8 @@ class ControlProblem:
 
 
 def require_solvable(model: Model, problem: ControlProblem) -> None:
-    """Raises InvalidInput for names that the model does not have, too many steps, and closures."""
+    """Raises InvalidInput for names that the model does not have, and too many steps."""
     require_untied(model, "optimal-controls")
-    require_open(model.closures, LINEAR)
     known, controls = inputs_of(model), problem.controls
     faults = [
         Fault(f"/controls/{i}", "unknown-input", f"unknown input '{str(name)[:80]}'{among(name, known, i)}")
@@ -122,12 +118,6 @@ def require_solvable(model: Model, problem: ControlProblem) -> None:
         faults.append(Fault("/steps", "too-many-steps", message))
     if faults:
         raise InvalidArgument(faults)
-
-
-def initial_state(model: Model, problem: ControlProblem) -> Array:
-    """(q, q') at the start, (2 n,). Raises InvalidInput."""
-    states = read_states(model, {"q": problem.q, "qd": problem.qd}, 1)
-    return np.concatenate([states.q[0], states.qd[0]])
 
 
 def per_node(problem: ControlProblem, given: Mapping[str, Any], field: str) -> Array:

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from copy import copy
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -23,18 +23,19 @@ import numpy as np
 from substructures.analysis.control.adjoint import (
     ADJOINT,
     HORIZON,
-    MOTION,
     TERMINAL,
     WEIGHT,
     AdjointEquations,
     adjoint_equations,
 )
+from substructures.analysis.control.closed_start import StartState
 from substructures.analysis.control.problem import ControlProblem
+from substructures.analysis.control.rollout import Rollout, Slope
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import MissingValue
-from substructures.mechanics.accelerations import cholesky_solve
+from substructures.mechanics.accelerations import saddle_solve
 from substructures.quantities.numbers.states import read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
@@ -43,48 +44,8 @@ NODES = (0.0, 0.5, 0.5, 1.0)
 WEIGHTS = (1 / 6, 1 / 3, 1 / 3, 1 / 6)
 
 
-@dataclass(frozen=True)
-class Rollout:
-    """All segments S after J steps each. ``stages`` (J, 4, S, 2 n): states inside the steps, ``accelerations``
-    (J, 4, S, n) and ``metrics`` (J, 4, S, n, n) there; ``end`` (S, 2 n); ``cost``: integral of l, plus phi at
-    the last end.
-    """
-
-    controls: Array
-    stages: Array
-    accelerations: Array
-    metrics: Array
-    end: Array
-    cost: float
-
-    @property
-    def states(self) -> Array:
-        """(q, q') before every step and at the last end, (S J + 1, 2 n)."""
-        inner = self.stages[:, 0].swapaxes(0, 1)
-        return np.concatenate([inner.reshape(-1, inner.shape[-1]), self.end[-1:]])
-
-
-@dataclass(frozen=True)
-class Slope:
-    """Derivatives of W numbers: by the ``start`` of each segment (W, S, 2 n), the ``controls`` (W, nodes, m) and what
-    is varied, ``parameters`` (W, r), which are the sum of those of all segments, ``shares`` (W, S, r); ``costates``
-    (W, J + 1, S, 2 n) before every step and at the ends; ``parts`` (W, S, intervals/S + 1, m): what each segment adds
-    to the derivatives by its nodes."""
-
-    start: Array
-    controls: Array
-    parts: Array
-    shares: Array
-    costates: Array
-
-    @property
-    def parameters(self) -> Array:
-        """By what is varied, (W, r)."""
-        return self.shares.sum(axis=1)
-
-
 class Shooting:
-    """The equations of a problem as compiled code. ``segments`` must divide ``problem.intervals``.
+    """The equations of a problem as compiled code. ``segments`` must divide ``problem.intervals``; ``start``: of it.
 
     HORIZON among ``varied`` stands for the horizon T: with h = T / steps and t_i = t_0 + s_i T, and the multipliers
     bar_i of the stages of the adjoint scheme,
@@ -94,13 +55,15 @@ class Shooting:
     Raises InvalidInput (see adjoint_equations) and MissingValue for a parameter without a value.
     """
 
-    def __init__(self, model: Model, problem: ControlProblem, varied: Sequence[str] = (), segments: int = 1) -> None:
-        self.model, self.problem, self.segments = model, problem, segments
+    def __init__(
+        self, model: Model, problem: ControlProblem, start: StartState, varied: Sequence[str] = (), segments: int = 1
+    ) -> None:
+        self.model, self.problem, self.segments, self.start = model, problem, segments, start
         self.equations = adjoint_equations(model, problem.controls, problem.cost, varied)
         self.values = _constants(model, problem, self.equations)
         source = self.equations.program
         self.free = HORIZON in varied
-        self.motion = compile_program(source, MOTION)
+        self.motion = compile_program(source, self.equations.motion)
         self.adjoint = compile_program(source, (*ADJOINT, "hamiltonian") if self.free else ADJOINT)
         self.terminal = compile_program(source, TERMINAL)
         self.hamiltonian = compile_program(source, ("hamiltonian",))
@@ -115,9 +78,9 @@ class Shooting:
 
         Where the metric is singular or the motion leaves the range of numbers the result is not finite.
         """
-        n, S, J = self.model.dof, self.segments, self.count
-        stages, accelerations = np.empty((J, 4, S, 2 * n)), np.empty((J, 4, S, n))
-        metrics, cost = np.empty((J, 4, S, n, n)), 0.0
+        n, S, J, r = self.model.dof, self.segments, self.count, len(self.start.rows)
+        stages, accelerations, cost = np.empty((J, 4, S, 2 * n)), np.empty((J, 4, S, n)), 0.0
+        metrics, held, multipliers = (np.empty((J, 4, S, *x)) for x in ((n, n), (r, n), (len(self.equations.rows),)))
         x = np.array(start, dtype=np.float64).reshape(S, 2 * n)
         with np.errstate(all="ignore"):
             for j in range(J):
@@ -126,17 +89,15 @@ class Shooting:
                     # X_i = x + h c_i x'_(i-1),  x'_i = (q', g^-1 (Q - Gamma q' q')),  x <- x + h sum b_i x'_i
                     stages[j, i] = X = x + (self.h * NODES[i]) * rate
                     found = self._motion(X, controls, j, i)
-                    metrics[j, i], accelerations[j, i] = (
-                        found["metric"],
-                        cholesky_solve(found["metric"], found["force"]),
-                    )
+                    metrics[j, i], held[j, i] = found["metric"], self._rows(found)
+                    accelerations[j, i], multipliers[j, i] = self._accelerated(found)
                     rate = np.concatenate([X[:, n:], accelerations[j, i]], axis=1)
                     total += WEIGHTS[i] * rate
                     cost += self.h * WEIGHTS[i] * float(found["running_cost"].sum())
                 x = x + self.h * total
             # + phi(x(T))
             cost += float(self._terminal(x[-1:], controls)["terminal_cost"][0])
-        return Rollout(controls, stages, accelerations, metrics, x, cost)
+        return Rollout(controls, stages, accelerations, metrics, held, multipliers, x, cost)
 
     def refined(self) -> Shooting:
         """The same problem in one piece with steps half as long; what was compiled is shared."""
@@ -187,7 +148,7 @@ class Shooting:
         inner = run.accelerations[:, 0].swapaxes(0, 1).reshape(-1, n)
         # at the end there is no stage: q'' = g^-1 (Q - Gamma q' q') once more
         found = self._motion(run.end, run.controls, self.count - 1, 3)
-        qdd = np.concatenate([inner, cholesky_solve(found["metric"], found["force"])[-1:]])
+        qdd = np.concatenate([inner, self._accelerated(found)[0][-1:]])
         lam = np.concatenate([costates[:-1].swapaxes(0, 1).reshape(-1, 2 * n), costates[-1, -1:]])
         last = (x[-1:] for x in self._controls(run.controls, self.count - 1, 3))
         u, t = (np.concatenate(x) for x in zip(*self._all_controls(run.controls), last, strict=True))
@@ -254,6 +215,21 @@ class Shooting:
         columns = [(self.state_names, X), (self.equations.controls, u)]
         return self.motion.evaluate({**self.values, "t": t}, columns=columns)
 
+    def _rows(self, found: dict[str, Array]) -> Array:
+        """The independent rows of closures (S, r, n)."""
+        if not self.equations.rows:
+            return np.zeros((self.segments, 0, self.model.dof))
+        return found["closure.jacobian"][:, self.start.rows]
+
+    def _accelerated(self, found: dict[str, Array]) -> tuple[Array, Array]:
+        """q'' (S, n), and the multipliers of all rows of closures (S, k), 0 of dependent ones."""
+        rows, G, multipliers = self.start.rows, self._rows(found), np.zeros((self.segments, len(self.equations.rows)))
+        c = found["closure.acceleration"][:, rows] if self.equations.rows else np.zeros((self.segments, 0))
+        # g q'' - G^T rho = Q - Gamma q' q',  G q'' = -c
+        qdd, minus = saddle_solve(found["metric"], G, found["force"], -c)
+        multipliers[:, rows] = -minus
+        return qdd, multipliers
+
     def _terminal(self, x: Array, controls: Array) -> dict[str, Array]:
         t = self.problem.t + self.problem.horizon
         columns = [(self.state_names, x), (self.equations.controls, controls[-1:])]
@@ -264,14 +240,17 @@ class Shooting:
         n, (W, S, _) = self.model.dof, bar.shape
         u, t = self._controls(run.controls, j, i)
         flat = bar.reshape(W * S, 2 * n)
-        # g mu = lambda_qd
-        mu = cholesky_solve(np.tile(run.metrics[j, i], (W, 1, 1)), flat[:, n:])
-        e = self.equations
+        e, rows, nu = self.equations, self.start.rows, np.zeros((W * S, len(self.equations.rows)))
+        # g mu + G^T nu = lambda_qd,  G mu = 0
+        g, G = (np.tile(x[j, i], (W, 1, 1)) for x in (run.metrics, run.held))
+        mu, nu[:, rows] = saddle_solve(g, G, flat[:, n:], np.zeros((W * S, len(rows))))
         columns = [
             (self.state_names, np.tile(run.stages[j, i], (W, 1))),
             (e.names(primes="''"), np.tile(run.accelerations[j, i], (W, 1))),
             (self.costate_names, flat),
             (e.names("mu."), mu),
+            ([f"rho.{row}" for row in e.rows], np.tile(run.multipliers[j, i], (W, 1))),
+            ([f"nu.{row}" for row in e.rows], nu),
             (e.controls, np.tile(u, (W, 1))),
         ]
         values = {**self.values, "t": np.tile(t, W), WEIGHT: np.repeat(weight, S)}

@@ -13,12 +13,14 @@ import numpy as np
 
 from substructures.analysis.control.path_limits import PathLimits
 from substructures.analysis.control.problem import MAX_NUMBERS
-from substructures.analysis.control.shooting import Rollout, Shooting, Slope
+from substructures.analysis.control.rollout import Rollout, Slope
+from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 
 HOW = "a second run with steps half as long finds the same: its difference is the error"
 WITHIN = "by how much it leaves its limits, between the nodes, too: more 'intervals' make it less"
+CLOSED = "the closures stay closed, which is not enforced: how far they open is an error of the steps"
 LARGE = "a second run with steps half as long would need too much memory: take fewer 'steps' or 'intervals'"
 #: of numbers that are zero but for it, beside the others
 ROUNDING = 1e-12
@@ -36,7 +38,8 @@ def motion_checks(
         return _left_out(("cost", "q", "qd", *names), reason)
     finer = shooting.refined()
     two = finer.run(start[None], run.controls)
-    return (*_motion(shooting, run, two, limit), *(_kept(finer, two, path, limit) if path is not None else ()))
+    kept = () if path is None else _kept(finer, two, path, limit)
+    return (*_motion(shooting, run, two, limit), *_closed(shooting, run, limit), *kept)
 
 
 def _kept(finer: Shooting, two: Rollout, path: PathLimits, limit: float) -> Iterator[Check]:
@@ -69,7 +72,7 @@ def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float
         _compared(name, "", begin, a.reshape(1, -1), b.reshape(1, -1), limit, noise)
         for name, (a, b) in zip(names, pairs, strict=True)
     )
-    return (*_motion(shooting, run, two, limit), *derivatives)
+    return (*_motion(shooting, run, two, limit), *_closed(shooting, run, limit), *derivatives)
 
 
 def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Iterator[Check]:
@@ -81,6 +84,20 @@ def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Ite
     t = np.asarray(problem.t + shooting.h * np.arange(len(one)), dtype=np.float64)
     yield _compared("q", "rad, m", t, one[:, :n], other[:, :n], limit, noise)
     yield _compared("qd", "rad/s, m/s", t, one[:, n:], other[:, n:], limit, noise)
+
+
+def _closed(shooting: Shooting, run: Rollout, limit: float) -> Iterator[Check]:
+    """Closures stay closed by their accelerations alone: what the steps open is their error."""
+    s, n = shooting.start.closed, shooting.model.dof
+    if s is None:
+        return
+    t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(run.states)), dtype=np.float64)
+    opened = np.empty(len(t))
+    for k, x in enumerate(run.states):
+        s.move(float(t[k]), x[:n], x[n:])
+        opened[k] = s.opening
+    size = max(1.0, float(np.abs(run.states[:, :n]).max(initial=0)))
+    yield Check.of(("closures", "zero", CLOSED, "1"), opened, t, size, limit)
 
 
 def _compared(name: str, unit: str, t: Array, one: Array, two: Array, limit: float, noise: float = 0.0) -> Check:

@@ -58,6 +58,11 @@ def consistent_inertia(
         raise InvalidArgument.at("/q", "not-excited", f"nothing consistent follows: {found.message}")
     values = {**default_numbers(Y.parameters), **default_numbers(base.parameters), **(parameters or {})}
     G = np.asarray(interpret(base.program, values, ["grouping"])["grouping"], dtype=np.float64)
+    if found.combinations is not None:
+        # on closures: their own combinations of these
+        place = {name: k for k, name in enumerate(base.names)}
+        rows = ([(place[name], c) for name, c in some.items()] for some in found.combinations.values())
+        G = np.array([sum((c * G[k] for k, c in row), np.zeros(G.shape[1])) for row in rows])
     pi = np.asarray(interpret(Y.program, values, ["inertial_parameters"])["inertial_parameters"], dtype=np.float64)
     problem = _Problem(Y, G, pi.reshape(-1, 10), found, d)
     return problem.result(problem.solved())

@@ -55,7 +55,9 @@ class Identification:
     root mean square of the force that is not explained, by joint [N m, N]; ``held_out`` (n,): the same of the samples
     that took no part, None without such; ``excitation``. ``status``: identified; failed where the motion does
     not excite all base parameters (``values`` is then the solution of least length). ``inertia``: of every body, where
-    it was asked for, and ``parts``: by instance the definition of the next version with it."""
+    it was asked for, and ``parts``: by instance the definition of the next version with it. On closures ``residual``
+    is of the ``independent`` coordinates, and the parameters are ``combinations`` of those of the tree without them:
+    coefficients by name."""
 
     names: tuple[str, ...]
     units: tuple[str, ...]
@@ -70,6 +72,8 @@ class Identification:
     held_out: Array | None = None
     inertia: ConsistentInertia | None = None
     parts: Mapping[str, Any] | None = None
+    independent: tuple[str, ...] | None = None
+    combinations: Mapping[str, Mapping[str, float]] | None = None
 
     @property
     def is_right(self) -> bool | None:

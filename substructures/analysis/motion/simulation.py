@@ -29,6 +29,7 @@ from substructures.analysis.motion.resets import Resets, acting, simulate_with_r
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
+from substructures.analysis.motion.single_steps import careful, one_by_one
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.verdict import Check
@@ -112,7 +113,11 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
         """The motion once more."""
         return _moved(quiet, other, f, y, told, None, turning)[0]
 
-    again = computed_again(problem, motion, state_groups(f.n, f.n), move, is_whole=is_whole)
+    # where every state says all of what comes after it
+    is_plain = not isinstance(f, DecidedContacts) and problem.kind.friction != "exact"
+    alone = one_by_one(f, careful(problem.integrator).stepper(), f.enter) if is_plain else None
+    again = computed_again(problem, motion, state_groups(f.n, f.n), move, is_whole=is_whole, alone=alone)
+    f.leave()
     return replace(found, checks=(*found.checks, *instead, *again))
 
 

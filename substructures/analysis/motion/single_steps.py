@@ -10,11 +10,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
+from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
-from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion
+from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
 from substructures.analysis.verdict import About, Check
@@ -30,16 +33,15 @@ MOST = 10_000
 State = tuple[float, Array]
 #: from where to where
 Way = tuple[State, State]
-#: begins anew from a state: (span, state, integrator)
-From = Callable[[tuple[float, float], Array, Integrator], IntegratedMotion]
+#: begins anew from a state: (span, state), to the state at the end; raises ArithmeticError that says why it does not
+#: come there
+From = Callable[[tuple[float, float], Array], Array]
 #: by name: columns of the states, unit, columns whose rounding is in them
 Groups = Mapping[str, tuple[slice, str, slice]]
 
 
-def steps_again(
-    first: IntegratedMotion, choice: Integrator, groups: Groups, limit: float, again: From
-) -> tuple[Check, ...]:
-    """One check; none of a motion that was not finished.
+def steps_again(first: IntegratedMotion, groups: Groups, limit: float, again: From) -> tuple[Check, ...]:
+    """One check; none of a motion that was not finished. ``again``: more carefully than the first time.
 
     The difference is relative to the largest number of its group of columns along the motion, and may reach ``limit``.
     """
@@ -47,11 +49,11 @@ def steps_again(
     pairs = sorted([*steps, *more], key=lambda pair: pair[1][0])
     ends = []
     for (t, x), (end, _) in pairs:
-        second = again((t, end), x, _careful(choice, end - t))
-        if second.status != "finished":
-            why = f"a step could not be done again: {second.message}"
+        try:
+            ends.append(again((t, end), x))
+        except ArithmeticError as error:
+            why = f"a step could not be done again: {error}"
             return (Check.left_out("steps", "accurate", why, needed=True),)
-        ends.append(second.x[-1])
     if not pairs:
         return ()
     one, two = np.array([x for _, (_, x) in pairs]), np.array(ends)
@@ -95,8 +97,8 @@ def _spread(count: int, most: int) -> list[int]:
     return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())) if count > 0 else []
 
 
-def _careful(choice: Integrator, length: float) -> Integrator:
-    """Other tolerances, and at least two steps; by a method that begins at full order."""
+def careful(choice: Integrator, length: float | None = None) -> Integrator:
+    """Other tolerances, by a method that begins at full order; for a way of this ``length`` at least two steps."""
     factor = TIGHTER if choice.relative_tolerance >= LEAST else 1 / TIGHTER
     like = {TAYLOR: "DOP853", "BDF": "Radau", "LSODA": "Radau"}
     method = "DOP853" if isinstance(choice.method, FixedStep) else like.get(choice.method, choice.method)
@@ -105,6 +107,33 @@ def _careful(choice: Integrator, length: float) -> Integrator:
         method=method,
         relative_tolerance=factor * choice.relative_tolerance,
         absolute_tolerance=min(factor * choice.absolute_tolerance, 0.1),
-        max_step=length / 2,
+        max_step=choice.max_step if length is None else length / 2,
         max_steps=MOST,
     )
+
+
+def one_by_one(f: Function, stepper: Stepper, enter: Callable[[float, float], None]) -> From:
+    """Of a function without events and breaks within steps; ``enter``: told the times between which it is called next.
+    Machine code is made once for all.
+    """
+    solver: Any = None
+
+    def again(span: tuple[float, float], x: Array) -> Array:
+        """In at least two steps: the first is half the way."""
+        nonlocal solver
+        enter(*span)
+        half = (span[1] - span[0]) / 2
+        with np.errstate(all="ignore"):
+            if isinstance(solver, CompiledStepper):
+                solver.begin(span[0], x, span[1], half)
+            else:
+                solver = stepper(f, span[0], x, span[1], first_step=half)
+            for _ in range(MOST):
+                message = solver.step()
+                if solver.status != "running":
+                    break
+        if solver.status != "finished" or not np.isfinite(solver.y).all():
+            raise ArithmeticError(message or f"{MOST:,} steps do not reach its end, or it is not finite")
+        return np.array(solver.y, dtype=np.float64)
+
+    return again

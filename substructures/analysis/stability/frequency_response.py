@@ -56,7 +56,7 @@ def frequency_response(
     outputs: Mapping[str, NumberOrExpression] | None = None,
     **point: Any,
 ) -> FrequencyResponse:
-    """G(i w) = C (i w - A)^-1 B + D of a tree without closures, linearised about one state.
+    """G(i w) = C (i w - A)^-1 B + D of a tree that is linearised about one state, on its closures and constraints.
 
     ``frequencies`` [rad/s]: by default from a tenth of the slowest pole to ten times the fastest. ``outputs``: y by
     name, by default all coordinates, of ball joints their places and quaternions; ``point``: further arguments of
@@ -70,7 +70,7 @@ def frequency_response(
     0.1
     """
     chosen = outputs or {name: name for name in model.positions}
-    system = linear_system(model, q, point, chosen)
+    system = linear_system(model, q, point, chosen, "frequency-responses")
     poles = eigenvalues(system.A)
     w = _frequencies(frequencies, poles)
     shape = (len(w), len(system.outputs), len(system.inputs))

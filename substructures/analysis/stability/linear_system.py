@@ -17,7 +17,7 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 #: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
 LOST, SURE = 1e-10, 1e-7
@@ -34,11 +34,12 @@ class Reach:
 
 
 def linear_system(
-    model: Model, q: StateArray, point: Mapping[str, Any], outputs: Mapping[str, NumberOrExpression]
+    model: Model, q: StateArray, point: Mapping[str, Any], outputs: Mapping[str, NumberOrExpression], what: str
 ) -> Linearisation:
-    """A, B, C, D about one state, with inputs that act. Raises as :func:`linearise`, and InvalidArgument."""
-    require_untied(model, "linear systems")
-    require_open(model.closures, "linearise gives A, B, C, D in independent coordinates")
+    """A, B, C, D about one state, with inputs that act, for ``what``. Raises as :func:`linearise`, and
+    InvalidArgument.
+    """
+    require_untied(model, what)
     if why := unsteady(model, point.get("inputs") or {}):
         raise InvalidArgument.at("/q", "not-steady", f"{why}: linearise gives A, B, C, D at any time")
     found = linearise(model, q, outputs=outputs, **point)

@@ -11,7 +11,11 @@ import scipy
 
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linear_system import SURE, Reach, eigenvalues, is_complete, linear_system, reach
-from substructures.analysis.stability.linearisation_result import Linearisation
+from substructures.analysis.stability.linearisation_result import (
+    ClosedLinearisation,
+    ConstrainedLinearisation,
+    Linearisation,
+)
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array, ComplexArray
 from substructures.documents import escape
@@ -25,7 +29,8 @@ RICCATI = 1e-8
 @dataclass(frozen=True, repr=False)
 class Regulator:
     """u = u_0 - K (x - x_0) that makes the integral of x^T Q x + u^T R u least, x = (q, q'); of ball joints x has the
-    displacement and the rotation vector in the axes of the body that they carry, by the names of rates without prime.
+    displacement and the rotation vector in the axes of the body that they carry, by the names of rates without
+    prime; on closures x = (y, y') of the independent ``coordinates`` y.
 
     ``gain`` K (m, 2n), ``cost`` P (2n, 2n) with x_0^T P x_0 the least integral, ``eigenvalues`` of A - B K [1/s].
     ``controllable``, ``observable`` (by what is weighted): None where rounding decides; ``reached``, ``seen``: by mode.
@@ -61,24 +66,24 @@ def regulator(
     efforts: Mapping[str, float] | None = None,
     **point: Any,
 ) -> Regulator:
-    """The linear quadratic regulator of a tree without closures about an equilibrium (Kalman 1960).
+    """The linear quadratic regulator of a tree about an equilibrium, on its closures (Kalman 1960).
 
     A^T P + P A - P B R^-1 B^T P + Q = 0, K = R^-1 B^T P. ``weights``: the diagonal of Q by coordinate (``arm.q``) and
     velocity (``arm.q'``), by default 1 for coordinates; ``efforts``: the diagonal of R by input, by default 1;
     ``point``: further arguments of :func:`linearise`, ``inputs`` that hold the equilibrium among them, and
-    ``of_inputs`` that act. Where a mode is not reached, or not seen and not damped, ``status`` is ``failed``. Raises
-    InvalidInput, also where the state is no equilibrium.
+    ``of_inputs`` that act. On closures coordinates that move with others may be weighted, too. Where a mode is not
+    reached, or not seen and not damped, ``status`` is ``failed``. Raises InvalidInput, also where the state is no
+    equilibrium.
     """
-    system = linear_system(model, q, point, {})
-    if not system.is_equilibrium:
-        largest = float(np.abs(system.qdd).max(initial=0))
-        message = f"the state is no equilibrium (accelerations up to {largest:.3g}): give 'inputs' that hold it"
-        raise InvalidArgument.at("/q", "no-equilibrium", message)
+    system = linear_system(model, q, point, {}, "regulators")
+    _require_equilibrium(system)
     names = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-    Q = np.diag(_diagonal(weights, names, "weights", dict.fromkeys(model.coordinates, 1.0), 0.0))
+    moving, whole = _states(system)
+    weight = np.array(_diagonal(weights, names, "weights", dict.fromkeys(model.coordinates, 1.0), 0.0))[:, None]
+    Q = whole.T @ (weight * whole)
     R = np.diag(_diagonal(efforts, system.inputs, "efforts", dict.fromkeys(system.inputs, 1.0), 1.0, positive=True))
-    reached, seen = reach(system.A, system.B), reach(system.A.T, np.sqrt(Q))
-    known: dict[str, Any] = {"coordinates": model.coordinates, "inputs": system.inputs, "reached": reached}
+    reached, seen = reach(system.A, system.B), reach(system.A.T, (np.sqrt(weight) * whole).T)
+    known: dict[str, Any] = {"coordinates": moving, "inputs": system.inputs, "reached": reached}
     known |= {"controllable": is_complete(reached), "observable": is_complete(seen), "seen": seen}
     try:
         P = scipy.linalg.solve_continuous_are(system.A, system.B, Q, R)
@@ -90,6 +95,24 @@ def regulator(
     gain = np.linalg.solve(R, system.B.T @ P)
     poles = eigenvalues(system.A - system.B @ gain)
     return Regulator(gain=gain, cost=P, eigenvalues=poles, checks=_checks(system, Q, P, gain, poles), **known)
+
+
+def _require_equilibrium(system: Linearisation) -> None:
+    """Raises InvalidArgument (``/q``, ``/constraints``)."""
+    if isinstance(system, ConstrainedLinearisation):
+        message = "regulators do not take velocity constraints into account: linearise gives A and B with them"
+        raise InvalidArgument.at("/constraints", "not-supported", message)
+    if not system.is_equilibrium:
+        largest = float(np.abs(system.qdd).max(initial=0))
+        message = f"the state is no equilibrium (accelerations up to {largest:.3g}): give 'inputs' that hold it"
+        raise InvalidArgument.at("/q", "no-equilibrium", message)
+
+
+def _states(system: Linearisation) -> tuple[tuple[str, ...], Array]:
+    """The coordinates of x, and what (q, q') of all is of it: dq = N dy on closures."""
+    if isinstance(system, ClosedLinearisation):
+        return system.independent, np.asarray(np.kron(np.eye(2), system.tangent), dtype=np.float64)
+    return system.coordinates, np.eye(2 * len(system.coordinates))
 
 
 def _diagonal(

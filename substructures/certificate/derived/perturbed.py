@@ -256,35 +256,3 @@ def _steady(still: Sequence[int], moving: Sequence[int], multipliers: Sequence[s
         vector_of(result, "closure.residual", [phi.get((k,), arb(0)) for k in rows])
         columns_of(result, "closure.jacobian", len(rows), [[G[k, a] for k in rows] for a in still])
     return result
-
-
-def adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str]) -> Expectation:
-    """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``."""
-    return partial(_adjoint, controls, costs, varied_by)
-
-
-def _adjoint(controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str], m: ModelAt) -> Outputs:
-    result, rates = Outputs(), [f"{name}'" for name in m.coordinates]
-    running, terminal = costs["running"], costs["terminal"]
-    costates = [m.values[f"lambda.{name}"] for name in (*m.coordinates, *rates)]
-    mu, weight = [m.values[f"mu.{name}"] for name in m.coordinates], m.values["lambda.0"]
-    read = Numbers(m.values).read
-
-    def rate(name: str) -> Ball:
-        """d(lambda_0 l - mu . ID)/dz."""
-        needed = m.changed({name: arb(1)}, m.second)
-        return weight * slope(running, m.values, name) - total(x * y for x, y in zip(mu, needed, strict=True))
-
-    symmetric_of(result, "metric", m.matrix("metric"))
-    vector_of(result, "force", [-x for x in m.needed([arb(0)] * m.n)])
-    result.scalar("running_cost", read(running))
-    pairs = zip(costates, [*m.rates, *m.second], strict=True)
-    result.scalar("hamiltonian", weight * read(running) + total(x * y for x, y in pairs))
-    vector_of(result, "adjoint_q", [-rate(name) for name in m.coordinates])
-    vector_of(result, "adjoint_qd", [-(costates[a] + rate(name)) for a, name in enumerate(rates)])
-    vector_of(result, "control_gradient", [rate(name) for name in controls])
-    vector_of(result, "parameter_gradient", [rate(name) for name in varied_by])
-    result.scalar("terminal_cost", read(terminal))
-    for name, by in (("q", m.coordinates), ("qd", rates), ("parameters", varied_by)):
-        vector_of(result, f"terminal_{name}", [slope(terminal, m.values, z) for z in by])
-    return result

@@ -14,7 +14,7 @@ from uuid import UUID
 
 from substructures.export.archive import archive
 from substructures.export.c_files import c_core
-from substructures.export.contacts import require_planar
+from substructures.export.contacts import require_few
 from substructures.export.exported import Exported, Function
 from substructures.export.fmu import model
 from substructures.export.fmu.binaries import libraries
@@ -46,7 +46,7 @@ def fmu(exported: Exported, version: str, limit: int) -> bytes:
         tangent("dynamics_tangent", motion, layout.interface, *by),
         tangent("outputs_tangent", layout.outputs, layout.interface, OF_ALL),
     )
-    require_planar(exported.contacts)
+    require_few(exported.contacts)
     core = Exported(f"{exported.name}_core", exported.interface, (*exported.functions, *tangents), exported.form)
     sources = c_core(core, limit)
     runtime = files(__package__) / "runtime"

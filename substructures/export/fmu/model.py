@@ -26,7 +26,7 @@ _DECLARATIONS = (
 )
 _SEEN = "double *gap, double *rows, double *rate, double *bias, double *acts, double *metric"
 _DECLARATIONS_OF_CONTACTS = (
-    "extern const int FMU_IS_LINE[];",
+    "extern const int FMU_TANGENTS[];",
     "extern const double FMU_RESTITUTION[], FMU_FRICTION[], FMU_REST_VELOCITY[];",
     "/* (k), (k, 3, n), (k, 3), (k, 3), (k), (n, n): along the normal and two tangents */",
     f"void fmu_contacts({_OF_STATE}, {_SEEN});",
@@ -91,7 +91,7 @@ def _contacts(layout: Layout, core: Exported) -> list[str]:
         return []
     seen = next(each for each in layout.exported.functions if each.quantity == CONTACTS)
     numbers: dict[str, list[float | int]] = {
-        "int FMU_IS_LINE": [int(law.is_line) for law in laws],
+        "int FMU_TANGENTS": [law.tangents for law in laws],
         "double FMU_RESTITUTION": [law.restitution for law in laws],
         "double FMU_FRICTION": [law.friction for law in laws],
         "double FMU_REST_VELOCITY": [law.rest_velocity for law in laws],

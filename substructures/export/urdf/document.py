@@ -132,9 +132,9 @@ def _link(link: RigidLink) -> Tree.Element:
 
 def _joint(link: RigidLink, parent: str) -> Tree.Element:
     """The joint that carries a link, with the name of its coordinate."""
-    drive = link.drive
-    fixed = {"name": f"{link.name}_fixed", "type": "fixed"}
-    element = Tree.Element("joint", fixed if drive is None else {"name": drive.coordinate, "type": _kind(link)})
+    drive, kind = link.drive, "floating" if link.floats else "fixed"
+    bare = {"name": f"{link.name}_{kind}", "type": kind}
+    element = Tree.Element("joint", bare if drive is None else {"name": drive.coordinate, "type": _kind(link)})
     Tree.SubElement(element, "parent", link=parent)
     Tree.SubElement(element, "child", link=link.name)
     R, r = link.pose

@@ -1,7 +1,8 @@
 """A definition as links on joints with one coordinate each, in numbers, where all coordinates are zero.
 
 A link is placed in its parent by x_parent = R x + r. A revolute or prismatic link moves from there about or along an
-axis through its own origin. Compound joints (universal, spherical, ..., free) are chains with massless links between.
+axis through its own origin. Compound joints (universal, spherical, ..., free) are chains with massless links between,
+and so are ball joints, with yaw, pitch, roll: URDF has no others. Floating ones remain what they are.
 """
 
 from __future__ import annotations
@@ -18,11 +19,11 @@ from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.kinematics import INTERFACE
-from substructures.part.definition import Definition
+from substructures.part.balls import BALLS, INSTEAD
+from substructures.part.definition import Body, Definition
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.relations import read_relations
-from substructures.part.topology import BASE, JointEntry, topology
-from substructures.tree.given.ties import require_chains
+from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 #: x_parent = R x + r
 Pose = tuple[Array, Array]
@@ -31,6 +32,7 @@ Values = Callable[[Program], Mapping[str, Array]]
 
 _NOWHERE: Pose = (np.eye(3), np.zeros(3))
 _MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
+_TURNS = ("yaw", "pitch", "roll")
 
 
 @dataclass(frozen=True)
@@ -47,12 +49,16 @@ class Drive:
 
 @dataclass(frozen=True)
 class RigidLink:
-    """A link on its parent (None: the root); mass [kg], mass centre [m], tensor about it in the link's axes."""
+    """A link on its parent (None: the root); mass [kg], mass centre [m], tensor about it in the link's axes.
+
+    ``floats``: whether it moves freely, without a drive.
+    """
 
     name: str
     parent: str | None
     pose: Pose = _NOWHERE
     drive: Drive | None = None
+    floats: bool = False
     mass: float = 0.0
     com: Array = field(default_factory=lambda: np.zeros(3))
     inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
@@ -71,12 +77,12 @@ def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
 
     Raises InvalidArgument for numbers that are not finite, MissingValue for parameters without one.
     """
+    layout = topology(definition)
     # joints stand where their own positions are zero: relations come beside them
-    m = mechanism(definition.model_copy(update={"relations": ()}))
-    require_chains(m.topology.balls)
+    m = mechanism(_with_chains(definition, layout).model_copy(update={"relations": ()}))
     laws = {k: law.damping for k, law in enumerate(m.laws) if _is_constant(m, law.damping)}
     outputs = _outputs(m, laws)
-    layout, names = topology(definition), m.topology.coordinates
+    names = m.topology.coordinates
     relations = read_relations(definition.relations, layout.before, names, m.scope)
     outputs["relations"] = array((len(names), 2), lambda k, i: relations[k][1 + i])
     numbers = values(program(m.graph, outputs, m.scope.symbols))
@@ -84,8 +90,23 @@ def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
         if not np.isfinite(x).all():
             message = f"'{name}' of '{definition.name}' is not finite with these parameters: give others by bind"
             raise InvalidArgument.at("/bind", "not-finite", message)
-    reader = _Reader(m, numbers, prefix, [of for of, _, _ in relations])
+    reader = _Reader(m, numbers, prefix, [of for of, _, _ in relations], {b.body: b.place for b in layout.balls})
     return Links(tuple(reader.links()), tuple(reader.left_out(laws)))
+
+
+def _with_chains(definition: Definition, layout: Topology) -> Definition:
+    """With angles, called like the rates, in place of quaternions; where these turn nothing, all are zero."""
+
+    def chain(i: int, body: Body) -> Body:
+        if body.joint.type not in BALLS:
+            return body
+        rates = tuple(joint.coordinate for joint in layout.joints if joint.body == i)
+        joint = body.joint.model_copy(
+            update={"type": INSTEAD[body.joint.type], "coordinate": rates, "velocities": None}
+        )
+        return body.model_copy(update={"joint": joint})
+
+    return definition.model_copy(update={"bodies": tuple(chain(i, body) for i, body in enumerate(definition.bodies))})
 
 
 def at_zero(given: Program, values: Mapping[str, float]) -> dict[str, Array]:
@@ -150,8 +171,16 @@ def _limits(m: Mechanism) -> Iterator[tuple[int, tuple[Expr, Expr]]]:
 class _Reader:
     """Numbers to links."""
 
-    def __init__(self, m: Mechanism, numbers: Mapping[str, Array], prefix: str, movers: Sequence[int]) -> None:
-        self.m, self.numbers, self.prefix, self.movers = m, numbers, prefix, movers
+    def __init__(
+        self,
+        m: Mechanism,
+        numbers: Mapping[str, Array],
+        prefix: str,
+        movers: Sequence[int],
+        balls: Mapping[int, Sequence[str]],
+    ) -> None:
+        """``balls``: by index of the body that a ball or floating joint carries, the names of its place."""
+        self.m, self.numbers, self.prefix, self.movers, self.balls = m, numbers, prefix, movers, balls
         self.limits = dict(zip((k for k, _ in _limits(m)), numbers["limits"].tolist(), strict=True))
         names = [*m.bodies, *m.ports]
         self.frame = {name: f for f, name in enumerate(names)}
@@ -178,6 +207,8 @@ class _Reader:
         """A body, and massless links before it where its joint is compound."""
         body = self.m.definition.bodies[i]
         parent, before = self.prefix + body.parent, self._pose(body.parent)
+        floats = bool(self.balls.get(i))
+        entries = [] if floats else entries
         for k, entry in entries[:-1]:
             name = self._between(f"{body.name}_{entry.step + 1}")
             yield RigidLink(name, parent, between(before, self.carriers[k]), self._drive(k, entry, np.eye(3)[2]))
@@ -190,13 +221,19 @@ class _Reader:
         mass, com, six = (self.numbers[name][i] for name in ("mass", "com", "inertia"))
         tensor = np.array([[six[0], six[3], six[4]], [six[3], six[1], six[5]], [six[4], six[5], six[2]]])
         pose = between(before, self._pose(body.name))
-        yield RigidLink(self.prefix + body.name, parent, pose, drive, float(mass), com, tensor)
+        yield RigidLink(self.prefix + body.name, parent, pose, drive, floats, float(mass), com, tensor)
 
     def _between(self, wanted: str) -> str:
         """A name that no body or port has."""
         while wanted in self.frame:
             wanted += "_"
         return self.prefix + wanted
+
+    def _new(self, wanted: str) -> str:
+        """A name that no coordinate has."""
+        while wanted in self.m.topology.coordinates:
+            wanted += "_"
+        return wanted
 
     def _pose(self, frame: str) -> Pose:
         f = self.frame[frame]
@@ -205,6 +242,9 @@ class _Reader:
         return beyond(self.carriers[placed.carrier], own)
 
     def _drive(self, k: int, entry: JointEntry, axis: Array) -> Drive:
+        if entry.body in self.balls:
+            body = self.m.definition.bodies[entry.body].name
+            return Drive(self.prefix + self._new(f"{body}_{_TURNS[entry.step]}"), False, axis, None, 0.0)
         low_high = self.limits.get(k)
         limits = None if low_high is None else (low_high[0], low_high[1])
         damping = float(self.numbers["damping"][k])
@@ -215,14 +255,15 @@ class _Reader:
         return replace(drive, mimic=(self.prefix + self.m.topology.coordinates[mover], factor, offset))
 
     def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
-        """Springs, rotors, end stops, friction, closures and loads."""
+        """Springs, rotors, end stops, friction, quaternions, closures and loads."""
+        yield from self._left_out_of_balls()
         for k, (entry, law) in enumerate(zip(self.m.topology.joints, self.m.laws, strict=True)):
             name = f"'{self.prefix}{entry.coordinate}'"
             if not law.stiffness.is_zero:
                 yield f"the spring of {name}"
             if self.numbers["armature"][k]:
                 yield f"the armature {float(self.numbers['armature'][k])!r} of {name}"
-            if k not in laws:
+            if k not in laws and entry.body not in self.balls:
                 yield f"the damping of {name}, which depends on the state"
             if law.stops is not None:
                 yield f"the end stops of {name}"
@@ -234,6 +275,16 @@ class _Reader:
             if load.type == "friction":
                 continue
             yield f"load {number} of '{self.prefix[:-1] or self.m.definition.name}' ({load.type})"
+
+    def _left_out_of_balls(self) -> Iterator[str]:
+        """Quaternions of ball joints; damping of these and of floating ones."""
+        for i, place in self.balls.items():
+            name = f"'{self.prefix}{self.m.definition.bodies[i].name}'"
+            if not place:
+                yield f"the quaternion of {name}: yaw, pitch, roll here"
+            rates = [k for k, entry in enumerate(self.m.topology.joints) if entry.body == i]
+            if any(not self.m.laws[k].damping.is_zero for k in rates):
+                yield f"the damping of the joint of {name}"
 
 
 def beyond(outer: Pose, inner: Pose) -> Pose:

@@ -98,17 +98,17 @@ class Tied(Protocol):
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
-    *("linear systems", "frequency-responses", "regulators", "equilibria", "root-loci"),
-    *("ensembles", "sensitivities", "parameter_sensitivity"),
+    *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
+    "parameter_sensitivity",
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
-    "velocity_dynamics",
+    *("velocity_dynamics", "frequency-responses"),
 )
-TAKES_CONTACTS = ("simulations", "ensembles")
+TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them
 TIES = {
     "velocity_constraints": (TAKES_CONSTRAINTS, "ConstrainedMotion"),

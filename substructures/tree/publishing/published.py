@@ -18,7 +18,7 @@ from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.document import Instance, TreeSpec, require_ungiven
-from substructures.tree.given.ties import require_chains, require_untied
+from substructures.tree.given.ties import require_untied
 from substructures.tree.publishing.published_loads import closure_of_part, frames_of_part, load_of_part
 from substructures.tree.publishing.published_names import PartNames, part_names
 
@@ -60,7 +60,6 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     Raises InvalidDocument for names of ports, frames and parameters that are not there, and parameters without a value.
     """
     _require_tree(spec)
-    require_chains([ball for part in parts.values() for ball in part.topology.balls])
     names = part_names(spec, parts, wanted.free, wanted.defaults)
     document: dict[str, Any] = {**wanted.about, "bodies": [], "loads": [], "relations": [], "poses": {}, "left_out": []}
     for instance in _hosts_first(spec):
@@ -134,11 +133,8 @@ def _body(names: PartNames, instance: str, body: Mapping[str, Any], k: int) -> d
     """A body of an instance, with the coordinates of its joint named."""
     moved = _moved(names, instance, body, f"/instances/{instance}/bodies/{k}")
     moved["name"], moved["parent"] = names.body(instance, body["name"]), names.body(instance, body["parent"])
-    coordinates = names.coordinates_of(instance, k)
-    joint = {name: x for name, x in moved["joint"].items() if name != "coordinate"}
-    if coordinates:
-        joint["coordinate"] = coordinates[0] if len(coordinates) == 1 else coordinates
-    return moved | {"joint": joint}
+    joint = {name: x for name, x in moved["joint"].items() if name not in ("coordinate", "velocities")}
+    return moved | {"joint": joint | names.joint_of(instance, k)}
 
 
 def _relation(names: PartNames, instance: str, given: Mapping[str, Any], pointer: str) -> dict[str, Any]:

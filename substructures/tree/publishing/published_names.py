@@ -54,9 +54,13 @@ class PartNames:
         """A port of an instance."""
         return self.ports.setdefault(f"{instance}.{name}", self.taken.new(instance, name))
 
-    def coordinates_of(self, instance: str, body: int) -> list[str]:
-        """The coordinates of the joint of a body, by its number in the definition."""
-        return [self.symbol(instance, name) for name in self.joints[instance].get(body, ())]
+    def joint_of(self, instance: str, body: int) -> dict[str, Any]:
+        """Names of the joint of a body, by its number in the definition: coordinates, of a ball positions and rates."""
+        found = [self.symbol(instance, name) for name in self.joints[instance].get(body, ())]
+        for ball in self.parts[instance].topology.balls:
+            if ball.body == body:
+                return {"coordinate": [self.symbol(instance, name) for name in ball.positions], "velocities": found}
+        return {"coordinate": found[0] if len(found) == 1 else found} if found else {}
 
     def symbol(self, instance: str, name: str) -> Any:
         """What a name in an expression of an instance stands for; of the tree itself without an instance."""
@@ -145,6 +149,7 @@ def part_names(
         parameters |= given
         own = (
             *(joint.coordinate for joint in part.topology.joints),
+            *(name for ball in part.topology.balls for name in ball.positions),
             *plain.get("parameters", ()),
             *plain.get("inputs", ()),
         )

@@ -43,7 +43,7 @@ MOST_FILES = 2000
 def _read_file(item: ItemDocument, blobs: Blobs) -> Outcome:
     """The document of a robot file, with the report. Raises InvalidDocument with line and element, or with pointers
     into the query."""
-    options = Options(item["parameters"], item["fixed"], item["base"])
+    options = Options(item["parameters"], item["fixed"], item["base"], item["rotations"])
     data, called, beside = _opened(blobs[item["file"]], item["called"], item["unpacked"])
     about = {"name": item["name"], "file": called, "license_of_file": item["license"], "included": beside}
     try:

@@ -64,5 +64,6 @@ def _rename(told: dict[str, Any], prefix: str) -> None:
     for kind, key in (("frames", "name"), ("joints", "coordinate"), ("bodies", "name"), ("loads", "name")):
         for each in told[kind]:
             each[key] = each[key].removeprefix(prefix)
+    told["positions"] = [name.removeprefix(prefix) for name in told["positions"]]
     for frame in told["frames"]:
         frame["instance"] = ""

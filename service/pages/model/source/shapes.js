@@ -2,7 +2,8 @@
 import * as THREE from "three/src/Three.Core.js";
 
 const COLOURS = ["#2a78ad", "#c7663a", "#4a9149", "#8f5bad", "#a8862c", "#6b7884"];
-const BALLS = ["spherical", "universal"];
+const BALLS = ["spherical", "universal", "ball"];
+const LOOSE = ["free", "floating"];
 const Y = new THREE.Vector3(0, 1, 0);
 
 /** Of every frame the colour of its instance, or where there is only one, of its body. */
@@ -38,7 +39,7 @@ export class Shapes {
             return mesh;
         };
         const owner = colours(frames);
-        const loose = new Set(joints.filter(({ type }) => type === "free").map(({ frame }) => frame));
+        const loose = new Set(joints.filter(({ type }) => LOOSE.includes(type)).map(({ frame }) => frame));
         const linked = frames.map(({ parent }, k) => [parent, k]).filter(([parent, k]) => parent >= 0 && !loose.has(k));
         const link = (k, a, b) => add("links", rod, solid(owner[k]), { a, b });
         this.links = [

@@ -19,7 +19,7 @@ const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 /** The program of a part, or of a tree, with what coupling needs of it. */
 export async function joinable(address) {
     const [program, layout] = await load(address, address.includes("/trees/") ? OF_TREE : OF_PART);
-    return { program, frames: layout.frames, names: layout.vectors.q.names };
+    return { program, frames: layout.frames, names: layout.vectors.qd.names.map((name) => name.slice(0, -1)) };
 }
 
 /**

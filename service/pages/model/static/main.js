@@ -1,5 +1,6 @@
 // The page of a part or a tree: one state, which sliders and parameters change, and what is drawn of it.
 import "./keys.js";
+import { Chart } from "./chart.js";
 import { Grid } from "./grid.js";
 import { eigenvalues, short } from "./numbers.js";
 import { Panel } from "./panel.js";
@@ -10,13 +11,13 @@ import { shown } from "./viewing.js";
 const place = document.getElementById("place");
 if (place) start(JSON.parse(place.dataset.model)).catch((error) => failed(error));
 
-async function start({ kind, reference, ranges }) {
+async function start({ kind, reference, ranges, names, turns }) {
     const path = `/${kind}/${reference}`;
     const [program, layout] = await load(`/v1${path}`);
-    const names = layout.vectors.q.names;
+    const [chart, dof] = [new Chart(turns), layout.vectors.qd.names.length];
     const state = program.vectors; // q, qd, u, p are written where the program reads them
     let view = null;
-    const panel = new Panel(path, state, ranges, names, (bodies) => view?.light(bodies));
+    const panel = new Panel(path, state, { ranges, names, chart }, (bodies) => view?.light(bodies));
     const grid = new Grid(path, program, (entry) => {
         keep("entry", entry);
         panel.choose(entry);
@@ -34,11 +35,11 @@ async function start({ kind, reference, ranges }) {
     const changed = () => (asked ||= requestAnimationFrame(draw));
     const rested = () => {
         if (!program.has("metric")) return;
-        const found = eigenvalues(program.array("metric"), names.length);
+        const found = eigenvalues(program.array("metric"), dof);
         const shown = found.length > 8 ? [...found.slice(0, 4), NaN, ...found.slice(-3)] : found;
         document.getElementById("eigenvalues").textContent = shown.map((x) => (x === x ? short(x) : "…")).join(", ");
     };
-    const sliders = new Sliders(state, ranges, changed, rested);
+    const sliders = new Sliders(state, ranges, chart, changed, rested);
     parameters(state, changed);
     draw();
     rested();

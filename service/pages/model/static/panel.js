@@ -5,9 +5,10 @@ import { line, map } from "./plot.js";
 import { unpacked } from "./program.js";
 
 export class Panel {
-    /** state: vectors q, qd, u, p of the page; lit(bodies) is told whose entry is shown. */
-    constructor(path, state, ranges, names, lit) {
-        Object.assign(this, { path, state, ranges, names, lit, over: [0, -1] });
+    /** state: vectors q, qd, u, p of the page; sliders: their ranges and names, and the chart that makes states of
+     * them; lit(bodies) is told whose entry is shown. */
+    constructor(path, state, { ranges, names, chart }, lit) {
+        Object.assign(this, { path, state, ranges, names, chart, lit, over: [0, -1] });
         this.read();
     }
 
@@ -97,14 +98,17 @@ export class Panel {
         const { q } = this.program.vectors;
         if (!q) return this.canvas.replaceChildren("It is the same in every pose.");
         const output = Object.entries(this.program.call(this.quantity)).find(([name]) => name !== "terms")[1];
+        const values = this.chart.values(this.state.q);
+        const here = values[first];
         const value = (x, y) => {
-            q[first] = x;
-            if (second >= 0) q[second] = y;
+            values[first] = x;
+            if (second >= 0) values[second] = y;
+            q.set(this.chart.state(values));
             this.program.call(this.quantity);
             return this.sign * output[0];
         };
         if (second < 0 || second === first) {
-            this.canvas.replaceChildren(line((x) => value(x), this.ranges[first], this.state.q[first], short));
+            this.canvas.replaceChildren(line((x) => value(x), this.ranges[first], here, short));
         } else {
             const [drawn, largest] = map(value, this.ranges[first], this.ranges[second]);
             const told = `${this.names[first]} to the right, ${this.names[second]} upwards; red up to ${short(largest)}, blue below 0`;

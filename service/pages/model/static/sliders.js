@@ -1,19 +1,21 @@
 // Sliders and parameters: what the user changes becomes the state of the page, and the pose its address.
 
 export class Sliders {
-    /** changed() is called when a value has changed, rested() when none has for a while. */
-    constructor(state, ranges, changed, rested) {
-        Object.assign(this, { state, ranges, changed, rested });
+    /** chart: what sliders are of states; changed() is called when a value has changed, rested() when none has for a
+     * while. */
+    constructor(state, ranges, chart, changed, rested) {
+        Object.assign(this, { state, ranges, chart, changed, rested });
         this.form = document.getElementById("sliders");
         this.ranged = [...this.form.querySelectorAll("[data-q]")];
         this.numbers = [...this.form.querySelectorAll("[data-number]")];
-        this.numbers.forEach((input, k) => (state.q[k] = Number(input.value)));
+        this.values = this.numbers.map((input) => Number(input.value));
+        state.q.set(chart.state(this.values));
         this.form.addEventListener("input", (event) => this.moved(event.target));
         this.form.addEventListener("submit", (event) => event.preventDefault());
         document.getElementById("send").hidden = true;
         this.random = document.getElementById("random");
         this.random.hidden = false;
-        this.random.addEventListener("click", () => this.set(ranges.map(([low, high]) => low + (high - low) * Math.random())));
+        this.random.addEventListener("click", () => this.set(chart.state(ranges.map(([low, high]) => low + (high - low) * Math.random()))));
     }
 
     /** A button for every pose of the definitions. */
@@ -26,10 +28,11 @@ export class Sliders {
         }
     }
 
-    /** The pose and the rates that the fields show. */
+    /** The state and the rates that the fields show. */
     given() {
         const rates = [...this.form.querySelectorAll("[data-rate]")];
-        return [this.numbers, rates].map((inputs) => inputs.map(({ valueAsNumber: x }) => (Number.isFinite(x) ? x : 0)));
+        const [values, qd] = [this.numbers, rates].map((inputs) => inputs.map(({ valueAsNumber: x }) => (Number.isFinite(x) ? x : 0)));
+        return [this.chart.state(values), qd];
     }
 
     moved(input) {
@@ -39,7 +42,8 @@ export class Sliders {
         if (rate !== undefined) this.state.qd[Number(rate)] = value;
         const k = Number(q ?? number);
         if (rate === undefined) {
-            this.state.q[k] = value;
+            this.values[k] = value;
+            this.state.q.set(this.chart.state(this.values));
             if (q === undefined) this.ranged[k].value = String(value);
             else this.numbers[k].value = input.value;
         }
@@ -47,12 +51,12 @@ export class Sliders {
     }
 
     set(pose) {
-        pose.forEach((value, k) => {
-            this.state.q[k] = value;
+        this.chart.values(pose).forEach((value, k) => {
             this.ranged[k].value = String(value);
             this.numbers[k].value = String(Number(value.toPrecision(6)));
-            this.state.q[k] = Number(this.numbers[k].value);
+            this.values[k] = Number(this.numbers[k].value);
         });
+        this.state.q.set(this.chart.state(this.values));
         this.tell();
     }
 

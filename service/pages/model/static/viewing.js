@@ -18,9 +18,10 @@ export async function shown(kind, reference, sliders) {
     }
 }
 
-/** Poses at the limits of the coordinates that have some, the others at home; joints come by coordinate. */
-function limits({ joints, poses }) {
+/** Poses at the limits of the coordinates that have some, the others at home. */
+function limits({ joints, poses, positions }) {
     if (!joints.some((joint) => joint.limits)) return {};
-    const at = (side) => poses.home.map((x, k) => joints[k].limits?.[side] ?? x);
+    const of = new Map(joints.map(({ coordinate, limits: both }) => [coordinate, both]));
+    const at = (side) => poses.home.map((x, k) => of.get(positions[k])?.[side] ?? x);
     return { "lower limits": at(0), "upper limits": at(1) };
 }

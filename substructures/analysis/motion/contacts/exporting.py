@@ -19,7 +19,7 @@ from substructures.tree.model import Model
 def contact_laws(model: Model) -> tuple[ContactLaw, ...]:
     """Of the contacts of a tree, in their order. Raises InvalidArgument."""
     return tuple(
-        ContactLaw(each.name, TANGENTS[each.type] == 1, each.restitution, each.friction, each.rest_velocity)
+        ContactLaw(each.name, TANGENTS[each.type], each.restitution, each.friction, each.rest_velocity)
         for each in contacts_of(model)
     )
 

@@ -65,14 +65,17 @@ class CompiledStepper:
 
     def __init__(self, first: Any, end: float, run: Callable[[int], CompiledRun]) -> None:
         """``first``: SciPy's at the start, which chooses the first step; ``run``: of so many steps in a call."""
-        self.fun, self.nfev, self._plain, self._end = first.fun, first.nfev, type(first), end
-        self._before = first.nfev - 1
-        self.t, self.t_old = float(first.t), float(first.t)
-        self.y: Array = np.array(first.y)
-        self.y_old = self.y
-        self.status: Literal["running", "finished", "failed"] = "running"
+        self.fun, self.nfev, self._plain = first.fun, first.nfev, type(first)
         self._make, self._run = run, run(MOST)
-        self._run.begin(self.t, self.y, end, float(first.h_abs))
+        self.status: Literal["running", "finished", "failed"]
+        self.begin(float(first.t), first.y, end, float(first.h_abs))
+
+    def begin(self, t: float, y: Array, end: float, first_step: float) -> None:
+        """From another state on."""
+        self.t, self.t_old, self._end, self._before = t, t, end, self.nfev - 1
+        self.y: Array = np.array(y)
+        self.y_old, self.status = self.y, "running"
+        self._run.begin(t, self.y, end, first_step)
         self._made: Array = np.zeros((0, HEAD + len(self.y)))
         self._next, self._tried = 0, 1
 

@@ -606,7 +606,7 @@ classdef api
     function answer = import_file (body, varargin)
       % POST /v1/imports: Read a robot file as a definition; in a zip with the files that it includes and
       % takes meshes from. 200 with the report; with `store=true` 201 and what was stored. Query: kind,
-      % name, file, license, parameters, fixed, base, cut, preview, store, visibility.
+      % name, file, license, parameters, fixed, base, rotations, cut, preview, store, visibility.
       answer = substructures.call ('post', '/v1/imports', ...
         {}, {body}, varargin);
     end

@@ -1,4 +1,4 @@
-/* Contacts of points with planes or lines: impacts, sticking, slipping, lifting off; at most one tangent each. */
+/* Contacts of points with planes or lines: impacts, sticking, slipping, lifting off. */
 #ifndef SUBSTRUCTURES_CONTACTS_H
 #define SUBSTRUCTURES_CONTACTS_H
 
@@ -9,13 +9,14 @@ enum {
     OPEN = 0,
     STICK = 1,
     FULL = 2, /* has all of its friction, as one that slips, but others hold it */
-    SLIP = 3
+    SLIP = 3,
+    STARTS = 4 /* slips from rest in two directions */
 };
 
-/* what contacts do; force: along the normal and the tangent */
+/* what contacts do; way: the unit vector along which a point slips */
 typedef struct {
     int mode[FMU_CONTACTS];
-    double way[FMU_CONTACTS];
+    double way[FMU_CONTACTS][2];
     double scale[FMU_CONTACTS];
     double offset[FMU_CONTACTS]; /* of a gap that has just opened */
     int is_decided, has_begun;
@@ -36,10 +37,10 @@ typedef struct {
 } Given;
 
 void contacts_look(const Given *at, const double *x, Seen *s);
-/* adds what contact forces do to the accelerations; 0, or 1 where these are not found */
-int contacts_act(const Contacts *c, const Given *at, const double *x, double *dv, double force[][2]);
+/* adds what contact forces (normal, two tangents) do to the accelerations; 0, or 1 where these are not found */
+int contacts_act(const Contacts *c, const Given *at, const double *x, double *dv, double force[][3]);
 /* FMU_INDICATORS numbers that are positive until something happens; force: of contacts_act */
-void contacts_indicate(const Contacts *c, const Given *at, const double *x, double force[][2], double *found);
+void contacts_indicate(const Contacts *c, const Given *at, const double *x, double force[][3], double *found);
 /* 1 where the state has left closed contacts, or has come below a plane */
 int contacts_drifted(const Contacts *c, const Given *at, const double *x);
 /* impacts, and who touches, sticks and slips from here on: 0, 1 where the state has changed, or less than 0 */

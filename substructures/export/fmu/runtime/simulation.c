@@ -57,16 +57,16 @@ static int accelerations(const State *s, double t, const double *x, double *rate
     fmu_dynamics(t, x, x + FMU_NQ, u, p, rates, rates + FMU_NQ, qdd);
 #if FMU_CONTACTS > 0
     Given at = {t, u, p};
-    double force[FMU_CONTACTS][2];
+    double force[FMU_CONTACTS][3];
     wrong = contacts_act(&s->contacts, &at, x, rates + FMU_NQ, force);
     if (told != NULL) {
         Seen seen;
         double found[FMU_INDICATORS];
         contacts_look(&at, x, &seen);
         contacts_indicate(&s->contacts, &at, x, force, found);
-        for (int i = 0; i < FMU_CONTACTS; ++i, told += 5) {
-            told[0] = seen.gap[i], told[1] = force[i][0], told[2] = force[i][1];
-            told[3] = found[2 * i], told[4] = found[2 * i + 1];
+        for (int i = 0; i < FMU_CONTACTS; ++i, told += OF_CONTACT) {
+            told[0] = seen.gap[i], told[1] = force[i][0], told[2] = force[i][1], told[3] = force[i][2];
+            told[4] = found[2 * i], told[5] = found[2 * i + 1];
         }
         told[0] = s->contacts.energy, told[1] = s->contacts.impacts, told[2] = s->contacts.last;
     }
@@ -91,7 +91,7 @@ int state_indicators(State *s, double *found)
 {
 #if FMU_CONTACTS > 0
     if (state_rates(s)) return 1;
-    for (size_t i = 0; i < 2 * FMU_CONTACTS; ++i) found[i] = s->v[AT_C + 5 * (i / 2) + 3 + i % 2];
+    for (size_t i = 0; i < 2 * FMU_CONTACTS; ++i) found[i] = s->v[AT_C + OF_CONTACT * (i / 2) + 4 + i % 2];
     return 0;
 #else
     (void)s, (void)found;
@@ -216,7 +216,7 @@ static int indicators(const State *s, double t, const double *x, double *found)
 {
     double rates[STATES], qdd[FMU_NA + 1], told[AT_Y - AT_C];
     if (accelerations(s, t, x, rates, qdd, told)) return 1;
-    for (size_t i = 0; i < FMU_INDICATORS; ++i) found[i] = told[5 * (i / 2) + 3 + i % 2];
+    for (size_t i = 0; i < FMU_INDICATORS; ++i) found[i] = told[OF_CONTACT * (i / 2) + 4 + i % 2];
     return 0;
 }
 

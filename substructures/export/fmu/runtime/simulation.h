@@ -30,10 +30,11 @@ enum {
     AT_P = AT_U + FMU_NU,
     AT_STEP = AT_P + FMU_NP,
     AT_TOLERANCE = AT_STEP + 1,
-    /* of each contact its gap, its force along the normal and the tangent, and its event indicators; then the energy
+    /* of each contact its gap, its force along the normal and two tangents, and its event indicators; then the energy
        that impacts have changed, their number, and when the last one was */
     AT_C = AT_TOLERANCE + 1,
-    AT_Y = AT_C + (FMU_CONTACTS ? 5 * FMU_CONTACTS + 3 : 0),
+    OF_CONTACT = 6,
+    AT_Y = AT_C + (FMU_CONTACTS ? OF_CONTACT * FMU_CONTACTS + 3 : 0),
     FMU_INDICATORS = 2 * FMU_CONTACTS,
     VALUES = AT_Y + FMU_NY,
     STATES = FMU_NQ + FMU_NV

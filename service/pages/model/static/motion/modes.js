@@ -11,8 +11,8 @@ const SHARE = 0.15; // of the size of the whole that one slides at most
 
 /** given(): the state; found(q): it is another one; play(length, at): plays at(t), the coordinates. */
 export class Modes {
-    constructor(path, { joints }, { given, found, play, size }) {
-        Object.assign(this, { path, joints, given, found, play, size });
+    constructor(path, { joints, chart }, { given, found, play, size }) {
+        Object.assign(this, { path, joints, chart, given, found, play, size });
         document.getElementById("linearise").addEventListener("click", () => this.tried(this.about(this.given())));
     }
 
@@ -69,8 +69,8 @@ export class Modes {
         const scale = 1 / Math.max(...sizes, 1e-300);
         const length = im ? (PERIODS * 2 * Math.PI) / Math.abs(im) : re ? 3 / Math.abs(re) : 2;
         const grown = (t) => (im || re ? Math.exp(re > 0 ? re * (t - length) : re * t) : t / length);
-        this.play(length, (t) => shape.map(([a, b], k) =>
-            this.q[k] + scale * grown(t) * (a * Math.cos(im * t) - b * Math.sin(im * t))));
+        this.play(length, (t) => this.chart.moved(this.q, shape.map(([a, b]) =>
+            scale * grown(t) * (a * Math.cos(im * t) - b * Math.sin(im * t)))));
     }
 }
 

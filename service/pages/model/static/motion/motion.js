@@ -1,6 +1,7 @@
 // The page of motions: runs from the state of the sliders, plays it, plots it; modes and roots about a state.
 import "../keys.js";
 import { element } from "../fragments.js";
+import { Chart } from "../chart.js";
 import { load } from "../program.js";
 import { Sliders } from "../sliders.js";
 import { shown } from "../viewing.js";
@@ -21,10 +22,10 @@ const size = ({ min, max }) => max.distanceTo(min);
 const tried = (work) => work.catch((error) => tell(error.message, "warn"));
 tried(start(JSON.parse(place.dataset.model)));
 
-async function start({ kind, reference, ranges, joints }) {
+async function start({ kind, reference, ranges, joints, turns }) {
     const path = `/v1/${kind}/${reference}`;
     const [program, layout] = await load(path);
-    const state = program.vectors;
+    const [state, chart] = [program.vectors, new Chart(turns)];
     let [motion, found, view, running, asked] = [null, null, null, null, null];
     const plots = new Plots(get("plots"), (t) => player.choose(t));
     get("without").hidden = true;
@@ -32,7 +33,7 @@ async function start({ kind, reference, ranges, joints }) {
         view?.pose(program);
         place.dataset.pose = [...state.q].join(",");
     };
-    const sliders = new Sliders(state, ranges, () => {
+    const sliders = new Sliders(state, ranges, chart, () => {
         player.stop(); // what is moved is seen
         for (const [k, values] of sliders.given().entries()) [state.q, state.qd][k].set(values);
         requestAnimationFrame(draw);
@@ -60,7 +61,7 @@ async function start({ kind, reference, ranges, joints }) {
         plots.show(groups(found, layout, program), found.t, table(found));
         tell(...verdict(found));
         get("saves").hidden = false;
-        motion = (t) => interpolated(found, t, state);
+        motion = (t) => interpolated(found, t, state, chart);
         place.dataset.run = JSON.stringify(body);
         const named = found.events.map(({ name, t }) => ({ t, name: body.events[Number(name.slice(5)) - 1].quantity }));
         const until = found.t[found.t.length - 1];
@@ -100,7 +101,7 @@ async function start({ kind, reference, ranges, joints }) {
         button.addEventListener("click", () =>
             tried(save(`${path}/simulations`, asked, button.dataset.media, name, followed).then(() => tell(...verdict(found)))));
     }
-    new Modes(path, { joints }, {
+    new Modes(path, { joints, chart }, {
         play, given: () => sliders.given()[0], found: (q) => sliders.set(q), size: () => view?.told.sphere.radius ?? 1,
     });
     locus(path, () => sliders.given()[0]);

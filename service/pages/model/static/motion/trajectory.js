@@ -1,16 +1,18 @@
 // A motion that was computed: its state at a time, and what is plotted of it.
 
 /** The state at a time: Hermite's cubic, which has the positions and velocities of the results. */
-export function interpolated({ t: times, q, qd }, t, state) {
+export function interpolated({ t: times, q, qd }, t, state, chart) {
     const low = Math.max(0, index(times, t));
     const high = Math.min(low + 1, times.length - 1);
     const h = times[high] - times[low] || 1;
     const s = (t - times[low]) / h;
+    const [before, after] = [low, high].map((at) => chart.rates(q[at], qd[at]));
     q[low].forEach((a, k) => {
-        const [b, va, vb] = [q[high][k], qd[low][k] * h, qd[high][k] * h];
+        const [b, va, vb] = [q[high][k], before[k] * h, after[k] * h];
         state.q[k] = a + s * (va + s * (3 * (b - a) - 2 * va - vb + s * (2 * (a - b) + va + vb)));
-        state.qd[k] = qd[low][k] + s * (qd[high][k] - qd[low][k]);
     });
+    chart.normalise(state.q);
+    qd[low].forEach((v, k) => (state.qd[k] = v + s * (qd[high][k] - v)));
 }
 
 /** The last of times that is not after t. */
@@ -77,7 +79,7 @@ function energies(found, take, program) {
 function moving(program, q, qd) {
     program.vectors.q.set(q);
     const M = program.array("metric");
-    return qd.reduce((sum, v, i) => sum + 0.5 * v * qd.reduce((row, w, j) => row + M[i * q.length + j] * w, 0), 0);
+    return qd.reduce((sum, v, i) => sum + 0.5 * v * qd.reduce((row, w, j) => row + M[i * qd.length + j] * w, 0), 0);
 }
 
 /** How far first integrals are from their first values, in parts of their size. */
