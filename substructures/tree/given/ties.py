@@ -98,7 +98,7 @@ class Tied(Protocol):
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
-    *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles"),
+    *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "equivalences"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
