@@ -94,7 +94,11 @@ def test_names_are_used_and_known(name: str) -> None:
             return []
         return [t for key, value in data.items() for t in (strings(value) if key in numeric else expressions(value))]
 
-    texts = [text for key in ("bodies", "ports", "loads", "relations") for text in expressions(entry.get(key, []))]
+    texts = [
+        text
+        for key in ("bodies", "ports", "loads", "relations", "closures")
+        for text in expressions(entry.get(key, []))
+    ]
     found = {word for text in texts for word in re.findall(r"[A-Za-z]\w*", text)} - {"pi", "sin", "cos", "sqrt"}
     assert found == parameters | inputs
 

@@ -1,4 +1,4 @@
-"""Entries with loops: a textbook's equations of the five-bar arm; the adaptive gripper on an arm in MuJoCo."""
+"""Entries with loops: equations of five-bar arm, pantograph and delta robot by hand; the adaptive gripper in MuJoCo."""
 
 # ruff: noqa: N806 -- symbols of the notation
 
@@ -21,6 +21,11 @@ Array = Any
 def five_bar() -> Model:
     tree = {"name": "t", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "five-bar"}]}
     return couple(TreeSpec.read(tree), {"x": shipped_part("five-bar")})
+
+
+def alone(name: str, gravity: list[Any]) -> Model:
+    tree = {"name": "t", "gravity": gravity, "instances": [{"name": "x", "substructure": name}]}
+    return couple(TreeSpec.read(tree), {"x": shipped_part(name)})
 
 
 def parallelogram(q1: float, q2: float) -> list[float]:
@@ -232,3 +237,66 @@ def test_the_inertia_tensors_of_the_gripper_are_as_published() -> None:
         assert defaults[f"m{letter}"] == mass
         found = {x: defaults.get(f"I{x}{letter}", 0.0) for x in tensor(quaternion, diagonal)}
         assert found == pytest.approx(tensor(quaternion, diagonal), rel=1e-12)
+
+
+def test_the_pantograph_moves_its_end_k_times_as_far() -> None:
+    """q = k p in every position, and the mass matrix in the angles of both long bars as their masses make it."""
+    model, rng = alone("pantograph", [0, -9.81, 0]), np.random.default_rng(4)
+    p = {name: float(x["value"]) for name, x in load("pantograph")["parameters"].items()}
+    ports = [model.frames.index(f"x.{name}") for name in "pq"]
+    whole = p["k"] * p["a"]
+    for _ in range(4):
+        q1, q2 = rng.uniform(-3, 3, 2)
+        at = {"q": [q1, q2, q2, np.pi - q2]}
+        found = evaluate(model, ["metric", "kinematics", "closure.residual", "closure.jacobian"], **at)
+        assert np.abs(found["closure.residual"]).max() < 1e-15
+        short, far = found["kinematics"]["position"][ports]
+        np.testing.assert_allclose(far, p["k"] * short, atol=1e-15)
+        # rates of q1 and q1 + q2
+        N = np.array([[1, 0], [-1, 1], [-1, 1], [1, -1]])
+        assert np.abs(found["closure.jacobian"] @ N).max() < 1e-15
+        d11 = p["I1"] + p["m1"] * p["s1"] ** 2 + p["m2"] * whole**2 + p["m3"] * p["a"] ** 2
+        d11 += p["I4"] + p["m4"] * (whole - p["s4"]) ** 2
+        d22 = p["I2"] + p["m2"] * p["s2"] ** 2 + p["I3"] + p["m3"] * p["s3"] ** 2 + p["m4"] * p["c"] ** 2
+        mixed = p["m2"] * whole * p["s2"] + p["m3"] * p["a"] * p["s3"] + p["m4"] * (whole - p["s4"]) * p["c"]
+        d12 = mixed * np.cos(q2)
+        np.testing.assert_allclose(N.T @ found["metric"] @ N, [[d11, d12], [d12, d22]], rtol=0, atol=1e-14)
+
+
+def test_the_delta_robot_has_codoureys_equations() -> None:
+    """tau = I_b q'' + J^T m_n (x'' - g) - M_b g cos q (A. Codourey 1998) with x' = J q' of rods that keep their length,
+    at positions that are closed by hand.
+    """
+    model, rng = alone("delta-robot", [0, 0, -9.81]), np.random.default_rng(5)
+    p = {name: float(x["value"]) for name, x in load("delta-robot")["parameters"].items()}
+    around = 2 * np.pi / 3 * np.arange(3)
+    out, up = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1), np.array([0, 0, 1])
+    mass, arm = p["mp"] + p["mb"], p["Ia"] + p["Im"] + p["ma"] * p["sa"] ** 2 + 2 / 3 * p["mb"] * p["la"] ** 2
+    weight = 9.81 * (p["ma"] * p["sa"] + 2 / 3 * p["mb"] * p["la"])
+    for _ in range(4):
+        angles = rng.uniform(-0.3, 0.6, 3)
+        elbows = (p["R"] - p["r"]) * out + p["la"] * (np.cos(angles)[:, None] * out - np.sin(angles)[:, None] * up)
+        place = below(elbows, p["lb"])
+        state = loop_state(model, [*angles, *place])
+        np.testing.assert_allclose(state.consistent.q, [*angles, *place], atol=1e-12)
+        assert state.mobility.degrees_of_freedom == 3
+        # s . x' = s . elbow'
+        rods = place - elbows
+        turned = -p["la"] * (np.sin(angles)[:, None] * out + np.cos(angles)[:, None] * up)
+        J = np.linalg.solve(rods, np.diag(np.einsum("ki,ki->k", rods, turned)))
+        found = evaluate(model, ["metric", "gravity"], [*angles, *place])
+        N = np.vstack([np.eye(3), J])
+        np.testing.assert_allclose(N.T @ found["metric"] @ N, arm * np.eye(3) + mass * J.T @ J, rtol=0, atol=1e-14)
+        held = J.T @ (mass * 9.81 * up) - weight * np.cos(angles)
+        np.testing.assert_allclose(N.T @ -found["gravity"], held, rtol=0, atol=1e-12)
+
+
+def below(elbows: Array, length: float) -> Array:
+    """The lower of both points at a distance from three others."""
+    a, b, c = elbows
+    # the centre of the circle through them, and its axis
+    normal = np.cross(b - a, c - a)
+    left = np.array([2 * (b - a), 2 * (c - a), normal])
+    centre = np.linalg.solve(left, [b @ b - a @ a, c @ c - a @ a, normal @ a])
+    height = np.sqrt(length**2 - (centre - a) @ (centre - a))
+    return centre - height * normal / np.linalg.norm(normal) * np.sign(normal[2])

@@ -10,6 +10,7 @@ import pytest
 
 from substructures.analysis import drawings
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
+from substructures.analysis.orbits.sections import PoincareSection
 from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.verdict import Check
@@ -100,6 +101,20 @@ def test_a_root_locus_is_drawn_in_the_plane_and_over_its_parameter(monkeypatch: 
     assert [(line.x.tolist(), line.y.tolist()) for line in plane.lines] == [([-1, 1], [2, 3]), ([-1, 1], [-2, -3])]
     assert [(line.x.tolist(), line.y.tolist()) for line in parts.lines] == [([5, 6], [-1, 1])] * 2
     assert plane.marks == (("", 0.0),)
+
+
+def test_a_section_is_drawn_in_the_planes_of_coordinates_and_velocities(monkeypatch: pytest.MonkeyPatch) -> None:
+    q, qd = np.array([[1.0, 10], [2, 20]]), np.array([[3.0, 30], [4, 40]])
+    found = PoincareSection(("a", "b"), np.array([0.5, 1.5]), q, qd)
+    title, panels = drawn_panels(monkeypatch, lambda: drawings.draw(found, "RP"))
+    assert title == "section, finished, not known to be right"
+    assert [(panel.x_label, panel.y_label) for panel in panels.values()] == [
+        ("a in rad", "a' in rad/s"),
+        ("b in m", "b' in m/s"),
+    ]
+    for a, panel in enumerate(panels.values()):
+        (line,) = panel.lines
+        assert (line.dots, line.x.tolist(), line.y.tolist()) == (True, q[:, a].tolist(), qd[:, a].tolist())
 
 
 def test_a_frequency_response_is_a_bode_diagram(monkeypatch: pytest.MonkeyPatch) -> None:

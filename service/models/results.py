@@ -28,6 +28,7 @@ DRAWN = (*PLAIN, SVG)
 PROPERTIES: dict[str, dict[str, str]] = {
     "Linearisation": {"is_equilibrium": "modes"},
     "ConstrainedLinearisation": {"is_steady": "modes"},
+    "BallLinearisation": {"is_steady": "modes"},
     "Identification": {"is_right": "checks"},
     "ConsistentInertia": {"is_right": "checks"},
     "Orbit": {"is_right": "checks"},

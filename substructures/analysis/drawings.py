@@ -1,5 +1,5 @@
 """Results as diagrams: coordinates over time with the drift of first integrals, eigenvalues and steady motions over a
-parameter, Bode diagrams of frequency responses.
+parameter, Bode diagrams of frequency responses, Poincare sections.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from collections.abc import Iterator
 import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.orbits.sections import PoincareSection
 from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.steady_result import SteadyMotions
@@ -20,13 +21,15 @@ TIME = "t in s"
 
 
 def draw(found: Trajectory | RootLocus | SteadyMotions | FrequencyResponse, joints: str) -> str:
-    """A motion, a root locus, steady motions or a frequency response as SVG. Raises ValueError for what is no such."""
+    """A motion, section, root locus, frequency response or steady motions as SVG. Raises ValueError for others."""
     if isinstance(found, FrequencyResponse):
         return draw_frequency_response(found)
     if isinstance(found, RootLocus):
         return draw_root_locus(found)
     if isinstance(found, SteadyMotions):
         return draw_steady_motions(found, joints)
+    if isinstance(found, PoincareSection):
+        return draw_section(found, joints)
     if not isinstance(found, Trajectory):
         raise ValueError(f"there is no picture of a {type(found).__name__}")
     return draw_trajectory(found, joints)
@@ -47,6 +50,16 @@ def draw_trajectory(motion: Trajectory, joints: str) -> str:
     if drifts:
         panels.append(Panel("drift over scale of what must be constant", TIME, "1", drifts, events))
     return plot(_title(motion), panels)
+
+
+def draw_section(section: PoincareSection, joints: str) -> str:
+    """SVG: the crossings in the plane of each coordinate and its velocity."""
+    panels = []
+    for a, name in enumerate(section.coordinates):
+        unit = "rad" if joints[a] == "R" else "m"
+        dots = Line(f"{len(section.t)} crossings", section.q[:, a], section.qd[:, a], dots=True)
+        panels.append(Panel(name, f"{name} in {unit}", f"{name}' in {unit}/s", (dots,)))
+    return plot(f"section, {_title(section)}", panels)
 
 
 def _title(motion: Trajectory) -> str:

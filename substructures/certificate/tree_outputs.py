@@ -21,7 +21,7 @@ from substructures.certificate.closures import closure_outputs
 from substructures.certificate.described import closures_in, coordinates_in, hosts_first
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
 from substructures.certificate.given.driven import driven_outputs, driven_symbols, of_free, with_driven
-from substructures.certificate.given.ignored import ignored_outputs, ignored_symbols
+from substructures.certificate.given.ignored import ignored_outputs, ignored_symbols, with_ignored
 from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import Forces, forces
@@ -62,6 +62,13 @@ def tree_outputs(
         every, outputs = list(coordinates_in(tree, definitions)), partial(_outputs, tree, definitions, stored)
         return ignored_outputs(tree, every, values, outputs)
     return _outputs(tree, definitions, stored, values)
+
+
+def with_given(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Mapping[str, Ball]:
+    """The values of all symbols, those of driven and of ignored coordinates among them; ``values``: of the others."""
+    if not tree.get("ignored"):
+        return with_driven(tree, values)
+    return with_ignored(tree, list(coordinates_in(tree, definitions)), values, partial(_outputs, tree, definitions, {}))
 
 
 def _outputs(

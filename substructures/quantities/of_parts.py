@@ -8,13 +8,19 @@ from typing import Any, ClassVar
 
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, program
+from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
 from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
+from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec, require_unignored
-from substructures.tree.given.driven import put_in
+from substructures.tree.given.driven import all_coordinates, put_in
+from substructures.tree.given.ignored import at_momenta
+from substructures.tree.model import loaded_outputs
 
+#: what trees with ignored coordinates have, too, and what tells whether these are cyclic
+REDUCED, OF_EQUATIONS = ("reactions", "powers"), frozenset(("metric", "bias", "forces", "potential_energy", "friction"))
 #: outputs, and the names of their rows
 Rows = tuple[Mapping[str, Formulas], Sequence[str]]
 
@@ -32,6 +38,13 @@ class OfParts:
     def labels(self) -> Mapping[str, Any]:
         """Names of places by axis."""
         return {self.axis: self.rows} if self.axis else {}
+
+
+def _at_momenta(assembly: Assembly, outputs: Mapping[str, Formulas]) -> Mapping[str, Formulas]:
+    """Outputs without axes of coordinates at the velocities and accelerations that given momenta make."""
+    coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity, christoffel=False)
+    whole = loaded_outputs(assembly, coupled, OF_EQUATIONS)
+    return at_momenta(assembly, list(all_coordinates(assembly)), outputs, whole)
 
 
 def _axes(name: str) -> list[int]:
@@ -52,11 +65,12 @@ def formed(
     Raises InvalidDocument with pointers into the tree document, TooLarge for more than ``max_nodes`` operations, and
     VerificationFailed unless every element is what ``expected`` makes of the documents.
     """
-    require_unignored(spec.ignored)
+    require_unignored(() if what in REDUCED else spec.ignored)
     assembly = assemble(spec, parts)
     try:
         outputs, rows = make(assembly)
         outputs = put_in(assembly, outputs, {name: _axes(name) for name in outputs})
+        outputs = _at_momenta(assembly, outputs) if spec.ignored else outputs
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)

@@ -8,11 +8,11 @@ from typing import Any
 
 from substructures.certificate.compare import Compared, Expected, compare
 from substructures.certificate.described import coordinates_in, described
-from substructures.certificate.given.driven import of_free, with_driven
+from substructures.certificate.given.driven import of_free
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.states import states_needed
-from substructures.certificate.tree_outputs import tree_outputs, tree_symbols
+from substructures.certificate.tree_outputs import tree_outputs, tree_symbols, with_given
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.certificate import HOW, defaults_of, plain, told
@@ -89,8 +89,8 @@ def certify_rows(
     every = list(coordinates_in(tree, parts))
 
     def expected(values: Mapping[str, Any]) -> Outputs:
-        """Of free coordinates, at motions of the others as they are given."""
-        return of_free(outputs(tree, parts, rows, with_driven(tree, values)), every, tree.get("driven", ()))
+        """Of free coordinates, at motions or momenta of the others as they are given."""
+        return of_free(outputs(tree, parts, rows, with_given(tree, parts, values)), every, tree.get("driven", ()))
 
     try:
         _, found = _compared(tree, parts, result, expected, more)

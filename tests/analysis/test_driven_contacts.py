@@ -13,6 +13,7 @@ from closed_trees import tree_model
 from substructures import Contact, InvalidInput, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.trajectory import Trajectory
 from tests.contact_models import BALL, PLACED, G
+from tests.contact_models import point as free_point
 
 A, W = 0.05, 20.0
 GIVEN = {"input": True}
@@ -33,6 +34,20 @@ def point() -> dict[str, Any]:
         {"name": "body", "parent": "across", "joint": {**slide, "coordinate": "z", "axis": [0, 0, 1]}, "mass": 2},
     ]
     return {"name": "point", "bodies": bodies}
+
+
+def on_circling_plate() -> Model:
+    """2 kg in space on a plate that moves along x and y."""
+    slide = {"type": "prismatic", **PLACED}
+    bodies = [
+        {"name": "frame", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
+        {"name": "plate", "parent": "frame", "joint": {**slide, "coordinate": "y", "axis": [0, 1, 0]}, "mass": 1},
+    ]
+    contact = {"name": "plate", "point": "b.body", "plane": "f.plate", "friction": "0.3"}
+    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "point"}]
+    driven = {"f.x": "0.04*sin(8*t)", "f.y": "0.05*cos(7*t)"}
+    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": driven, "contacts": [contact]}
+    return tree_model(tree, {"floor": {"name": "floor", "bodies": bodies}, "point": free_point()})
 
 
 def on(plane: dict[str, Any], motion: Any, what: dict[str, Any]) -> Model:
@@ -85,6 +100,37 @@ def test_a_belt_takes_a_point_along() -> None:
     assert motion.events[0].t == pytest.approx(stop, abs=1e-9)
     assert motion.q[-1] == pytest.approx([2 * (1 - stop) + stop, 0], abs=1e-9)
     assert motion.qd[-1] == pytest.approx([2, 0], abs=1e-9)
+
+
+def test_a_plate_that_circles_takes_a_point_along_until_it_breaks_away() -> None:
+    """The way of slip turns until it ends: u' = -mu g u/|u| - a of the plate, and it holds while |a| < mu g."""
+    model = on_circling_plate()
+    motion = simulate(model, [0, 0, 0], (0, 0.4872), qd=[0.4, 0.2, 0])
+    mu = 0.3 * G
+
+    def plate(t: float) -> tuple[Any, Any]:
+        """Its velocity and acceleration."""
+        phi, psi = 8 * t, 7 * t
+        return (
+            np.array([0.32 * np.cos(phi), -0.35 * np.sin(psi)]),
+            np.array([-2.56 * np.sin(phi), -2.45 * np.cos(psi)]),
+        )
+
+    def ends(_: float, u: Any) -> float:
+        return math.hypot(*u) - 1e-8
+
+    ends.terminal = True  # type: ignore[attr-defined]
+    found = scipy.integrate.solve_ivp(
+        lambda t, u: -mu * u / math.hypot(*u) - plate(t)[1], (0, 0.4), [0.4 - 0.32, 0.2], "DOP853", events=ends,
+        rtol=1e-12, atol=1e-13,
+    )  # fmt: skip
+    stick, slip = motion.events
+    assert (stick.kind, slip.kind) == ("stick", "slip")
+    assert stick.t == pytest.approx(found.t[-1], abs=2e-8)
+    assert stick.qd[:2] == pytest.approx(plate(stick.t)[0], abs=1e-7)
+    away = scipy.optimize.brentq(lambda t: math.hypot(*plate(t)[1]) - mu, stick.t, 0.5)
+    assert slip.t == pytest.approx(away, abs=1e-7)
+    assert motion.is_right
 
 
 def test_a_point_slides_out_on_a_plane_that_turns() -> None:

@@ -14,8 +14,8 @@ from substructures import (
     ConstrainedMotion,
     Model,
     catalogue,
-    frequency_response,
     linearise,
+    regulator,
     simulate,
 )
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints, constraints_of
@@ -90,7 +90,7 @@ def test_what_is_left_of_it() -> None:
         lambda: simulate(model, [0, 0, 0], (0, 1), kind=ConstrainedMotion([Linear("x", "s.x'")])),
         lambda: motion_arguments(model, q=[0, 0, 0], span=(0, 1), constraints=(BLADE, BLADE)),
         lambda: quasi_velocity_equations(model, [Linear("x", "s.x'")]),
-        lambda: frequency_response(model, [0, 0, 0]),
+        lambda: regulator(model, [0, 0, 0]),
     ]
     for each in refused:
         with pytest.raises(InvalidInput) as caught:

@@ -15,6 +15,9 @@ from random_trees import Kind, random_definition
 
 from substructures import InvalidDocument, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import VerificationFailed
+from substructures.expr.interpret import interpret
+from substructures.quantities.powers import powers
+from substructures.quantities.reactions import reactions
 from substructures.tree.given import ignored
 
 Plain = dict[str, Any]
@@ -128,6 +131,44 @@ def compared(whole: Model, here: Model, p: list[float], rng: np.random.Generator
     assert deviation(written, found["bias"]) < 1e-10
     assert deviation(found["Gamma_ab0"], -found["Gamma_ab0"].T) < 1e-12
     assert deviation(found["inverse_dynamics"], found["metric"] @ qdd[rest] + found["bias"] - found["forces"]) < 1e-10
+
+
+@pytest.mark.parametrize("given", [{"t.turn": "h"}, {"t.x": "0.7", "t.y": "-0.4"}])
+@pytest.mark.parametrize("seed", seeds(1, 10))
+def test_reactions_and_powers_are_those_of_the_whole_tree(seed: int, given: dict[str, str]) -> None:
+    """At the velocities and accelerations of the ignored coordinates, which follow from their momenta."""
+    table = TABLE if "t.x" in given else {**TABLE, "bodies": [{**TABLE["bodies"][2], "parent": "base"}]}
+    instances = [{"name": "t", "definition": table}, document(mechanism(seed), {})["instances"][1]]
+    free = TreeSpec.read({**document(None, {}), "instances": instances})
+    spec = TreeSpec.read({**document(None, given), "instances": instances})
+    parts = {each.name: derive(each.definition) for each in free.instances if each.definition}
+    whole, here = couple(free, parts), couple(spec, parts)
+    cyclic, rest = ([whole.coordinates.index(name) for name in some] for some in (here.ignored, here.coordinates))
+    q, qd, qdd = np.random.default_rng(seed).uniform(-1, 1, (3, whole.dof))
+    q[cyclic] = 0
+    qd[cyclic] = evaluate(here, ["ignored_rates"], q=q[rest], qd=qd[rest])["ignored_rates"]
+    equations = evaluate(whole, ["metric", "bias"], q=q, qd=qd)
+    pull = equations["metric"][np.ix_(cyclic, rest)] @ qdd[rest] + equations["bias"][cyclic]
+    qdd[cyclic] = np.linalg.solve(equations["metric"][np.ix_(cyclic, cyclic)], -pull)
+    values = {"h": 1.3, "k": 0.35, "t": 0.0}
+    for mark, x in (("", q), ("'", qd), ("''", qdd)):
+        values |= {f"{name}{mark}": float(x[a]) for a, name in enumerate(whole.coordinates)}
+    for make in (reactions, powers):
+        one, two = make(free, parts), make(spec, parts)
+        assert one.rows == two.rows
+        known = {
+            symbol.name: values.get(symbol.name, 0.3 if symbol.kind == "input" else 1.0)
+            for symbol in one.program.symbols
+        }
+        known |= {f"tau.{name}": 0.0 for name in here.ignored} | values
+        known |= {name: x["value"] for name, x in here.parameters.items() if x.get("value") is not None}
+        expected, found = (interpret(each.program, known) for each in (one, two))
+        for name in expected:
+            assert deviation(np.asarray(found[name]), np.asarray(expected[name])) < 1e-10, name
+        names = {symbol.name for symbol in two.program.symbols}
+        assert not names & {
+            f"{x}{name}{mark}" for name in given for x, mark in (("", ""), ("", "'"), ("", "''"), ("tau.", ""))
+        }
 
 
 SAME = ["generalised_momenta", "kinetic_energy", "potential_energy", "momentum", "kinematics"]

@@ -68,8 +68,9 @@ def test_sections_as_files(client: TestClient, level: float) -> None:
         else:
             with np.load(io.BytesIO(asked.content), allow_pickle=False) as arrays:
                 assert np.array_equal(arrays["q"], expected.reshape(-1, 2))
-    refused = client.post("/v1/trees/cart/poincare-sections", json=body, headers={"Accept": "image/svg+xml"})
-    assert refused.status_code == 406
+    drawn = client.post("/v1/trees/cart/poincare-sections", json=body, headers={"Accept": "image/svg+xml"})
+    assert (drawn.status_code, drawn.text.count("<circle")) == (200, 2 * len(expected))
+    assert "x.q1' in rad/s" in drawn.text
 
 
 def test_equations_of_a_skate_in_every_format(client: TestClient) -> None:

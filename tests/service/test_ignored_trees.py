@@ -96,10 +96,8 @@ def test_it_moves_and_rests(governor: TestClient) -> None:
     [
         ("publish", {}),
         ("curvatures", {"q": [0.1]}),
-        ("evaluations", {"quantities": ["reactions"], "q": [0.1]}),
         ("evaluations", {"quantities": ["regressor"], "q": [0.1], "qdd": [0]}),
         ("simulations", {"q": [0.1], "span": [0, 1], "contacts": [{"name": "c", "point": "g.bead"}]}),
-        ("simulations", {"q": [0.1], "span": [0, 1], "powers": True}),
     ],
 )
 def test_what_refuses_it_says_why(governor: TestClient, path: str, body: dict[str, Any]) -> None:
@@ -108,6 +106,26 @@ def test_what_refuses_it_says_why(governor: TestClient, path: str, body: dict[st
     fault = answer.json()["errors"][0]
     assert fault["code"] == "has-ignored", fault
     assert "'g.turn'" in fault["message"]
+
+
+def test_its_joints_transmit_what_those_of_the_whole_do(governor: TestClient) -> None:
+    """The bar pushes the bead sideways, for which its acceleration is needed; its spring and weight are borne, too."""
+    asked = {"q": [0.4], "qd": [0.5], "span": [0, 1], "count": 3, "reactions": True, "powers": True}
+    found = governor.post("/v1/trees/governor/simulations", json=asked)
+    assert found.status_code == 200, found.text
+    body = found.json()
+    assert body["is_right"] is True
+    assert "power" in [check["name"] for check in body["checks"]]
+    m, r, v, inertia, h = 1, 0.4, 0.5, 0.2, 2
+    whole = inertia + m * r * r
+    rate = h / whole
+    # h = (J + m r^2) w: w' = -2 m r r' w/(J + m r^2); the bar pushes the bead with m (r w' + 2 r' w)
+    push = m * (-2 * m * r * r * v * rate / whole + 2 * v * rate)
+    (k,) = (k for k, name in enumerate(body["joints"]) if name == "g.r")
+    force = np.array(body["series"]["reaction_force"])[0, k]
+    assert np.sort(np.abs(force)) == pytest.approx([push, 50 * 0.1, 9.81], rel=1e-9)
+    told = governor.post("/v1/trees/governor/evaluations", json={"quantities": ["reactions"], "q": [0.4], "qd": [0.5]})
+    assert told.status_code == 200, told.text
 
 
 def test_a_force_on_it_is_a_fault(client: TestClient) -> None:

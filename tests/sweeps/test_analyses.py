@@ -156,6 +156,38 @@ def test_motions_of_an_oscillator() -> None:
     assert found["energy"] == pytest.approx(found["a.c"] * 0.005, rel=1e-4)
 
 
+def test_motions_with_contacts_are_those_of_each_row() -> None:
+    """A ball bounces with 0.8 of its velocity, whatever its mass; a row that starts below has no number."""
+    ball = {
+        **ROD,
+        "bodies": [{"name": "rod", "parent": "base", "joint": {"type": "prismatic", "coordinate": "q"}, "mass": "m"}],
+    }
+    contact = {"name": "floor", "point": "a.rod", "restitution": "0.8"}
+    template = {**SPRUNG["template"], "contacts": [contact]}
+    samples = {"method": "grid", "of": {"a.m": {"values": [0.5, 2]}, "g": {"values": [7, 9.81]}}}
+    motion = {"analysis": "simulation", "at": {"q": [1]}, "span": [0, 1]}
+    columns = {
+        "end": {**motion, "expression": "a.q"},
+        "weight": {"quantity": "gravity", "over": {"q": [[1]]}, "take": "smallest"},
+    }
+    sweep = Sweep(SPRUNG, {"rod": ball}, columns=columns, template=template, samples=samples)
+    found = sweep.rows().columns
+    fall = np.sqrt(2 / found["g"])
+    left = 1 - fall
+    assert found["end"] == pytest.approx(0.8 * found["g"] * fall * left - found["g"] / 2 * left**2, abs=1e-7)
+    assert found["weight"] == pytest.approx(-found["a.m"] * found["g"])
+    for row in range(4):
+        values, _ = sweep.slow(row)
+        assert values["end"] == pytest.approx(found["end"][row], rel=1e-9)
+    still = Sweep(
+        SPRUNG, {"rod": ball}, columns={"x": {"analysis": "equilibrium", "at": AT, "of": "a.q"}}, template=template
+    )
+    still.rows()
+    assert list(still.refusals.by_code) == ["has-contacts"]
+    below = Sweep(SPRUNG, {"rod": ball}, columns={"end": {**columns["end"], "at": {"q": [-1]}}}, template=template)
+    assert np.isnan(below.rows().columns.get("end", np.nan)).all()
+
+
 def test_motions_with_inputs_are_those_of_one_tree() -> None:
     drive = {"tau.a.q": "5*sin(3*t)"}
     motion = {"analysis": "simulation", "at": {"q": [0.4], "qd": [0.2], "inputs": drive}, "span": [0, 1]}

@@ -6,7 +6,7 @@ from typing import Any
 
 from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
-from service.models.results import SVG, TRAJECTORY
+from service.models.results import TRAJECTORY
 from service.models.source import Source
 from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest, PoincareSectionRequest
 from substructures.analysis.motion.integrators.progress import ProgressReport
@@ -66,7 +66,7 @@ ANALYSES = {
         PoincareSectionRequest,
         _section,
         "The states in which a motion crosses a surface in one direction",
-        tuple(media for media in TRAJECTORY if media != SVG),
+        TRAJECTORY,
     ),
     "lyapunov-exponents": Analysis(
         LyapunovRequest,

@@ -185,7 +185,7 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
     norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in quaternions_in(model.positions, model.balls)])
     kept = Check.of(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
     unit = partial(with_lengths, model)
-    span = _reached(model, t, x, m)
+    span = reached_in_rates(model, t, x)
     return Trajectory(
         model.coordinates,
         t[results],
@@ -236,9 +236,11 @@ def conditions_in_rates(model: Model, states: MotionStates, is_balanced: bool) -
     yield Condition(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), ones, 0 * ones, everywhere)
 
 
-def _reached(model: Model, t: Array, x: Array, m: int) -> tuple[Array, Array]:
-    """Lowest and highest values of the coordinates; of rates of ball joints, which have no limits, 0."""
-    places = {name: i for i, name in enumerate(model.positions)}
+def reached_in_rates(model: Model, t: Array, x: Array) -> tuple[Array, Array]:
+    """Lowest and highest values of the coordinates at x (K, m + n) or longer; of rates of ball joints, which have no
+    limits, 0.
+    """
+    places, m = {name: i for i, name in enumerate(model.positions)}, len(model.positions)
     found = np.zeros((2, model.dof))
     own = [a for a, name in enumerate(model.coordinates) if name in places]
     found[:, own] = reached(t, x[:, [places[model.coordinates[a]] for a in own]], x[:, [m + a for a in own]])

@@ -18,6 +18,7 @@ from substructures.analysis.equations.formulas import ModelFormulas, require_mov
 from substructures.analysis.equations.nonholonomic.positions import closed_positions, start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
+from substructures.analysis.motion.ball_motion import conditions_in_rates, reached_in_rates, with_lengths
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
@@ -30,7 +31,7 @@ from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, M
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.second_run import accurate, halves, second_run
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.motion.variation import Variation
+from substructures.analysis.motion.variation import Variation, displaced
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.certificate.derived.perturbed import by_parameters
@@ -109,6 +110,9 @@ def sensitivities(
     With ``outputs.of_start`` also the series ``d.start`` (K, 2n, 2n), dx/dx_0. The other arguments are those of
     :func:`substructures.analysis.simulate.simulate`; inputs are numbers, tables or expressions in t alone, the method
     is any but Taylor and FixedStep.
+
+    With ball joints x = (dq, dv) of derivatives are displacements and rotation vectors in the axes of bodies, by the
+    names of rates, as of a linearisation.
 
     ``kind``: velocity constraints (default: those of the tree, and all closures). The start is (q, v) then, on the
     closures, with quasi-velocities (series ``v`` (K, p)); ``d.start`` is (K, 2n, n+p), dx/d(q_0, v_0).
@@ -197,9 +201,12 @@ def _varied(problem: MotionProblem, f: Variation, by: Sequence[str], progress: P
     t, rows = np.array(motion.t), np.array(motion.x).reshape(len(motion.x), f.columns + 1, f.size)
     x = f.full(t, rows)
     # rows x, S_1, ..., S_k; the columns of dx/dx_0 were integrated as rows
-    series = {f"d.{name}": x[:, 1 + i] for i, name in enumerate(by)}
+    slopes, balls = x[:, 1:], problem.model.balls
+    if balls:
+        slopes, x[:, 0, :n] = displaced(problem.model, x), with_lengths(problem.model, x[:, 0, :n])
+    series = {f"d.{name}": slopes[:, i] for i, name in enumerate(by)}
     if f.of_start:
-        series["d.start"] = np.swapaxes(x[:, 1 + k :], 1, 2)
+        series["d.start"] = np.swapaxes(slopes[:, k:], 1, 2)
     if f.equations is not None:
         series["v"] = rows[:, 0, n:]
     found = Trajectory(
@@ -214,6 +221,8 @@ def _varied(problem: MotionProblem, f: Variation, by: Sequence[str], progress: P
         motion.steps,
         figures={"evaluations": float(motion.evaluations)},
         cancelled=motion.cancelled,
+        reached=reached_in_rates(problem.model, t, rows[:, 0]) if balls else None,
+        positions=problem.model.positions if balls else (),
     )
     return with_limits(problem.model, problem.start.parameters, found)
 
@@ -252,8 +261,12 @@ def _groups(f: Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, slic
 
 
 def _integrals(problem: MotionProblem, f: Variation, motion: IntegratedMotion) -> tuple[Check, ...]:
-    """The first integrals of the motion itself; its derivatives have none that are known."""
+    """The first integrals of the motion itself; its derivatives have none that are known; of ball joints norms."""
     model, conditions, n = problem.model, f.conditions, f.n
+    if model.balls:
+        t, rows, _ = motion.judged()
+        norms = conditions_in_rates(model, MotionStates(t, rows[:, :n], rows[:, n : f.size], {}, None), False)
+        return tuple(Check.of(x.about, x.violation, t, 1.0, problem.drift_limit) for x in norms)
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, rows, _ = motion.judged()

@@ -17,6 +17,7 @@ from substructures.analysis.motion.simulation import tree_conditions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.variation import Variation, variational
 from substructures.array import Array
+from substructures.tree.given.ties import require_chains
 
 
 class EndsEarlyError(ArithmeticError):
@@ -27,6 +28,7 @@ class Flow:
     """``start`` (2n,); ``is_forced``: inputs depend on the time. Raises InvalidInput, MissingValue as sensitivities."""
 
     def __init__(self, problem: MotionProblem) -> None:
+        require_chains(problem.model.balls)
         require_smooth(problem.model)
         self.problem, self.conditions, self.choice = problem, tree_conditions(problem), problem.integrator
         require_plain(self.conditions, self.choice)

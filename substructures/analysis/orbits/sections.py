@@ -7,7 +7,7 @@ applicability of the third integral of motion, Astron. J. 69, 1964.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import replace
+from dataclasses import dataclass, fields
 from typing import Literal
 
 import numpy as np
@@ -27,6 +27,11 @@ MOST = 1_000_000
 PLACE = "/events/0"
 
 
+@dataclass(frozen=True, repr=False)
+class PoincareSection(Trajectory):
+    """The states in which a motion crosses a surface, as a trajectory of these alone, with the checks of the motion."""
+
+
 def poincare_section(
     model: Model,
     q: StateVector | None,
@@ -40,7 +45,7 @@ def poincare_section(
     inputs: Mapping[str, Signal] | None = None,
     parameters: Mapping[str, float] | None = None,
     integrator: Integrator | None = None,
-) -> Trajectory:
+) -> PoincareSection:
     """The states ``q``, ``qd`` (K, n) at the times ``t`` (K,) [s] in which a motion of a tree without closures crosses
     the surface ``quantity`` = ``level``, the first ``count`` in up to a ``duration`` [s].
 
@@ -63,17 +68,14 @@ def poincare_section(
     return _met(motion, count, span[1])
 
 
-def _met(motion: Trajectory, count: int, duration: float) -> Trajectory:
+def _met(motion: Trajectory, count: int, duration: float) -> PoincareSection:
     """The states of its events, as they were looked for."""
     met, n = motion.events, len(motion.coordinates)
+    found = {field.name: getattr(motion, field.name) for field in fields(motion)}
     if motion.status != "failed" and not motion.cancelled:
         message = "" if len(met) == count else f"the section is met {len(met)} times in {duration:g} s"
-        motion = replace(motion, status="finished", message=message)
-    return replace(
-        motion,
-        t=np.array([one.t for one in met], dtype=np.float64),
-        q=np.array([one.q for one in met], dtype=np.float64).reshape(-1, n),
-        qd=np.array([one.qd for one in met], dtype=np.float64).reshape(-1, n),
-        series={},
-        events=(),
-    )
+        found |= {"status": "finished", "message": message}
+    found["t"] = np.array([one.t for one in met], dtype=np.float64)
+    found["q"] = np.array([one.q for one in met], dtype=np.float64).reshape(-1, n)
+    found["qd"] = np.array([one.qd for one in met], dtype=np.float64).reshape(-1, n)
+    return PoincareSection(**found | {"series": {}, "events": ()})

@@ -70,11 +70,28 @@ class BallLinearisation(Linearisation):
     """Of a tree with ball joints, whose rates v are no derivatives: M dv' + D dv + K dq = F du, dq' = dv + R dq;
     x = (dq, dv). Of such a joint dq are the displacement of a floating one [m] and the rotation vector [rad], in the
     axes of the body that it carries, as its rates are: dQ = 1/2 Q (0, dq). ``R`` (n, n) is 0 at rest; ``positions``:
-    names of the numbers of a state.
+    names of the numbers of a state; ``qd`` (n,): its rates. Where v' = 0 and A stays as it is at constant rates, the
+    motion is steady (a top upright, a body about a principal axis): ``modes`` and ``stability`` of its neighbours.
     """
 
     positions: tuple[str, ...]
     R: Array
+    qd: Array
+
+    def _finding(self) -> str:
+        if self.stability is None or not self.qd.any():
+            return super()._finding()
+        return f"about a steady motion, {self.stability.verdict}: {self.stability.reason}"
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether modes and stability are those of a steady motion, or of an equilibrium."""
+        return self.stability is not None
+
+    @property
+    def is_equilibrium(self) -> bool:
+        """Whether the steady motion is rest."""
+        return self.is_steady and not self.qd.any()
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)

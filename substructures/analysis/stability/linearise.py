@@ -24,14 +24,17 @@ from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_order, input_matrix, modes, stability
 from substructures.array import Array
-from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.numbers.quaternions import moved_on
 from substructures.quantities.numbers.states import States, read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces")
 #: R of dq' = dv + R dq of ball joints
 TURNING = "rates_by_position"
+#: turns [rad] after which matrices are compared, and how much of them may change along a steady motion
+LATER, STEADY = (0.37, 1.9, 4.3), 1e-9
 
 
 def linearise(
@@ -91,6 +94,8 @@ def _linearise_tree(point: OperatingPoint) -> Linearisation:
     found["input"] = found["input"][:, :, [inputs_of(model).index(name) for name in chosen]]
     by_output = point.output_matrices(chosen, values, len(qdd))
     result = _assembled(model, (chosen, tuple(point.outputs)), found, by_output, qdd)
+    if isinstance(result, BallLinearisation):
+        result = replace(result, qd=np.broadcast_to(states.qd, qdd.shape))
     message = fault_of(model.coordinates, result.qdd, result.D, result.K, result.A)
     if message:
         result = replace(result, status="failed", message=message)
@@ -124,22 +129,50 @@ def _assembled(
             pairs.append((np.full((2 * n, 2 * n), np.nan), np.full((2 * n, f.shape[1]), np.nan)))
     A, B = np.array([a for a, _ in pairs]), np.array([b for _, b in pairs])
     fields = model.coordinates, *names, M, D, K, F, A, B, *by_output, qdd, found["residual"]
-    return BallLinearisation(*fields, positions=model.positions, R=R) if TURNING in found else Linearisation(*fields)
+    return (
+        BallLinearisation(*fields, positions=model.positions, R=R, qd=np.zeros_like(qdd))
+        if TURNING in found
+        else Linearisation(*fields)
+    )
 
 
 def _single(result: Linearisation) -> Linearisation:
-    names = ("M", "D", "K", "F", "A", "B", "C", "Dy", "qdd", "residual", "R")
+    names = ("M", "D", "K", "F", "A", "B", "C", "Dy", "qdd", "residual", "R", "qd")
     return replace(result, **{name: getattr(result, name)[0] for name in names if hasattr(result, name)})
 
 
 def _judged(point: OperatingPoint, states: States, result: Linearisation, values: Mapping[str, Any]) -> Linearisation:
-    """With modes and stability where the state is an equilibrium."""
-    still = not states.qd.any() and result.status == "finished"
-    if not still or not is_small(result.qdd, result.K, result.M) or unsteady(point.model, point.inputs):
+    """With modes and stability where the state is an equilibrium, with ball joints also where its motion is steady."""
+    is_moving = states.qd.any()
+    if result.status == "failed" or (is_moving and not isinstance(result, BallLinearisation)):
+        return result
+    if not is_small(result.qdd, result.K, result.M) or unsteady(point.model, point.inputs):
         return result
     # a given q'' = 0 is an equilibrium only where M^-1 (g q'' + Gamma q' q' - Q) vanishes, too
     if not is_small(np.linalg.solve(result.M, result.residual), result.K, result.M):
         return result
+    if isinstance(result, BallLinearisation) and is_moving:
+        if not _is_constant(point.model, result, states.q[0], values):
+            return result
+        found = modes(result.M, result.D, result.K, result.R)
+        return replace(result, modes=found, stability=stability(found, result.D, result.K, has_potential=False))
     found, minimum = modes(result.M, result.D, result.K), ROUTH if point.model.ignored else DIRICHLET
     told = stability(found, result.D, result.K, point.has_potential(values), minimum)
     return replace(result, modes=found, stability=told)
+
+
+def _is_constant(model: Model, result: BallLinearisation, q: Array, values: Mapping[str, Any]) -> bool:
+    """Whether M, D, K and what is left over are the same wherever constant rates lead, as they are at states in general
+    position there.
+    """
+    source, names, scale = perturbation(model), ["metric", "damping", "stiffness", "residual"], np.abs(result.qd).max()
+    if "t" in source.needs(names):
+        return False
+    for t in LATER:
+        place = moved_on(model.positions, model.coordinates, model.balls, q, result.qd * (t / scale))
+        there = {**values, **dict(zip(model.positions, place.tolist(), strict=True))}
+        found = interpret(source, {name: float(np.ravel(x)[0]) for name, x in there.items()}, names)
+        for name, x in zip(names, (result.M, result.D, result.K, result.residual), strict=True):
+            if np.abs(found[name] - x).max() > STEADY * max(1.0, float(np.abs(x).max())):
+                return False
+    return True

@@ -72,17 +72,18 @@ class Stability:
     reason: str
 
 
-def modes(M: Array, D: Array, K: Array) -> tuple[Mode, ...]:
+def modes(M: Array, D: Array, K: Array, R: Array | None = None) -> tuple[Mode, ...]:
     """Modes by frequency, slowest first. Without dampers and with symmetric K from the symmetric problem K x = w^2 M x.
 
     Of equal frequencies the one with the lesser real part comes first, as -k before +k; differences that rounding may
     have made count as none. A double eigenvalue 0 of the second case (motion without restoring force) is exactly 0
-    here, listed once; eigenvalues whose imaginary parts may come from rounding are real, both listed.
+    here, listed once; eigenvalues whose imaginary parts may come from rounding are real, both listed. ``R``: of
+    x' = v + R x, M v' + D v + K x = 0.
     """
     if not len(M):
         return ()
-    undamped = np.abs(D).max() == 0 and is_symmetric(K)
-    found = _undamped(M, K) if undamped else _general(M, D, K)
+    undamped = R is None and np.abs(D).max() == 0 and is_symmetric(K)
+    found = _undamped(M, K) if undamped else _general(M, first_order(M, D, K, R))
     keys = [abs, lambda z: z.real, lambda z: z.imag]
     return tuple(mode for mode, _ in _ordered(found, keys))
 
@@ -128,8 +129,8 @@ def _undamped(M: Array, K: Array) -> list[_Doubtful]:
     return found
 
 
-def _general(M: Array, D: Array, K: Array) -> list[_Doubtful]:
-    n, A = len(M), first_order(M, D, K)
+def _general(M: Array, A: Array) -> list[_Doubtful]:
+    n = len(M)
     values, left, right = scipy.linalg.eig(A, left=True, right=True)
     doubts = _doubts(A, values, left, right)
     found: list[_Doubtful] = []

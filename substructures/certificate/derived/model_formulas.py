@@ -7,19 +7,18 @@ g = L^T D L without exchange of rows (notation.md, section 7).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from flint import arb
 
+from substructures.certificate.derived.displaced import BallRows, displacements, moved
 from substructures.certificate.derived.model_at import ModelAt, dot, total
-from substructures.certificate.linear import Ball, Matrix, quaternion_product, turn_of, vector
+from substructures.certificate.linear import Ball, Matrix
 from substructures.certificate.outputs import Outputs
 
 #: what one quantity has to be at a state
 Expectation = Callable[[ModelAt], Outputs]
-#: ``positions`` and ``velocities`` of ball joints
-BallRows = Sequence[Mapping[str, Sequence[str]]]
 
 
 def vector_of(result: Outputs, name: str, values: Sequence[Ball]) -> None:
@@ -106,23 +105,6 @@ def inverse_dynamics_jacobians(m: ModelAt, balls: BallRows = ()) -> Outputs:
     rates = [{f"{name}'": arb(1)} for name in m.coordinates]
     for name, directions in (("inverse_dynamics_q", displacements(m, balls)), ("inverse_dynamics_qd", rates)):
         columns_of(result, name, m.n, [m.changed(each, m.second) for each in directions])
-    return result
-
-
-def displacements(m: ModelAt, balls: BallRows) -> list[dict[str, Ball]]:
-    """Of each coordinate the change of a state with it alone."""
-    return [moved(m, balls, [arb(int(a == b)) for b in range(m.n)]) for a in range(m.n)]
-
-
-def moved(m: ModelAt, balls: BallRows, rates: Sequence[Ball]) -> dict[str, Ball]:
-    """The change of a state at rates: q', of ball joints p' = R v and Q' = 1/2 Q (0, w)."""
-    result = dict(zip(m.coordinates, rates, strict=True))
-    for ball in balls:
-        names, w = ball["positions"], [result.pop(name) for name in ball["velocities"]]
-        Q = [m.values[name] for name in names[-4:]]
-        half = [x / 2 for x in quaternion_product(Q, (arb(0), *w[-3:]))]
-        place = (turn_of(Q) * vector(*w[:3])).entries() if len(names) > len(Q) else []
-        result |= dict(zip(names, (*place, *half), strict=True))
     return result
 
 

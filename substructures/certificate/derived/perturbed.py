@@ -4,23 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from functools import partial
-from itertools import product
 from typing import Any
 
 from flint import arb, arb_mat, arb_series
 
+from substructures.certificate.derived.displaced import (
+    BallRows,
+    change_of_rates,
+    displacement_rates,
+    displacements,
+    moved,
+)
 from substructures.certificate.derived.model_at import ModelAt, times, total
 from substructures.certificate.derived.model_formulas import (
-    BallRows,
     Expectation,
     columns_of,
-    displacements,
     inverse_dynamics_jacobians,
-    moved,
     symmetric_of,
     vector_of,
 )
-from substructures.certificate.linear import Ball, cross, vector
+from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.stored import Pruned, Stored, operations_in_balls, pruned
@@ -42,26 +45,10 @@ def _perturbed(inputs: Sequence[str], multipliers: Sequence[str], balls: BallRow
     columns_of(result, "input", m.n, [[-x for x in m.changed({name: arb(1)}, m.second)] for name in inputs])
     result["residual"] = found["inverse_dynamics"]
     if balls:
-        columns_of(result, "rates_by_position", m.n, _displacement_rates(m, balls))
+        columns_of(result, "rates_by_position", m.n, displacement_rates(m, balls))
     if multipliers:
         _closed(result, m, [m.values[name] for name in multipliers])
     return result
-
-
-def _displacement_rates(m: ModelAt, balls: BallRows) -> list[list[Ball]]:
-    """R d of unit displacements d: of ball joints -w x d, of floating ones before it -w x d - v x d_turn."""
-    columns = [[arb(0)] * m.n for _ in range(m.n)]
-    for ball, (a, column) in product(balls, enumerate(columns)):
-        at, unit = [m.coordinates.index(name) for name in ball["velocities"]], [arb(int(a == b)) for b in range(m.n)]
-        place, turn = at[:-3], at[-3:]
-        w, turned = (vector(*(x[b] for b in turn)) for x in (m.rates, unit))
-        changes = (-cross(w, turned)).entries()
-        if place:
-            v, d = (vector(*(x[b] for b in place)) for x in (m.rates, unit))
-            changes = (-cross(w, d) - cross(v, turned)).entries() + changes
-        for b, x in zip(at, changes, strict=True):
-            column[b] = x
-    return columns
 
 
 def _closed(result: Outputs, m: ModelAt, multipliers: Sequence[Ball]) -> None:
@@ -146,7 +133,7 @@ def _first_order(
     by_rate, by_input = ([{name: arb(1)} for name in some] for some in ([f"{q}'" for q in m.coordinates], inputs))
     by_position = displacements(m, balls)
     own = [[arb(int(a == b)) for a in range(m.n)] for b in range(m.n)]
-    turned = _displacement_rates(m, balls)
+    turned = displacement_rates(m, balls)
 
     def column(kinematic: Sequence[Ball], along: Mapping[str, Ball]) -> list[Ball]:
         """Of A or B: the changes of d' = dv + R d, and of q''."""
@@ -184,14 +171,20 @@ def _by_parameters(parameters: Sequence[str], quantities: Sequence[str], m: Mode
     return result
 
 
-def varied(parameters: Sequence[str]) -> Expectation:
-    """Accelerations and their variation along the symbols ``d.*`` of states and parameters."""
-    return partial(_varied, parameters)
+def varied(parameters: Sequence[str], positions: Sequence[str] = (), balls: BallRows = ()) -> Expectation:
+    """Accelerations and their variation along the symbols ``d.*`` of states and parameters; with balls, whose states
+    consist of ``positions``, also changes of these.
+    """
+    return partial(_varied, parameters, positions, balls)
 
 
-def _varied(parameters: Sequence[str], m: ModelAt) -> Outputs:
+def _varied(parameters: Sequence[str], positions: Sequence[str], balls: BallRows, m: ModelAt) -> Outputs:
     result, found = Outputs(), m.accelerations()
-    names = [*m.coordinates, *(f"{name}'" for name in m.coordinates), *parameters]
+    names = [*(positions or m.coordinates), *(f"{name}'" for name in m.coordinates), *parameters]
+    if balls:
+        changes, slopes = moved(m, balls, m.rates), change_of_rates(m, balls)
+        vector_of(result, "rates", [changes[name] for name in positions])
+        vector_of(result, "rates_variation", [slopes[name] for name in positions])
     change = m.changed({name: m.values[f"d.{name}"] for name in names}, found)
     vector_of(result, "acceleration", found)
     vector_of(result, "variation", m.solved([-x for x in change]))

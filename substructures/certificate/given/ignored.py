@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
+from typing import NamedTuple
 
 from flint import arb, arb_mat, fmpq
 
@@ -50,6 +51,61 @@ def ignored_outputs(
 
     Raises VerificationFailed for a coordinate that is not cyclic.
     """
+    m = _moving(tree, coordinates, values, outputs)
+    cyclic, rest, pushed, (g, w, p) = m.cyclic, m.rest, m.pushed, m.momenta
+    rates = [values[f"{coordinates[a]}'"] for a in rest]
+    found = outputs(m.values)
+    away = outputs({**m.values, **{coordinates[c]: arb(fmpq(2 * k + 1, 3)) for k, c in enumerate(cyclic)}})
+    _require_cyclic(found, away, cyclic, coordinates)
+    result = Outputs({name: _reduced(name, each, pushed, rest) for name, each in found.items()})
+    for name, axis in MOTIONS.items():
+        shape = found[name].shape
+        result.array(f"{name}_0", shape[:axis] + shape[axis + 1 :]).update(_along(_whole(found[name]), axis, w))
+    _routhian(result, found, (g, w, p), pushed, rates)
+    speeds = (m.values[f"{coordinates[c]}'"] for c in cyclic)
+    result.array("ignored_rates", (len(cyclic),)).update({(k,): v for k, v in enumerate(speeds)})
+    return result
+
+
+def with_ignored(
+    tree: Plain,
+    coordinates: Sequence[str],
+    values: Mapping[str, Ball],
+    outputs: Callable[[Mapping[str, Ball]], Outputs],
+) -> dict[str, Ball]:
+    """The values of all symbols, those of ignored coordinates among them: 0, their velocities, and the accelerations at
+    which momenta stay as they are, g_cc q''^c + g_ca q''^a + Gamma_cij q'^i q'^j = 0. ``values``: of what is left.
+    """
+    m = _moving(tree, coordinates, values, outputs)
+    g, found = m.momenta[0], outputs(m.values)
+    _require_cyclic(found, found, m.cyclic, coordinates)
+    bias = found["bias"].entries
+    second = {a: values[f"{coordinates[a]}''"] for a in m.rest}
+    pull = [
+        -total([bias.get((c,), arb(0)), *(g[c, a] * x for a, x in second.items() if (c, a) in g)]) for c in m.cyclic
+    ]
+    accelerations = zip(m.cyclic, solve(_block(g, m.cyclic), pull), strict=True)
+    return {**m.values, **{f"{coordinates[c]}''": x for c, x in accelerations}}
+
+
+class _Moving(NamedTuple):
+    """The coordinates that are ignored and those that are left, the columns of P, (g, w, p), and the values of all
+    symbols, with the velocities of the ignored ones.
+    """
+
+    cyclic: Sequence[int]
+    rest: Sequence[int]
+    pushed: Sequence[Column]
+    momenta: tuple[Mapping[Index, Ball], Column, Sequence[Ball]]
+    values: dict[str, Ball]
+
+
+def _moving(
+    tree: Plain,
+    coordinates: Sequence[str],
+    values: Mapping[str, Ball],
+    outputs: Callable[[Mapping[str, Ball]], Outputs],
+) -> _Moving:
     given = tree["ignored"]
     cyclic = [a for a, name in enumerate(coordinates) if name in given]
     rest = [a for a in range(len(coordinates)) if a not in cyclic]
@@ -62,24 +118,19 @@ def ignored_outputs(
     rates = [values[f"{coordinates[a]}'"] for a in rest]
     speeds = [w[c] + total(column[c] * v for column, v in zip(pushed, rates, strict=True)) for c in cyclic]
     moving = {**still, **{f"{name}'": v for name, v in zip(names, speeds, strict=True)}}
-    found = outputs(moving)
-    away = outputs({**moving, **{name: arb(fmpq(2 * k + 1, 3)) for k, name in enumerate(names)}})
-    _require_cyclic(found, away, cyclic, coordinates)
-    result = Outputs({name: _reduced(name, each, pushed, rest) for name, each in found.items()})
-    for name, axis in MOTIONS.items():
-        shape = found[name].shape
-        result.array(f"{name}_0", shape[:axis] + shape[axis + 1 :]).update(_along(_whole(found[name]), axis, w))
-    _routhian(result, found, (g, w, p), pushed, rates)
-    result.array("ignored_rates", (len(cyclic),)).update({(k,): v for k, v in enumerate(speeds)})
-    return result
+    return _Moving(cyclic, rest, pushed, (g, w, p), moving)
+
+
+def _block(g: Mapping[Index, Ball], cyclic: Sequence[int]) -> arb_mat:
+    """g_cc."""
+    return arb_mat(len(cyclic), len(cyclic), [g.get((b, c), arb(0)) for b in cyclic for c in cyclic])
 
 
 def _velocities(
     g: Mapping[Index, Ball], cyclic: Sequence[int], rest: Sequence[int], p: Sequence[Ball]
 ) -> tuple[Column, list[Column]]:
     """w, and the columns of P."""
-    zero = arb(0)
-    block = arb_mat(len(cyclic), len(cyclic), [g.get((b, c), zero) for b in cyclic for c in cyclic])
+    zero, block = arb(0), _block(g, cyclic)
     columns = (solve(block, [-g.get((c, a), zero) for c in cyclic]) for a in rest)
     pushed: list[Column] = [
         {a: arb(1), **dict(zip(cyclic, column, strict=True))} for a, column in zip(rest, columns, strict=True)

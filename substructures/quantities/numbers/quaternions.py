@@ -13,6 +13,8 @@ from substructures.mechanics.state_names import BallRow
 
 #: how far the norm of a quaternion that is given may be from 1
 TOLERANCE = 1e-6
+#: turns [rad] below which a series is taken
+SMALL = 1e-4
 
 
 def with_unit_quaternions(positions: Sequence[str], balls: Sequence[BallRow], rows: Array, place: str = "/q") -> Array:
@@ -44,6 +46,26 @@ def at_zero(positions: Sequence[str], balls: Sequence[BallRow]) -> Array:
     result = np.zeros(len(positions))
     result[[some[0] for some in quaternions_in(positions, balls)]] = 1
     return result
+
+
+def moved_on(
+    positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array, d: Array
+) -> Array:
+    """Where a state q (m,) comes at constant rates, d (n,) in all: Q exp(w/2), and p + R (int_0^1 exp(s [w]x) ds) v."""
+    result, moved = (dict(zip(names, x.tolist(), strict=True)) for names, x in ((positions, q), (coordinates, d)))
+    result |= {name: result[name] + x for name, x in moved.items() if name in result}
+    for ball in balls:
+        names, rates = ball["positions"], np.array([moved[name] for name in ball["velocities"]])
+        old, w, angle = [result[name] for name in names[-4:]], rates[-3:], float(np.linalg.norm(rates[-3:]))
+        sinc = float(np.sinc(angle / 2 / np.pi))
+        new = np.cos(angle / 2) * np.array(old) + np.array(quaternion_rates(old, w.tolist(), sinc / 2))
+        result |= dict(zip(names[-4:], new.tolist(), strict=True))
+        if len(names) > len(old):
+            across = np.cross(w, v := rates[:3])
+            third = (1 - float(np.sinc(angle / np.pi))) / angle**2 if angle > SMALL else 1 / 6
+            way = np.array(turned_by(old, 2.0)).T @ (v + sinc**2 / 2 * across + third * np.cross(w, across))
+            result |= {name: result[name] + x for name, x in zip(names[:3], way.tolist(), strict=True)}
+    return np.array([result[name] for name in positions])
 
 
 def by_displacements(positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array) -> Array:

@@ -26,7 +26,7 @@ from typing import Any
 from substructures.documents import escape
 from substructures.errors import InvalidDocument, among, listed
 from substructures.expr.calculus.corners import VanishingOnAllSides
-from substructures.expr.differentiate import gradient
+from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, array
 from substructures.expr.walk import reachable, transfer
@@ -64,6 +64,24 @@ def ignore(assembly: Assembly, names: Sequence[str], outputs: Mapping[str, Formu
     at_rest = _at_rest(assembly, names, outputs, list(momenta))
     reduction = _Reduction(assembly.scope.graph, names, momenta, at_rest)
     return reduction.outputs()
+
+
+def at_momenta(
+    assembly: Assembly, names: Sequence[str], outputs: Mapping[str, Formulas], whole: Mapping[str, Formulas]
+) -> dict[str, Formulas]:
+    """Outputs without axes of coordinates, where ignored coordinates are 0, at their velocities and at accelerations
+    q''^c, the derivatives of these by time. ``whole``: the equations of all coordinates. Raises as :func:`ignore`.
+    """
+    graph, momenta = assembly.scope.graph, _momenta(assembly, names)
+    reduction = _Reduction(graph, names, momenta, _at_rest(assembly, names, whole, list(momenta)))
+    seeds: dict[str, Expr] = {}
+    for a, rate in zip(reduction.rest, reduction.rates, strict=True):
+        seeds |= {names[a]: rate, f"{names[a]}'": graph.symbol(f"{names[a]}''")}
+    values = {f"{prefix}{name}": graph.zero for name in momenta for prefix in ("tau.", "")}
+    for k, second in enumerate(directional(reduction.moving, seeds)):
+        name = list(momenta)[k]
+        values |= {f"{name}'": reduction.moving[k], f"{name}''": second}
+    return _substituted(graph, outputs, values)
 
 
 def at_zero(assembly: Assembly, outputs: Mapping[str, Formulas]) -> dict[str, Formulas]:

@@ -98,7 +98,8 @@ class Tied(Protocol):
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
-    *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "equivalences"),
+    *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
+    *("parameter_sensitivity", "equivalences"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
@@ -107,7 +108,7 @@ TAKES_CONSTRAINTS = (
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
     *("velocity_dynamics", "frequency-responses"),
 )
-TAKES_CONTACTS = ("simulations", "ensembles")
+TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them
 TIES = {
     "velocity_constraints": (TAKES_CONSTRAINTS, "ConstrainedMotion"),

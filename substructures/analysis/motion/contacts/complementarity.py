@@ -28,6 +28,8 @@ FACETS, TURNS = 8, 8
 SOFT, ROUNDS = 1e-8, 30
 #: most steps of that, and of the largest of b when it has arrived
 NEWTON, EXACT = 100, 1e-14
+#: of the largest: what is nothing but rounding; an inverse mass above zero
+ROUNDING, LEAST = 4e-16, 1e-300
 JAMMED = (
     "no contact forces were found that agree with Coulomb's law (Painleve's paradox: the contact jams): take less "
     "friction, or end the span before it"
@@ -244,3 +246,14 @@ def _leaving(T: Array, basis: NDArray[np.int64], entering: int) -> int:
         ratios = T[rows, j] / column[rows]
         rows = rows[ratios <= ratios.min() + ZERO]
     return int(rows[0])
+
+
+def least(A: Array, b: Array, yields: Array) -> Array:
+    """x with A x = b; where many do, that of rows that yield a little, as in :func:`coulomb`."""
+    x, left, soft = np.zeros(len(b)), b, A + np.diag(SOFT * np.maximum(yields, LEAST))
+    for _ in range(ROUNDS if len(b) else 0):
+        x += np.linalg.solve(soft, left)
+        left = b - A @ x
+        if np.abs(left).max() <= ROUNDING * (np.abs(A) @ np.abs(x) + np.abs(b)).max():
+            break
+    return x

@@ -11,6 +11,7 @@ slips stops, or one that sticks needs more than mu lambda_N.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -20,7 +21,7 @@ from numpy.typing import NDArray
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions, state_names
-from substructures.analysis.motion.contacts.complementarity import ROUNDS, SOFT
+from substructures.analysis.motion.contacts.complementarity import LEAST, least
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Watch
@@ -32,19 +33,19 @@ from substructures.quantities.numbers.states import require
 from substructures.tree.model import Model
 
 #: of a contact; one that passes is below its plane, where it did not act when it came there; a full one has all of its
-#: friction, as one that slips, but others hold it
-PASSING, OPEN, STICK, FULL, SLIP = -1, 0, 1, 2, 3
+#: friction, as one that slips, but others hold it; one that starts slips from rest in two directions
+PASSING, OPEN, STICK, FULL, SLIP, STARTS = -1, 0, 1, 2, 3, 4
 #: by contact (k, 3): one of these, and the way (2,) of its slip
 Modes = Array
 #: of the velocity below which restitution ends, 1e-4 m/s at most: an approach that is an impact, and a slip that is
 #: none where contacts change; by so much a point slips back before its stop is seen
 FAST, APPROACH, REST = 1e-4, 1e-3, 1e-6
+#: of that approach: where a slip in two directions ends, and where one that starts has a way of its own
+STOPS, GOES = 1e-2, 2.0
 #: a contact with a smaller gap [m] touches; so far below may the start be
 TOUCHING, BELOW = 1e-9, 1e-6
 #: of the size of forces: how far beyond what it can do a contact is watched
 EDGE = 1e-9
-#: of the largest: what is nothing but rounding; an inverse mass above zero
-ROUNDING, LEAST = 4e-16, 1e-300
 #: gaps [m] and velocities [m/s] that are closed well enough within a motion; offset of a gap that opens slowly [m]
 DRIFT, SLOW = 1e-13, 1e-11
 #: states of a step that watches remember
@@ -164,14 +165,17 @@ class ContactMotion(RightHandSide):
 
     def _ways(self, v: Array) -> Array:
         """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: not turned back where
-        one would slip back after a stop.
+        one would slip back after a stop, and shorter where a way ends that turns.
         """
         slips, before = self.modes[:, 0] >= FULL, self.modes[:, 1:]
+        turns = (self.modes[:, 0] == SLIP) & self.tangents.all(axis=1)
         v_T = np.where(self.tangents, v[:, 1:], 0.0)
         speed = np.linalg.norm(v_T, axis=1)
         there = v_T / np.maximum(speed, 1e-300)[:, None]
         there *= np.where((there * before).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-        return np.where(slips[:, None], np.where((speed > self.approach)[:, None], there, before), 0.0)
+        there = np.where((speed > self.approach)[:, None], there, before)
+        there[turns] = (v_T / np.maximum(speed, STOPS * self.approach)[:, None])[turns]
+        return np.where(slips[:, None], there, 0.0)
 
     def land(self, t: float, x: Array, closed: NDArray[np.bool_], still: NDArray[np.bool_] | None) -> Array:
         """The nearest state in the metric whose ``closed`` gaps (k,) are zero and stay so, and whose points ``still``
@@ -245,7 +249,7 @@ class ContactMotion(RightHandSide):
             found.append(Watch("lift_off", self._margin(i, lambda p, _: p[0]), -1))
             if mode == STICK and self.tangents[i].any():
                 found.append(Watch("slip", self._margin(i, lambda p, mu: mu * p[0] - np.hypot(p[1], p[2])), -1))
-            elif mode == SLIP and self.tangents[i].any():
+            elif mode >= SLIP and self.tangents[i].any():
                 found.append(Watch("stick", self._slip(i), -1))
         return found
 
@@ -268,11 +272,17 @@ class ContactMotion(RightHandSide):
         return g
 
     def _slip(self, i: int) -> Callable[[float, Array], float]:
-        """The velocity along the way of slip."""
+        """The velocity along the way of slip; in two directions until this turns by 60 degrees, or has its own way."""
+        fast, mode = self.approach[i], self.modes[i, 0] if self.tangents[i].all() else OPEN
 
         def g(t: float, x: Array) -> float:
             """Of a state."""
-            return float(self.modes[i, 1:] @ self._seen(t, x)[1][i, 1:] + self.rest[i])
+            v = self._seen(t, x)[1][i, 1:]
+            along, speed = float(self.modes[i, 1:] @ v), math.hypot(*v)
+            if mode == SLIP:
+                return min(along - speed / 2, speed - STOPS * fast)
+            along += self.rest[i]
+            return min(along, GOES * fast - speed) if mode == STARTS else along
 
         return g
 
@@ -286,14 +296,3 @@ class ContactMotion(RightHandSide):
             self.look(t, x)
             self._watched[key] = self.gap.copy(), self.velocities(x), self.force.copy()
         return self._watched[key]
-
-
-def least(A: Array, b: Array, yields: Array) -> Array:
-    """x with A x = b; where many do, that of rows that yield a little, as in :func:`.complementarity.coulomb`."""
-    x, left, soft = np.zeros(len(b)), b, A + np.diag(SOFT * np.maximum(yields, LEAST))
-    for _ in range(ROUNDS if len(b) else 0):
-        x += np.linalg.solve(soft, left)
-        left = b - A @ x
-        if np.abs(left).max() <= ROUNDING * (np.abs(A) @ np.abs(x) + np.abs(b)).max():
-            break
-    return x

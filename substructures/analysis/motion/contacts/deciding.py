@@ -23,6 +23,7 @@ from substructures.analysis.motion.contacts.contact_motion import (
     PASSING,
     SLIP,
     SLOW,
+    STARTS,
     STICK,
     TOUCHING,
     ContactMotion,
@@ -143,7 +144,9 @@ class DecidedContacts(ContactMotion):
         smooth = ~self.tangents[some].any(axis=1)
         # what is not pressed has no force, also where it only touches
         pressed = p[:, 0] > LIGHT * p[:, 0].max()
-        self.modes[some, 0] = np.where(pressed, np.where(slips | begins | smooth, SLIP, STICK), OPEN)
+        mode = np.where(slips | begins | smooth, SLIP, STICK)
+        mode[begins & self.tangents[some].all(axis=1)] = STARTS
+        self.modes[some, 0] = np.where(pressed, mode, OPEN)
         self.modes[some, 1:] = np.where(begins[:, None], _unit(w_T), d)
         # what forces there are about
         self.scale[some] = np.maximum(p[:, 0], np.abs(b).max() / cones.yields)
@@ -167,8 +170,8 @@ class DecidedContacts(ContactMotion):
         for contact, was, now in zip(self.contacts, before.tolist(), self.modes[:, 0].tolist(), strict=True):
             if was >= STICK > now:
                 self.told.append(Crossing(contact.name, t, *state, kind="lift_off"))
-            elif now >= STICK and (was < STICK or (now == SLIP) != (was == SLIP)):
-                kind = "slip" if now == SLIP else "stick"
+            elif now >= STICK and (was < STICK or (now >= SLIP) != (was >= SLIP)):
+                kind = "slip" if now >= SLIP else "stick"
                 self.told.append(Crossing(contact.name, t, *state, kind=kind))
 
 

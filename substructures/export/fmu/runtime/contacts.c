@@ -13,13 +13,19 @@
 #include "complementarity.h"
 
 enum { K = FMU_CONTACTS, N = FMU_NQ };
-static const double FAST = 1e-4, APPROACH = 1e-2, REST = 1e-6, TOUCHING = 1e-9, BELOW = 1e-6, EDGE = 1e-9;
-static const double STOPS = 1e-3, GOES = 2.0, LIGHT = 1e-11, NONE = 1e-11, SLOW = 1e-11, DRIFT = 1e-9, LEAST = 1e-300;
+static const double FAST = 1e-4, APPROACH = 1e-2, CREEP = 1e-3, REST = 1e-6, TOUCHING = 1e-9, BELOW = 1e-6, EDGE = 1e-9;
+static const double STOPS = 1e-2, GOES = 2.0, LIGHT = 1e-11, NONE = 1e-11, SLOW = 1e-11, DRIFT = 1e-9, LEAST = 1e-300;
 
 /* of the velocity below which there is no restitution: what is an impact, and a slip that is none */
 static double approach_of(int i)
 {
     return APPROACH * fmin(FMU_REST_VELOCITY[i], FAST);
+}
+
+/* the speed below which a point does not slip */
+static double creep_of(int i)
+{
+    return CREEP * fmin(FMU_REST_VELOCITY[i], FAST);
 }
 
 static double rest_of(int i)
@@ -76,12 +82,20 @@ static void direction(const double *v, double *d)
     for (int r = 0; r < 2; ++r) d[r] = size > 0.0 ? v[r] / size : 0.0;
 }
 
-/* the way of a point with all of its friction: as before where it hardly moves yet, or slips back after a stop */
+/* whether a point has a way of its own, which ends at a speed above zero, before it is none */
+static int turns(const Contacts *c, int i)
+{
+    return c->mode[i] == SLIP && tangents(i) == 2;
+}
+
+/* the way of a point with all of its friction; of others as before where they hardly move, or slip back after a stop */
 static void way_of(const Contacts *c, const Seen *s, const double *x, int i, double *d)
 {
     double v[2];
     slip(s, x, i, v);
-    if (size_of(v) > (c->mode[i] == SLIP ? LEAST : approach_of(i)) && dot(v, c->way[i]) >= 0.0) direction(v, d);
+    if (turns(c, i))
+        for (int r = 0; r < 2; ++r) d[r] = v[r] / fmax(size_of(v), STOPS * creep_of(i));
+    else if (size_of(v) > creep_of(i) && dot(v, c->way[i]) >= 0.0) direction(v, d);
     else memcpy(d, c->way[i], sizeof c->way[i]);
 }
 
@@ -167,10 +181,10 @@ void contacts_indicate(const Contacts *c, const Given *at, const double *x, doub
         slip(&s, x, i, v);
         if (c->mode[i] == STICK) one[1] = FMU_FRICTION[i] * force[i][0] - size_of(force[i] + 1) + edge;
         if (c->mode[i] >= SLIP) one[1] = dot(c->way[i], v) + rest_of(i);
-        if (c->mode[i] == STARTS) one[1] = fmin(one[1], GOES * approach_of(i) - size_of(v));
+        if (c->mode[i] == STARTS) one[1] = fmin(one[1], GOES * creep_of(i) - size_of(v));
         /* the way has turned by 60 degrees, or ends */
-        if (c->mode[i] == SLIP && tangents(i) == 2)
-            one[1] = fmin(dot(c->way[i], v) - 0.5 * size_of(v), size_of(v) - STOPS * approach_of(i));
+        if (turns(c, i))
+            one[1] = fmin(dot(c->way[i], v) - 0.5 * size_of(v), size_of(v) - STOPS * creep_of(i));
     }
 }
 
@@ -381,7 +395,7 @@ int contacts_decide(Contacts *c, const Given *at, double *x)
             double v_T[2];
             slip(&s, x, i, v_T);
             closed[i] = touch[i] && fabs(velocity(&s, x, i, 0)) <= approach_of(i);
-            still[i] = closed[i] && size_of(v_T) <= approach_of(i);
+            still[i] = closed[i] && size_of(v_T) <= creep_of(i);
             if (touch[i]) c->mode[i] = OPEN;
             if (closed[i]) some[k++] = i;
         }
