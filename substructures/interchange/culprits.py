@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
-from substructures.interchange.sides import Carriers, Side
+from substructures.interchange.sides import Carriers, Matched, Side
 
 #: relative differences of numbers that count as equal
 SAME = 1e-9
@@ -56,19 +56,16 @@ class _Carried:
         return numbers | {f"inertia.{e}": float(theta[i]) for e, i in zip(_ENTRIES, _MOMENTS, strict=True)}
 
 
-def culprits(a: Side, b: Side, order: list[int], values: Mapping[str, float]) -> tuple[Culprit, ...]:
-    """The first kind of difference that is found: joints, else bodies, else laws of joints.
-
-    ``order``: of every coordinate of a the number of the one in b.
-    """
+def culprits(a: Side, b: Side, names: Matched, values: Mapping[str, float]) -> tuple[Culprit, ...]:
+    """The first kind of difference that is found: joints, else bodies, else laws of joints. ``names``: of a in b."""
     own = Carriers.of(a, list(range(a.model.dof)), values)
-    other = Carriers.of(b, order, values)
+    other = Carriers.of(b, names.coordinates, values)
     found = tuple(_joints(a, own, other))
     if found:
         return found
     masses = _carried(a, own, values), _carried(b, other, values)
     found = tuple(_bodies(a, own, masses, values))
-    return found or tuple(_laws(a, b, order, values))
+    return found or tuple(_laws(a, b, names, values))
 
 
 def _joints(a: Side, own: Carriers, other: Carriers) -> Iterator[Culprit]:
@@ -99,7 +96,7 @@ def _carried(side: Side, carriers: Carriers, values: Mapping[str, float]) -> dic
     Y, n = side.regressor, side.model.dof
     known = {name: x for name, x in side.given(values).items() if name in Y.parameters}
     zero = np.zeros(n)
-    pi = np.asarray(Y.evaluate(zero, zero, zero, parameters=known)["inertial_parameters"], dtype=float)
+    pi = np.asarray(Y.evaluate(side.resting, zero, zero, parameters=known)["inertial_parameters"], dtype=float)
     found: dict[int, _Carried] = {}
     for k, link in enumerate(_links(side)):
         c = carriers.carrier[link]
@@ -153,8 +150,8 @@ def _effects(a: Side, own: Carriers, numbers: Mapping[int, Array], values: Mappi
     Y, n = a.regressor, a.model.dof
     rng = np.random.default_rng(2)
     known = {name: x for name, x in a.given(values).items() if name in Y.parameters}
-    motions = rng.uniform(-1, 1, (3, 12, n))
-    W = np.asarray(Y.evaluate(*motions, parameters=known)["regressor"], dtype=float)
+    q, (qd, qdd) = a.states(rng, 12), rng.uniform(-1, 1, (2, 12, n))
+    W = np.asarray(Y.evaluate(q, qd, qdd, parameters=known)["regressor"], dtype=float)
     found: dict[int, Array] = {}
     for k, link in enumerate(_links(a)):
         c = own.carrier[link]
@@ -174,15 +171,16 @@ def _effects(a: Side, own: Carriers, numbers: Mapping[int, Array], values: Mappi
     return found
 
 
-def _laws(a: Side, b: Side, order: list[int], values: Mapping[str, float]) -> Iterator[Culprit]:
+def _laws(a: Side, b: Side, matched: Matched, values: Mapping[str, float]) -> Iterator[Culprit]:
     """Of coordinates: armature, forces at rest (springs, loads), forces of motion (dampers)."""
-    n, place = a.model.dof, np.argsort(order)
+    n, order = a.model.dof, matched.coordinates
+    place, seats = np.argsort(order), np.argsort(matched.positions)
     rng = np.random.default_rng(3)
-    q, qd = rng.uniform(-1, 1, (2, 1, n))
+    q, qd = a.states(rng, 1), rng.uniform(-1, 1, (1, n))
     names = ["metric", "forces", "gravity"]
     for law, speed in (("armature", 0 * qd), ("stiffness", 0 * qd), ("damping", qd)):
         ours = a.evaluate(names, values, q=q, qd=speed)
-        theirs = b.evaluate(names, values, q=q[:, place], qd=speed[:, place])
+        theirs = b.evaluate(names, values, q=q[:, seats], qd=speed[:, place])
         if law == "armature":
             x, y = np.diagonal(ours["metric"][0]), np.diagonal(theirs["metric"][0])[order]
         else:

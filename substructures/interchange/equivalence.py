@@ -24,7 +24,7 @@ from substructures.errors import InvalidArgument, InvalidInput, listed
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.replay import replay
 from substructures.interchange.culprits import Culprit, culprits
-from substructures.interchange.sides import CLOSURES, Side
+from substructures.interchange.sides import CLOSURES, Matched, Side, matching
 
 QUANTITIES = ("metric", "gravity", "bias", "forces")
 #: relative difference of numbers that are equal
@@ -70,10 +70,14 @@ def equivalence(a: Side, b: Side, coordinates: Mapping[str, str] | None = None) 
         told = {"quantity": "closures", "a": rows[0], "b": rows[1]}
         return Equivalence(False, "values", {}, told, ())
     order = _order(a, b, coordinates or {})
-    formulas = _formulas(a, b, order)
+    names = matching(a, b, order)
+    if names is None:
+        told = {"quantity": "balls", "a": _turning(a), "b": _turning(b)}
+        return Equivalence(False, "values", {}, told, ())
+    formulas = _formulas(a, b, names)
     rng = np.random.default_rng(1)
     values = _open_parameters(a, b, rng)
-    numbers = _numbers(a, b, order, values, rng)
+    numbers = _numbers(a, b, names, values, rng)
     # what cancels has no scale of its own: rates are about 1 here, so that the metric gives one
     least = _CANCELLING * max(float(np.abs(x).max(initial=0)) for x in numbers["metric"][:2])
     found = [_Difference.of(name, *sides, 0 if name in CLOSURES else least) for name, sides in numbers.items()]
@@ -82,7 +86,12 @@ def equivalence(a: Side, b: Side, coordinates: Mapping[str, str] | None = None) 
         level = "formulas" if formulas and all(formulas.values()) else "values"
         return Equivalence(True, level, quantities, None, ())
     first = next(d for d in found if d.error > TOLERANCE)
-    return Equivalence(False, "values", quantities, first.plain(a.names), culprits(a, b, order, values))
+    return Equivalence(False, "values", quantities, first.plain(a.names), culprits(a, b, names, values))
+
+
+def _turning(side: Side) -> list[str]:
+    """The positions of its joints with quaternions."""
+    return [name for ball in side.model.balls for name in ball["positions"]]
 
 
 def _order(a: Side, b: Side, given: Mapping[str, str]) -> list[int]:
@@ -108,12 +117,13 @@ def _by_last_names(ours: Sequence[str], theirs: Sequence[str]) -> dict[str, str]
     return {name: found[tail] for name, tail in tails.items() if last[0][tail] == last[1][tail] == 1}
 
 
-def _formulas(a: Side, b: Side, order: list[int]) -> dict[str, bool]:
+def _formulas(a: Side, b: Side, matched: Matched) -> dict[str, bool]:
     """For every quantity whether its formulas are the same functions; empty where parameters have other names."""
-    graph = Graph()
-    renamed = {}
+    graph, order = Graph(), matched.coordinates
+    pairs = zip(a.model.positions, matched.positions, strict=True)
+    renamed = {b.model.positions[k]: graph.symbol(name) for name, k in pairs}
     for k, name in enumerate(a.model.coordinates):
-        for primes in ("", "'", "''"):
+        for primes in ("'", "''"):
             renamed[b.model.coordinates[order[k]] + primes] = graph.symbol(name + primes)
         renamed[f"tau.{b.model.coordinates[order[k]]}"] = graph.symbol(f"tau.{name}")
     names = [q for q in QUANTITIES if q in a.model.program.outputs and q in b.model.program.outputs]
@@ -151,12 +161,12 @@ def _open_parameters(a: Side, b: Side, rng: np.random.Generator) -> dict[str, fl
 
 
 def _numbers(
-    a: Side, b: Side, order: list[int], values: Mapping[str, float], rng: np.random.Generator
+    a: Side, b: Side, matched: Matched, values: Mapping[str, float], rng: np.random.Generator
 ) -> dict[str, tuple[Array, Array, dict[str, Array]]]:
     """Of every quantity both sides at random states, in the order of a, and the states."""
-    states = {name: rng.uniform(-1, 1, (STATES, a.model.dof)) for name in ("q", "qd")}
-    place = np.argsort(order)
-    names, own = list(QUANTITIES), {name: x[:, place] for name, x in states.items()}
+    states = {"q": a.states(rng, STATES), "qd": rng.uniform(-1, 1, (STATES, a.model.dof))}
+    names, order, places = list(QUANTITIES), matched.coordinates, map(np.argsort, reversed(matched))
+    own = {name: x[:, place] for (name, x), place in zip(states.items(), places, strict=True)}
     # what varies beside the state: the time, and inputs of both sides
     t, shared = rng.uniform(0.5, 1.5, STATES), sorted({*a.model.input_names} & {*b.model.input_names})
     inputs = {name: rng.uniform(-1, 1, STATES) for name in shared if not name.startswith("tau.")}

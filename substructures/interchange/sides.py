@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from substructures.array import Array
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.mechanics.state_names import resting_state
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
@@ -66,6 +67,19 @@ class Side:
         """Values by names as they are compared, by this model's names; those that it does not have are left out."""
         return {self.parameters[name]: x for name, x in values.items() if name in self.parameters}
 
+    @cached_property
+    def resting(self) -> Array:
+        """The state q in which nothing is moved or turned."""
+        return np.array(resting_state(self.model.positions, self.model.balls))
+
+    def states(self, rng: np.random.Generator, count: int) -> Array:
+        """Random states q (count, n), with unit quaternions."""
+        q = rng.uniform(-1, 1, (count, len(self.resting)))
+        for ball in self.model.balls:
+            some = [self.model.positions.index(name) for name in ball["positions"][-4:]]
+            q[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
+        return q
+
     def evaluate(
         self, names: list[str], parameters: Mapping[str, float], q: Array, qd: Array | None = None, **more: Any
     ) -> Any:
@@ -99,6 +113,25 @@ def alone(definition: Definition, like: TreeSpec | None = None) -> TreeSpec:
     return TreeSpec.stored({"name": "alone", **gravity, "instances": [instance]})
 
 
+class Matched(NamedTuple):
+    """Of every coordinate of a model, and of every position, the number of the one in another model."""
+
+    coordinates: list[int]
+    positions: list[int]
+
+
+def matching(a: Side, b: Side, order: list[int]) -> Matched | None:
+    """``order``: of every coordinate of a the number of the one in b. None where joints with quaternions are others."""
+    found = {name: b.model.coordinates[k] for name, k in zip(a.model.coordinates, order, strict=True)}
+    theirs = {tuple(ball["velocities"]): ball["positions"] for ball in b.model.balls}
+    for ball in a.model.balls:
+        other = theirs.pop(tuple(found[name] for name in ball["velocities"]), None)
+        if other is None:
+            return None
+        found |= dict(zip(ball["positions"], other, strict=True))
+    return None if theirs else Matched(order, [b.model.positions.index(found[name]) for name in a.model.positions])
+
+
 @dataclass(frozen=True)
 class Carriers:
     """Numbers where all coordinates are zero, in the world.
@@ -116,7 +149,7 @@ class Carriers:
     def of(cls, side: Side, order: list[int], parameters: Mapping[str, float]) -> Carriers:
         """``order``: numbers of the coordinates that are compared, one by one."""
         n = side.model.dof
-        found = side.evaluate(["kinematics"], parameters, q=np.zeros((1, n)))
+        found = side.evaluate(["kinematics"], parameters, q=side.resting[None])
         kinematics = {name: np.asarray(x[0], dtype=float) for name, x in found["kinematics"].items()}
         R, r = kinematics["rotation"], kinematics["position"]
         omega = np.einsum("fij,faj->fai", R, kinematics["Omega"])

@@ -10,14 +10,16 @@ from typing import Any
 
 import numpy as np
 import pytest
-from ball_trees import random_position
+from ball_trees import random_balls, random_position
 from in_depth import seeds
 from related import reduction
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
 from substructures.interchange.as_part import Options
+from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import import_file
+from substructures.interchange.sides import Side
 
 sys.path.insert(0, str(Path(__file__).parent))
 from engines import Numbers, Reduced, deviation, in_our_coordinates
@@ -224,3 +226,41 @@ def test_names_of_states_and_of_rates_are_told_of_cut_files_too() -> None:
     parts = {each["name"]: derive(Definition.read(each["definition"])) for each in cut.tree["instances"]}
     model = couple(TreeSpec.read(cut.tree), parts)
     assert model.coordinates[-3:] == ("b.j_wx", "b.j_wy", "b.j_wz")
+
+
+@pytest.mark.parametrize("seed", seeds([5], 20))
+def test_equivalence_is_told_of_quaternions_too(seed: int) -> None:
+    """Bodies in another order are the same; a damping that is another is named, and what turns otherwise."""
+    definition, _ = random_balls(seed, depth=3)
+    turned = definition | {"bodies": definition["bodies"][::-1]}
+    sides = [Side.of_part(derive(Definition.read(each))) for each in (definition, turned)]
+    found = equivalence(*sides)
+    assert (found.equal, found.level) == (True, "formulas"), found
+    body = next(b for b in definition["bodies"] if "velocities" in b["joint"])
+
+    def with_other(**changes: Any) -> Side:
+        other = {**body, **changes}
+        bodies = [other if each is body else each for each in definition["bodies"]]
+        return Side.of_part(derive(Definition.read({**definition, "bodies": bodies})))
+
+    damped = equivalence(sides[0], with_other(joint={**body["joint"], "damping": 7}))
+    assert {(c.body, c.parameter) for c in damped.culprits} == {(x, "damping") for x in body["joint"]["velocities"]}
+    chain = {"ball": "spherical", "floating": "free"}[body["joint"]["type"]]
+    joint = {**body["joint"], "type": chain, "coordinate": body["joint"]["velocities"]}
+    joint.pop("velocities")
+    angles = equivalence(sides[0], with_other(joint=joint))
+    assert not angles.equal
+    assert angles.first_difference is not None
+    assert angles.first_difference["quantity"] == "balls"
+
+
+def test_a_body_of_another_mass_is_named_behind_a_ball() -> None:
+    text = random_file(np.random.default_rng(3), 4, with_equality=False)
+    one, other = (
+        import_file(each.encode(), QUATERNIONS).definition for each in (text, text.replace('mass="5"', 'mass="6"'))
+    )
+    same = [Side.of_part(derive(Definition.read(each))) for each in (one, one, other)]
+    assert equivalence(*same[:2]).equal
+    found = equivalence(*same[1:])
+    assert {c.body for c in found.culprits} == {"body4"}
+    assert "mass" in {c.parameter for c in found.culprits}

@@ -178,6 +178,8 @@ def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
     assert made.status_code == 201, made.text
     rates = made.json()["names"]["velocities s.hull_floating"].split(", ")
     assert rates == [f"s_hull_floating_{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
+    same = satellite.post("/v1/equivalences", json={"a": "again@1", "b": made.json()["definition"]})
+    assert same.json().get("level") == "formulas", same.text
     whole = {"name": "whole", "instances": [{"name": "x", "substructure": "again"}]}
     assert satellite.post("/v1/trees", json=whole).json()["balls"][0]["positions"][3] == "x.s_hull_floating_qw"
 

@@ -24,7 +24,7 @@ from substructures.part.topology import topology
 from substructures.part.units import check_units
 
 #: fields of bodies and ports that are no expressions in parameters, or none that deriving reads
-TEXTS = ("name", "parent", "type", "coordinate", "about", "body", "limits", "unit")
+TEXTS = ("name", "parent", "type", "coordinate", "velocities", "about", "body", "limits", "unit")
 
 
 def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemDocument]:

@@ -99,7 +99,7 @@ class Tied(Protocol):
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
-    "parameter_sensitivity",
+    *("parameter_sensitivity", "equivalences"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts

@@ -23,7 +23,7 @@ from substructures.tree.publishing.published_loads import closure_of_part, frame
 from substructures.tree.publishing.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
-WORDS = frozenset(("name", "parent", "type", "coordinate", "about", "body", "frame", "axes"))
+WORDS = frozenset(("name", "parent", "type", "coordinate", "velocities", "about", "body", "frame", "axes"))
 NOWHERE: tuple[dict[str, Any], ...] = ({}, {"position": [0, 0, 0]})
 
 
