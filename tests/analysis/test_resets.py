@@ -180,8 +180,9 @@ def test_a_slide_with_exact_friction_is_thrown_back() -> None:
     model = of("b", block, [0, 0, 0])
     wall = Event("wall", "b.z", level=1, direction="rising", reset={"b.z'": "-b.z'/2"})
     motion = simulate(model, [0], (0, 3), qd=[2], kind=TreeMotion(friction="exact"), outputs=Outputs(events=[wall]))
-    (hit,) = motion.events
+    hit, stop = motion.events
     assert hit.qd == pytest.approx([math.sqrt(2)])
+    assert (stop.name, stop.kind) == ("b.z", "stick")
     assert (motion.status, motion.is_right) == ("finished", True)
     assert motion.q[-1] == pytest.approx([1 - 0.25])
     assert motion.qd[-1] == pytest.approx([0], abs=1e-12)

@@ -37,6 +37,8 @@ def test_a_simulation_that_sticks(incline: TestClient) -> None:
     assert motion["q"][-1][0] == pytest.approx(1 / 9, abs=1e-12)
     assert motion["series"]["friction"][-1] == pytest.approx([2.0], abs=1e-12)
     assert motion["series"]["reaction_force"][-1][0] == pytest.approx([0, 0, 2.0], abs=1e-12)
+    (event,) = motion["events"]
+    assert (event["name"], event["kind"], event["t"]) == ("a.x", "stick", pytest.approx(1 / 4.5, abs=1e-12))
     creeping = incline.post(URL, json=START).json()
     assert creeping["qd"][-1][0] < 0
     csv = incline.post(URL, json={**START, "friction": "exact"}, headers={"Accept": "text/csv"}).text
@@ -58,6 +60,7 @@ def test_a_closed_simulation_that_sticks(incline: TestClient) -> None:
     body = {**START, "q": [0, 0], "qd": [1, 1], "friction": "exact", "reactions": True, "powers": True}
     motion = incline.post("/v1/trees/pair/simulations", json=body).json()
     assert motion["is_right"], motion["checks"]
+    assert {(event["name"], event["kind"]) for event in motion["events"]} == {("a.x", "stick"), ("b.x", "stick")}
     assert {"friction", "power", "energy"} <= {check["name"] for check in motion["checks"]}
     assert motion["q"][-1] == pytest.approx([1 / 9] * 2, abs=1e-12)
     assert motion["series"]["friction"][-1] == pytest.approx([2.0, 2.0], abs=1e-12)

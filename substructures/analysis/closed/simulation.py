@@ -28,7 +28,7 @@ from substructures.analysis.motion.problems.kinds import ClosedMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
-from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.quantities.numbers.limits import reached
@@ -162,17 +162,17 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         balance = energy_balance(t, judged | {"effort": effort}, s.conservative, problem.drift_limit, doubt)
     forces: Callable[[Constrained], dict[str, Any]] = _forces
     checks: tuple[Check, ...] = (*residuals, balance)
+    told = list[Crossing]()
     if isinstance(s, DryConstrained) and isinstance(motion, DryRun):
         dry = ClosedDryMotion(s)
         judged["friction"], forces = dry.friction(motion, t, x), partial(_dry_forces, dry, motion)
         checks = (*checks, sticking(dry, motion, t, judged["friction"], problem.drift_limit))
+        told = motion.told(s.model.coordinates, dry.laws)
     span = reached(t, *np.split(x[:, :-1], 2, axis=1))
     t, x = t[results], x[results]
     q, qd = np.split(x[:, :-1], 2, axis=1)
     series = _at_states(forces, s, t, x) | {name: values[results] for name, values in judged.items()}
     series |= s.conditions.series_at(t, x[:, :-1])
-    found = crossings(problem.events, motion.found, s.n)
-    figures = {"evaluations": float(motion.evaluations)}
     return Trajectory(
         s.model.coordinates,
         t,
@@ -183,8 +183,8 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.status,
         motion.message,
         motion.steps,
-        found,
-        figures,
+        in_order(crossings(problem.events, motion.found, s.n), told),
+        {"evaluations": float(motion.evaluations)},
         motion.cancelled,
         span,
     )

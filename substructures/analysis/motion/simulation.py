@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from time import perf_counter
@@ -31,7 +31,7 @@ from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.single_steps import careful, one_by_one
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
-from substructures.analysis.motion.trajectory import Trajectory, crossings
+from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument, InvalidInput
@@ -244,10 +244,8 @@ def _judged(
     checks = judge(along, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
-    told = f.told if isinstance(f, DecidedContacts) else []
     span = reached(t, x[:, : f.n], x[:, f.n : 2 * f.n])
-    x = x[results, : 2 * f.n]
-    t = t[results]
+    t, x = t[results], x[results, : 2 * f.n]
     return Trajectory(
         model.coordinates,
         t,
@@ -258,11 +256,18 @@ def _judged(
         motion.status,
         motion.message,
         motion.steps,
-        tuple(sorted((*crossings(problem.events, motion.found, model.dof), *told), key=lambda event: event.t)),
+        in_order(crossings(problem.events, motion.found, model.dof), _told(conditions, f, motion)),
         figures,
         motion.cancelled,
         span,
     )
+
+
+def _told(conditions: Conditions, f: RightHandSide, motion: IntegratedMotion) -> Sequence[Crossing]:
+    """What contacts did, and joints with exact friction."""
+    if isinstance(f, DecidedContacts):
+        return f.told
+    return motion.told(conditions.model.coordinates, _dry(conditions, f).laws) if isinstance(motion, DryRun) else ()
 
 
 def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: Array, x: Array, limit: float) -> Check:

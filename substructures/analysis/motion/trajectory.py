@@ -44,6 +44,11 @@ def crossings(events: Sequence[Event], found: Sequence[tuple[int, float, Array]]
     return tuple(Crossing(events[k].name, t, x[:n], x[n : 2 * n]) for k, t, x in found)
 
 
+def in_order(*found: Sequence[Crossing]) -> tuple[Crossing, ...]:
+    """All of them, in the order of time."""
+    return tuple(sorted((event for some in found for event in some), key=lambda event: event.t))
+
+
 @dataclass(frozen=True)
 class Trajectory:
     """States at the times ``t`` (K,): ``q``, ``qd`` (K, n) in the order of ``coordinates`` [rad, m; per s].

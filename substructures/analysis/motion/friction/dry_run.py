@@ -16,6 +16,7 @@ from substructures.analysis.motion.integrators.integration import (
     integrate,
 )
 from substructures.analysis.motion.integrators.zeros import Watch
+from substructures.analysis.motion.trajectory import Crossing
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 
@@ -60,9 +61,10 @@ class Sticking(Deciding, Protocol):
 
 @dataclass
 class DryRun(IntegratedMotion):
-    """With the times from which on joints slip and stick as ``signs`` say."""
+    """With the times from which on joints slip and stick as ``signs`` say, and the states ``starts`` then."""
 
     since: list[float] = field(default_factory=list)
+    starts: list[Array] = field(default_factory=list)
     signs: list[Any] = field(default_factory=list)
     advice: ClassVar[str] = ADVICE
 
@@ -77,9 +79,19 @@ class DryRun(IntegratedMotion):
             second[i], force[i, f.laws.places], _ = f.moved(at, state, self.at(at))
         return second, force
 
+    def told(self, names: Sequence[str], laws: FrictionLaws) -> list[Crossing]:
+        """Joints that begin to stick and to slip after the start; ``names``: of all coordinates."""
+        n, found = len(names), list[Crossing]()
+        for t, x, before, now in zip(self.since[1:], self.starts[1:], self.signs, self.signs[1:], strict=False):
+            for k in np.flatnonzero((np.asarray(before) == 0) != (np.asarray(now) == 0)).tolist():
+                kind = "slip" if now[k] else "stick"
+                found.append(Crossing(names[laws.places[k]], t, x[:n].copy(), x[n : 2 * n].copy(), kind=kind))
+        return found
+
     def undecided(self, t: float, x: Array, signs: Any, why: str) -> None:
         """End where nobody can tell who slips and who sticks, with the state there."""
         self.since.append(t)
+        self.starts.append(x)
         self.signs.append(signs)
         if not self.t or self.t[-1] < t:
             self.t.append(t)
@@ -127,6 +139,7 @@ def integrate_dry(
             run.undecided(t, x, f.signs, str(error))
             return run
         run.since.append(t)
+        run.starts.append(x)
         run.signs.append(f.signs)
         left = replace(settings, max_steps=max(1, settings.max_steps - run.steps))
         wanted = outputs if t == span[0] else outputs[outputs > t]
