@@ -124,6 +124,21 @@ def test_a_hoop_beside_its_axis(off: float) -> None:
         assert {m.verdict for m in one} == ({"stable", "unstable"} if turning else {"stable"})
 
 
+def test_a_carousel() -> None:
+    """A seat of 2 kg on a rod of 0.5 m that hangs 2 m beside the axis: g tan a = w^2 (r + l sin a) has one way outwards
+    for every rate, since r > l, and it is stable; nothing turns back or branches there.
+    """
+    found = over_rates(bead_on_a_hoop(2.0), 0.1, 6)
+    assert found.is_right is True
+    hanging = sorted((m.value or 0.0, m.q[1]) for m in found.found if np.cos(m.q[1]) > 0)
+    assert len(hanging) >= 10
+    for w, a in hanging:
+        np.testing.assert_allclose(w**2 * (2 + RADIUS * np.sin(a)), G * np.tan(a), rtol=1e-9)
+    assert all(b > a for (_, a), (_, b) in pairwise(dict(hanging).items()))
+    assert {m.verdict for m in found.found if np.cos(m.q[1]) > 0} == {"stable"}
+    assert not [one for one in found.bifurcations if np.cos(one.at.q[1]) > 0]
+
+
 def test_a_family_that_closes_round_a_full_turn() -> None:
     """cos a = e/(m w^2 R^2) from the bottom over the side to the top and back on the other side, each part once."""
     hoop = revolute("turn", inertia={"xx": HOOP, "yy": HOOP, "zz": HOOP})
