@@ -16,7 +16,7 @@ from substructures.analysis.motion.contacts.contact_run import ContactRun, again
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
-from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide
+from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide, with_loads
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.fixed_step import march
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
@@ -240,7 +240,7 @@ def _judged(
     elif isinstance(motion, DryRun):
         more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
     if isinstance(f, LoadedRightHandSide):
-        more = (_with_loads(series, f, states, x, problem.drift_limit),)
+        more = (with_loads(series, f, states, x, problem.drift_limit),)
     checks = judge(along, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
@@ -277,19 +277,6 @@ def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: 
         series["power"] = series["power"] + dry.instead(force, x)
     series |= {"qdd": second, "friction": force}
     return sticking(dry, motion, t, force, limit)
-
-
-def _with_loads(
-    series: dict[str, Array], f: LoadedRightHandSide, states: MotionStates, x: Array, limit: float
-) -> Check:
-    """Accelerations and friction as further series; whether that is the law of the reactions."""
-    second, force = f.along(states.t, x)
-    if "power" in series:
-        series["power"] = series["power"] + (force * states.qd).sum(axis=1)
-    whole, smooth = force.copy(), f.loads.smooth
-    whole[:, smooth.places] += smooth.smooth(states.qd[:, smooth.places])
-    series |= {"qdd": second, "friction": whole}
-    return f.check(states, force, limit)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:

@@ -175,3 +175,14 @@ class LoadedRightHandSide(RightHandSide):
 
 def _seconds(model: Model) -> list[str]:
     return [f"{name}''" for name in model.coordinates]
+
+
+def with_loads(series: dict[str, Array], f: LoadedRightHandSide, states: MotionStates, x: Array, limit: float) -> Check:
+    """Accelerations and friction as further series; whether that is the law of the reactions."""
+    second, force = f.along(states.t, x)
+    if "power" in series:
+        series["power"] = series["power"] + (force * states.qd).sum(axis=1)
+    whole, smooth = force.copy(), f.loads.smooth
+    whole[:, smooth.places] += smooth.smooth(states.qd[:, smooth.places])
+    series |= {"qdd": second, "friction": whole}
+    return f.check(states, force, limit)
