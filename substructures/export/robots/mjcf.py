@@ -135,15 +135,17 @@ class _Writer:
     def _ball(self, body: Tree.Element, link: RigidLink, on_world: bool) -> None:
         """A ball joint, a free one or, where it is not on the world, three slides and a ball joint."""
         is_free = link.ball == "floating" and on_world
-        laws = {}
-        if any(link.damping) and len(set(link.damping)) == 1:
-            laws["damping"] = number(link.damping[0])
-        elif any(link.damping):
+        # a free joint has one damping, slides and a ball joint have two
+        groups = [link.damping] if is_free else [link.damping[:-3], link.damping[-3:]]
+        if all(len(set(group)) <= 1 for group in groups):
+            slides, laws = ({"damping": number(group[0])} if any(group) else {} for group in (groups[0], groups[-1]))
+        else:
+            slides = laws = {}
             self.left_out.append(f"the damping of the joint of '{link.name}', which differs by direction")
         if link.ball == "floating" and not is_free:
             for axis, e in zip("xyz", np.eye(3), strict=True):
                 name = self._new(f"{link.name}_{axis}", self.joints)
-                Tree.SubElement(body, "joint", {"name": name, "type": "slide", "axis": numbers(e), **laws})
+                Tree.SubElement(body, "joint", {"name": name, "type": "slide", "axis": numbers(e), **slides})
         name = self._new(f"{link.name}_{link.ball}", self.joints)
         Tree.SubElement(body, "joint", {"name": name, "type": "free" if is_free else "ball", **laws})
 
