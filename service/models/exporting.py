@@ -23,9 +23,9 @@ from substructures.export import (
 )
 from substructures.export.contacts import CONTACTS, ContactLaw
 from substructures.export.exported import check_name
+from substructures.export.robots import MEDIA_TYPE, ROBOTS, file_of_part, file_of_tree
 from substructures.export.rounding import read_ranges
 from substructures.export.stages import staged
-from substructures.export.urdf import MEDIA_TYPE, urdf_of_part, urdf_of_tree
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import Sources
@@ -67,11 +67,10 @@ OF_FMUS = ("metric", "forces", "kinetic_energy", "potential_energy", "position",
 WRITTEN = ("text", "latex", "mathml")
 #: code, in which intermediate values have names
 WITH_STEPS = tuple(name for name in TARGETS if name not in (*WRITTEN, FMU, FMU2, "interface", "javascript"))
-#: the mechanism itself as a file, beside the targets that are functions
-URDF = "urdf"
-ALL_TARGETS = (*(name for name in TARGETS if name != FMU2), URDF)
+#: with those that are the mechanism itself as a file, beside the targets that are functions
+ALL_TARGETS = (*(name for name in TARGETS if name != FMU2), *ROBOTS)
 #: targets for which a tree is asked for with its parts
-WITH_PARTS = (*WITH_STEPS, URDF)
+WITH_PARTS = (*WITH_STEPS, *ROBOTS)
 #: a tree document and its parts by instance
 Document = Callable[[], tuple[TreeSpec, Mapping[str, Part]]]
 
@@ -146,9 +145,9 @@ def tree_package(
     """
     _check(request)
     parameters = sources.model.parameters
-    if request.target == URDF:
-        name, spec_and_parts = _urdf_name(request, called), document()
-        return _urdf(name, urdf_of_tree(*spec_and_parts, name, reference, digest, _all_numbers(parameters, request)))
+    if request.target in ROBOTS:
+        name, (spec, parts), bind = _robot_name(request, called), document(), _all_numbers(parameters, request)
+        return _robot(request, name, file_of_tree(request.target, spec, parts, name, reference, digest, bind))
     known = askable(sources.model.program.outputs)
     chosen = OF_FMUS if request.target == FMU else OF_TREES
     names = request.quantities or tuple(name for name in chosen if name in known)
@@ -191,9 +190,9 @@ def _contacts(
 def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:
     """A part for a target, as it stands alone. Raises as :func:`tree_package`."""
     _check(request)
-    if request.target == URDF:
-        name = _urdf_name(request, part.name)
-        return _urdf(name, urdf_of_part(part, name, reference, digest, _all_numbers(part.parameters, request)))
+    if request.target in ROBOTS:
+        name, bind = _robot_name(request, part.name), _all_numbers(part.parameters, request)
+        return _robot(request, name, file_of_part(request.target, part, name, reference, digest, bind))
     names = request.quantities or tuple(name for name in OF_PARTS if name in part.program.outputs)
     request.require_motion(())
     interface = _left(interface_of_part(part, reference, digest), request)
@@ -221,7 +220,7 @@ def _check(request: ExportRequest) -> None:
         raise InvalidArgument.at("/standard", "not-of-target", message)
 
 
-def _urdf_name(request: ExportRequest, called: str) -> str:
+def _robot_name(request: ExportRequest, called: str) -> str:
     """The name of the robot and of its file. Raises InvalidArgument."""
     if request.name and not ROBOT.fullmatch(request.name):
         message = f"{request.name[:40]!r} names no robot: at most 64 letters, digits, _, - and ., no sign first"
@@ -234,8 +233,8 @@ def _all_numbers(parameters: Parameters, request: ExportRequest) -> Callable[[Pr
     return lambda program: bound(program, parameters, f"{request.bind},{DEFAULTS}")
 
 
-def _urdf(name: str, text: bytes) -> Package:
-    return Package(f"{name}.urdf", f"{MEDIA_TYPE}; charset=utf-8", text)
+def _robot(request: ExportRequest, name: str, text: bytes) -> Package:
+    return Package(f"{name}.{ROBOTS[request.target].suffix}", f"{MEDIA_TYPE}; charset=utf-8", text)
 
 
 def _left(interface: Interface, request: ExportRequest) -> Interface:
@@ -264,6 +263,6 @@ def read_item(item: Mapping[str, Any]) -> ExportRequest:
 
 def misplaced(target: str, given: Mapping[str, Any]) -> str | None:
     """The first field, of those that differ from their defaults, that a target does not take."""
-    without = {URDF: ("quantities", "together", "packed"), **dict.fromkeys(WRITTEN, ("packed",))}
+    without = {**dict.fromkeys(ROBOTS, ("quantities", "together", "packed")), **dict.fromkeys(WRITTEN, ("packed",))}
     fields = [*without.get(target, ()), *(name for name, targets in OF_TARGETS.items() if target not in targets)]
     return next((name for name in fields if given[name] and given[name] != DEFAULT_OPTIONS.get(name)), None)

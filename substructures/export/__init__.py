@@ -2,7 +2,7 @@
 
 ``files(exported, "c")`` is what a target consists of, by file name; ``archive`` packs several files, the same bytes for
 the same files. Generated code calls coordinates ``q[3]`` and temporaries ``t17``; names that users gave stand in
-comments, escaped, and in the names of indices where they are identifiers. :mod:`.urdf` writes the mechanism itself.
+comments, escaped, and in the names of indices where they are identifiers. :mod:`.robots` writes the mechanism itself.
 """
 
 from __future__ import annotations

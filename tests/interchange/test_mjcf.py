@@ -238,3 +238,16 @@ def test_connect_and_weld_are_closures(kind: str, rows: int) -> None:
         assert np.linalg.norm(ours[:3]) == pytest.approx(np.linalg.norm(data.efc_pos[:3]), abs=1e-12)
         if not q.any():
             assert np.abs(ours).max() < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("site", "message"),
+    [("tipp", "there is no site 'tipp'; did you mean 'tip'"), ("tip", "both bodies are 'c': name two")],
+)
+def test_closures_between_sites_need_two_that_are_there(site: str, message: str) -> None:
+    """Those that are written by us are read in test_mjcf_out."""
+    text = LOOP.format(f'<connect site1="tip" site2="{site}"/>').replace(
+        "</body>\n</w", '<site name="tip"/></body>\n</w'
+    )
+    with pytest.raises(InvalidDocument, match=message):
+        import_file(text.encode())

@@ -16,7 +16,7 @@ from related import reduction
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
 from substructures.errors import InvalidDocument, MissingValue
-from substructures.export.urdf import urdf_of_part, urdf_of_tree
+from substructures.export.robots import file_of_part, file_of_tree
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.interchange.as_part import Options
@@ -50,7 +50,7 @@ def numbers_of(parameters: Any) -> Any:
 
 
 def urdf_of(part: Part) -> bytes:
-    return urdf_of_part(part, "robot", f"{part.name}@1", part.definition.digest, numbers_of(part.parameters))
+    return file_of_part("urdf", part, "robot", f"{part.name}@1", part.definition.digest, numbers_of(part.parameters))
 
 
 def bare(name: str) -> Part:
@@ -198,8 +198,8 @@ def test_a_tree_is_one_file(tmp_path: Path) -> None:
     """Hosts behind what they carry, placements and bindings with parameters of the tree, a number for one of them."""
     spec, parts = two_arms()
     model = couple(spec, parts)
-    data = urdf_of_tree(
-        spec, parts, "two", "two@1", spec.digest, numbers_of({**model.parameters, "h": {"value": "0.4"}})
+    data = file_of_tree(
+        "urdf", spec, parts, "two", "two@1", spec.digest, numbers_of({**model.parameters, "h": {"value": "0.4"}})
     )
     again = bound_tree(spec, parts)
     assert worst_in_pinocchio(data, again, list(model.coordinates), tmp_path / "a.urdf") < 1e-12
@@ -216,7 +216,7 @@ def test_loops_and_loads_of_trees_are_told() -> None:
     plain["closures"] = [{"name": "rod", "type": "rod", "from": "b.flange", "length": 1}]
     plain["loads"] = [{"name": "cable", "type": "spring", "to": "b.flange", "stiffness": 1}]
     told = couple(TreeSpec.read(plain), parts)
-    text = urdf_of_tree(TreeSpec.read(plain), parts, "two", "two", "", numbers_of(told.parameters)).decode()
+    text = file_of_tree("urdf", TreeSpec.read(plain), parts, "two", "two", "", numbers_of(told.parameters)).decode()
     assert "the closure 'rod' (rod): URDF has no loops" in text
     assert "the load 'cable' (spring)" in text
 
@@ -235,7 +235,7 @@ def test_names_and_titles_cannot_leave_their_places() -> None:
     body = plain["bodies"][0]["name"]
     plain["ports"] = [{"name": f"{body}_1", "body": body}]
     part = derive(Definition.read(plain))
-    data = urdf_of_part(part, "robot", "a--><evil/>---@1", "sha256:0", numbers_of(part.parameters))
+    data = file_of_part("urdf", part, "robot", "a--><evil/>---@1", "sha256:0", numbers_of(part.parameters))
     root = Tree.fromstring(data)  # noqa: S314 -- our own
     assert {child.tag for child in root} == {"link", "joint"}
     names = [child.attrib["name"] for child in root if child.tag == "link"]

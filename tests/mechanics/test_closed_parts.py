@@ -24,7 +24,7 @@ from substructures import (
 from substructures.analysis.closed.loops import loop_state
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
-from substructures.export.urdf.document import urdf_of_part
+from substructures.export.robots import file_of_part
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.pictures.scene import scene
@@ -163,7 +163,7 @@ def test_reactions_and_pictures_have_them() -> None:
         """With all defaults."""
         return bind(formulas, {s.name: values[s.name] for s in formulas.symbols if s.name in values})
 
-    text = urdf_of_part(own["hand"], "linkage", "linkage@1", "", numbers)
+    text = file_of_part("urdf", own["hand"], "linkage", "linkage@1", "", numbers)
     assert b"the closure 'pin' (pin): URDF has no loops" in text
 
 

@@ -52,7 +52,7 @@ class Bodies:
     report: Report
     links: list[Link] = field(default_factory=list)
     frames: list[NamedFrame] = field(default_factory=list)
-    sites: dict[str, tuple[str | None, Triple]] = field(default_factory=dict)
+    sites: dict[str, tuple[str | None, Seat]] = field(default_factory=dict)
     armatures: Mapping[str, Number] = field(default_factory=dict)  #: of actuators, by joint
     dampings: Mapping[str, Number] = field(default_factory=dict)
     springdampers: dict[str, tuple[float, float]] = field(default_factory=dict)  #: timeconst and dampratio, by joint
@@ -81,7 +81,7 @@ class Bodies:
                 self._children(child, parent, inner, outer.beyond(self._seat(child)))
             elif child.tag == "site" and "name" in child.attributes:
                 seat = outer.beyond(self._seat(self.defaults.applied(child, childclass)))
-                self.sites[child.attributes["name"]] = parent, seat.position
+                self.sites[child.attributes["name"]] = parent, seat
                 if parent is not None:
                     self.frames.append(NamedFrame(child.attributes["name"], parent, seat.position, seat.rpy))
             elif child.tag in _IGNORED:

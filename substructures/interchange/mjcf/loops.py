@@ -8,22 +8,24 @@ from dataclasses import replace
 import numpy as np
 
 from substructures.array import Array
-from substructures.errors import among
+from substructures.errors import among, meant
 from substructures.interchange.bindings import joints_of, mimic_of
-from substructures.interchange.merge import vector
+from substructures.interchange.merge import Seat, vector
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Link, Loop, Mimic, Motion
 from substructures.interchange.rotations import from_axis_angle, from_quaternion, from_rpy, to_rpy
-from substructures.interchange.xml import Node
+from substructures.interchange.xml import SHOWN, Node
 
 WORLD = "world"
 #: R and position in the world
 Pose = tuple[Array, Array]
+#: links (None: the world) and what is placed in them, by the names of sites
+Sites = Mapping[str, tuple[str | None, Seat]]
 
 
-def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop, ...]:
-    """The closures of all active <connect> and <weld>; frames coincide where no joint has moved."""
+def loops_of(root: Node, links: tuple[Link, ...], sites: Sites, report: Report) -> tuple[Loop, ...]:
+    """The closures of all active <connect> and <weld>; frames coincide where no joint has moved, or are of sites."""
     found: list[Loop] = []
     poses = poses_of(links, {})
     for section in root.all("equality"):
@@ -37,7 +39,7 @@ def loops_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Loop,
                 report.lost(node.place, message, "topology")
             else:
                 name = node.attributes.get("name", f"loop{len(found) + 1}")
-                found.append(_loop(node, name, poses))
+                found.append(_loop(node, name, poses, sites))
     return tuple(found)
 
 
@@ -85,21 +87,40 @@ def _moved(pose: Pose, motion: Motion, by: float) -> Pose:
     return turned, r + R @ anchor - turned @ anchor
 
 
-def _loop(node: Node, name: str, poses: dict[str | None, Pose]) -> Loop:
+def _loop(node: Node, name: str, poses: dict[str | None, Pose], sites: Sites) -> Loop:
     if "site1" in node.attributes or "site2" in node.attributes:
-        raise refuse(node.place, "not-read", "constraints between sites are not read: give body1, body2 and anchor")
+        return _between_sites(node, name, sites)
     first, second = node.text_of("body1"), node.attributes.get("body2", WORLD)
     for body in (first, second):
         if body not in poses:
             raise refuse(node.place, "unknown-link", f"there is no body '{body}'{among(body, filter(None, poses))}")
-    if first == second:
-        raise refuse(node.place, "same-body", f"both bodies are '{first}': name two")
+    _require_two(node, first, second)
     if node.tag == "connect":
         anchor = np.array([value(x) for x in node.numbers("anchor", 3)])
         found = _ball(name, first, second, anchor, poses)
     else:
         found = _weld(node, name, first, second, poses)
     return _to_world(found)
+
+
+def _between_sites(node: Node, name: str, sites: Sites) -> Loop:
+    """Two sites coincide, of <weld> with their axes, wherever they are at the start."""
+    ends: list[tuple[str, Seat]] = []
+    for site in (node.text_of("site1"), node.text_of("site2")):
+        if site not in sites:
+            raise refuse(node.place, "unknown-site", f"there is no site '{site[:SHOWN]}'{meant(site, sites)}")
+        link, seat = sites[site]
+        ends.append((WORLD if link is None else link, seat))
+    (first, one), (second, two) = ends
+    _require_two(node, first, second)
+    if node.tag == "connect":
+        return _to_world(Loop(name, "ball", first, second, one.position, ORIGIN, two.position, ORIGIN))
+    return _to_world(Loop(name, "weld", first, second, one.position, one.rpy, two.position, two.rpy))
+
+
+def _require_two(node: Node, first: str, second: str) -> None:
+    if first == second:
+        raise refuse(node.place, "same-body", f"both bodies are '{first}': name two")
 
 
 def _to_world(loop: Loop) -> Loop:

@@ -51,14 +51,15 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     _tell_of_others(root, report)
     gravity, place = _gravity(root, report)
     links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
+    points = {name: (link, seat.position) for name, (link, seat) in bodies.sites.items()}
     robot = Robot(
         root.attributes.get("model", ""),
         links,
         report,
         frames=tuple(bodies.frames),
         mimics=bindings_of(root, links, report),
-        loops=loops_of(root, links, report),
-        tendons=tendons_of(root, links, bodies.sites, defaults, report),
+        loops=loops_of(root, links, bodies.sites, report),
+        tendons=tendons_of(root, links, points, defaults, report),
         gravity=gravity,
         gravity_place=place,
     )

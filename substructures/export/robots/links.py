@@ -2,96 +2,88 @@
 
 A link is placed in its parent by x_parent = R x + r. A revolute or prismatic link moves from there about or along an
 axis through its own origin. Compound joints (universal, spherical, ..., free) are chains with massless links between,
-and so are ball joints, with yaw, pitch, roll: URDF has no others. Floating ones remain what they are.
+and so are ball joints, with yaw, pitch, roll, where a format has no others. Floating ones remain what they are.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument, MissingValue
+from substructures.export.robots.rigid import NOWHERE, Drive, Loop, Pose, RigidLink, Robot, between, beyond
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.balls import BALLS, INSTEAD
-from substructures.part.definition import Body, Definition
+from substructures.part.definition import Body, Definition, PartClosure
+from substructures.part.frames import CutFrames, cut_frames
 from substructures.part.mechanism import Mechanism, mechanism
 from substructures.part.relations import read_relations
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 
-#: x_parent = R x + r
-Pose = tuple[Array, Array]
 #: numbers for all parameters of a program
 Values = Callable[[Program], Mapping[str, Array]]
 
-_NOWHERE: Pose = (np.eye(3), np.zeros(3))
 _MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _TURNS = ("yaw", "pitch", "roll")
+#: of joints, as they are called in definitions
+LAWS = ("damping", "stiffness", "rest", "armature")
 
 
-@dataclass(frozen=True)
-class Drive:
-    """The joint of a link: its coordinate, the axis in the link's frame, limits [rad or m], damping."""
-
-    coordinate: str
-    is_slide: bool
-    axis: Array
-    limits: tuple[float, float] | None
-    damping: float
-    mimic: tuple[str, float, float] | None = None  #: the coordinate that moves it, multiplier and offset
-
-
-@dataclass(frozen=True)
-class RigidLink:
-    """A link on its parent (None: the root); mass [kg], mass centre [m], tensor about it in the link's axes.
-
-    ``floats``: whether it moves freely, without a drive.
-    """
-
-    name: str
-    parent: str | None
-    pose: Pose = _NOWHERE
-    drive: Drive | None = None
-    floats: bool = False
-    mass: float = 0.0
-    com: Array = field(default_factory=lambda: np.zeros(3))
-    inertia: Array = field(default_factory=lambda: np.zeros((3, 3)))
-
-
-@dataclass(frozen=True)
-class Links:
-    """Parents first; ``left_out``: what cannot be said of them in numbers of links and joints."""
-
-    links: tuple[RigidLink, ...]
-    left_out: tuple[str, ...]
-
-
-def links_of(definition: Definition, values: Values, prefix: str = "") -> Links:
-    """The links of a definition, the first is its interface; ``prefix``: of all names.
+def robot_of(definition: Definition, values: Values, angles: bool, prefix: str = "") -> Robot:
+    """The links of a definition, the first is its interface; ``prefix``: of all names; ``angles``: yaw, pitch, roll in
+    place of the quaternions of ball joints.
 
     Raises InvalidArgument for numbers that are not finite, MissingValue for parameters without one.
     """
     layout = topology(definition)
     # joints stand where their own positions are zero: relations come beside them
     m = mechanism(_with_chains(definition, layout).model_copy(update={"relations": ()}))
-    laws = {k: law.damping for k, law in enumerate(m.laws) if _is_constant(m, law.damping)}
-    outputs = _outputs(m, laws)
+    fixed = {law: _constants(m, law) for law in LAWS}
+    fixed["stiffness"] = {k: x for k, x in fixed["stiffness"].items() if k in fixed["rest"]}
+    outputs = _outputs(m, fixed)
     names = m.topology.coordinates
     relations = read_relations(definition.relations, layout.before, names, m.scope)
     outputs["relations"] = array((len(names), 2), lambda k, i: relations[k][1 + i])
+    outputs |= loop_outputs([cut_frames(m.scope, each, "") for each in definition.closures])
     numbers = values(program(m.graph, outputs, m.scope.symbols))
+    require_finite(numbers, definition.name)
+    balls = {b.body: definition.bodies[b.body].joint.type for b in layout.balls}
+    reader = _Reader(m, numbers, prefix, [of for of, _, _ in relations], balls, angles)
+    loops = tuple(loops_in(definition.closures, numbers, prefix))
+    return Robot(tuple(reader.links()), loops, tuple(reader.left_out(fixed)))
+
+
+def require_finite(numbers: Mapping[str, Array], of: str) -> None:
+    """Raises InvalidArgument with the name of numbers that are not; ``of``: what they belong to."""
     for name, x in numbers.items():
         if not np.isfinite(x).all():
-            message = f"'{name}' of '{definition.name}' is not finite with these parameters: give others by bind"
+            message = f"'{name}' of '{of}' is not finite with these parameters: give others by bind"
             raise InvalidArgument.at("/bind", "not-finite", message)
-    reader = _Reader(m, numbers, prefix, [of for of, _, _ in relations], {b.body: b.place for b in layout.balls})
-    return Links(tuple(reader.links()), tuple(reader.left_out(laws)))
+
+
+def loop_outputs(frames: Sequence[CutFrames]) -> dict[str, Formulas]:
+    """The frames of closures, in the order of these."""
+    outputs: dict[str, Formulas] = {}
+    for k, frame in enumerate(frames):
+        outputs[f"closure.{k}.start"] = array((3, 3), lambda i, j, E=frame.start: E[i][j])
+        outputs[f"closure.{k}.end"] = array((3, 3), lambda i, j, E=frame.end: E[i][j])
+        outputs[f"closure.{k}.position"] = array((3,), lambda i, r=frame.position: r[i])
+    return outputs
+
+
+def loops_in(closures: Sequence[PartClosure], numbers: Mapping[str, Array], prefix: str = "") -> Iterator[Loop]:
+    """The closures, with the numbers of their frames."""
+    for k, each in enumerate(closures):
+        start = numbers[f"closure.{k}.start"].T, np.zeros(3)
+        end = numbers[f"closure.{k}.end"].T, numbers[f"closure.{k}.position"]
+        yield Loop(prefix + each.name, each.type, prefix + each.from_, start, prefix + each.to, end)
 
 
 def _with_chains(definition: Definition, layout: Topology) -> Definition:
@@ -118,13 +110,17 @@ def at_zero(given: Program, values: Mapping[str, float]) -> dict[str, Array]:
     return interpret(given, known)
 
 
-def _is_constant(m: Mechanism, x: Expr) -> bool:
-    """Whether it depends on parameters alone."""
-    found = program(m.graph, {"x": array((), lambda: x)}, m.scope.symbols)
-    return all(symbol.kind == "parameter" for symbol in found.symbols)
+def _constants(m: Mechanism, law: str) -> dict[int, Expr]:
+    """Of every joint whose law depends on parameters alone."""
+
+    def is_constant(x: Expr) -> bool:
+        found = program(m.graph, {"x": array((), lambda: x)}, m.scope.symbols)
+        return all(symbol.kind == "parameter" for symbol in found.symbols)
+
+    return {k: x for k, each in enumerate(m.laws) if is_constant(x := getattr(each, law))}
 
 
-def _outputs(m: Mechanism, laws: Mapping[int, Expr]) -> dict[str, Formulas]:
+def _outputs(m: Mechanism, laws: Mapping[str, Mapping[int, Expr]]) -> dict[str, Formulas]:
     """Everything that becomes a number."""
     n, bodies = len(m.joints), m.definition.bodies
     frames = [*m.bodies.values(), *m.ports.values()]
@@ -142,8 +138,7 @@ def _outputs(m: Mechanism, laws: Mapping[int, Expr]) -> dict[str, Formulas]:
         "mass": array((len(bodies),), lambda b: read(bodies[b].mass, "")),
         "com": array((len(bodies), 3), lambda b, i: vector(bodies[b].com, "")[i]),
         "inertia": array((len(bodies), 6), lambda b, i: tensors[b][i]),
-        "damping": array((n,), lambda k: laws.get(k, m.graph.zero)),
-        "armature": array((n,), lambda k: m.laws[k].armature),
+        "laws": array((n, len(LAWS)), lambda k, i: laws[LAWS[i]].get(k, m.graph.zero)),
         "limits": array((len(limits), 2), lambda k, i: limits[k][1][i]),
     }
 
@@ -177,14 +172,16 @@ class _Reader:
         numbers: Mapping[str, Array],
         prefix: str,
         movers: Sequence[int],
-        balls: Mapping[int, Sequence[str]],
+        balls: Mapping[int, str],
+        angles: bool,
     ) -> None:
-        """``balls``: by index of the body that a ball or floating joint carries, the names of its place."""
-        self.m, self.numbers, self.prefix, self.movers, self.balls = m, numbers, prefix, movers, balls
+        """``balls``: by index of the body that a ball or floating joint carries, its type."""
+        self.m, self.numbers, self.prefix, self.movers = m, numbers, prefix, movers
+        self.balls, self.angles = balls, angles
         self.limits = dict(zip((k for k, _ in _limits(m)), numbers["limits"].tolist(), strict=True))
         names = [*m.bodies, *m.ports]
         self.frame = {name: f for f, name in enumerate(names)}
-        self.carriers: dict[int, Pose] = {INTERFACE: _NOWHERE}
+        self.carriers: dict[int, Pose] = {INTERFACE: NOWHERE}
         for k, joint in enumerate(m.joints):
             R = numbers["rotation"][k].T
             # from the parent's origin to O_k, then along the axis
@@ -207,11 +204,13 @@ class _Reader:
         """A body, and massless links before it where its joint is compound."""
         body = self.m.definition.bodies[i]
         parent, before = self.prefix + body.parent, self._pose(body.parent)
-        floats = bool(self.balls.get(i))
-        entries = [] if floats else entries
+        ball = self.balls.get(i, "")
+        rates = tuple(float(self.numbers["laws"][k][0]) for k, _ in entries if ball)
+        entries = [] if ball and not (ball == "ball" and self.angles) else entries
         for k, entry in entries[:-1]:
             name = self._between(f"{body.name}_{entry.step + 1}")
-            yield RigidLink(name, parent, between(before, self.carriers[k]), self._drive(k, entry, np.eye(3)[2]))
+            own = self._drive(k, entry, np.eye(3)[2])
+            yield RigidLink(name, parent, between(before, self.carriers[k]), own, is_between=True)
             parent, before = name, self.carriers[k]
         drive = None
         if entries:
@@ -221,7 +220,8 @@ class _Reader:
         mass, com, six = (self.numbers[name][i] for name in ("mass", "com", "inertia"))
         tensor = np.array([[six[0], six[3], six[4]], [six[3], six[1], six[5]], [six[4], six[5], six[2]]])
         pose = between(before, self._pose(body.name))
-        yield RigidLink(self.prefix + body.name, parent, pose, drive, floats, float(mass), com, tensor)
+        name = self.prefix + body.name
+        yield RigidLink(name, parent, pose, drive, ball, rates, mass=float(mass), com=com, inertia=tensor)
 
     def _between(self, wanted: str) -> str:
         """A name that no body or port has."""
@@ -244,54 +244,29 @@ class _Reader:
     def _drive(self, k: int, entry: JointEntry, axis: Array) -> Drive:
         if entry.body in self.balls:
             body = self.m.definition.bodies[entry.body].name
-            return Drive(self.prefix + self._new(f"{body}_{_TURNS[entry.step]}"), False, axis, None, 0.0)
+            return Drive(self.prefix + self._new(f"{body}_{_TURNS[entry.step]}"), False, axis)
         low_high = self.limits.get(k)
         limits = None if low_high is None else (low_high[0], low_high[1])
-        damping = float(self.numbers["damping"][k])
-        drive, mover = Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, damping), self.movers[k]
+        laws = self.numbers["laws"][k].tolist()
+        drive, mover = Drive(self.prefix + entry.coordinate, bool(entry.s), axis, limits, *laws), self.movers[k]
         if mover == k:
             return drive
         factor, offset = self.numbers["relations"][k].tolist()
         return replace(drive, mimic=(self.prefix + self.m.topology.coordinates[mover], factor, offset))
 
-    def left_out(self, laws: Mapping[int, Expr]) -> Iterator[str]:
-        """Springs, rotors, end stops, friction, quaternions, closures and loads."""
-        yield from self._left_out_of_balls()
+    def left_out(self, fixed: Mapping[str, Mapping[int, Expr]]) -> Iterator[str]:
+        """Laws that vary, end stops, friction and loads. ``fixed``: laws that do not."""
         for k, (entry, law) in enumerate(zip(self.m.topology.joints, self.m.laws, strict=True)):
             name = f"'{self.prefix}{entry.coordinate}'"
-            if not law.stiffness.is_zero:
-                yield f"the spring of {name}"
-            if self.numbers["armature"][k]:
-                yield f"the armature {float(self.numbers['armature'][k])!r} of {name}"
-            if k not in laws and entry.body not in self.balls:
+            if k not in fixed["stiffness"]:
+                yield f"the spring of {name}, which depends on the state"
+            if k not in fixed["damping"]:
                 yield f"the damping of {name}, which depends on the state"
             if law.stops is not None:
                 yield f"the end stops of {name}"
             if law.friction is not None:
                 yield f"the dry friction of {name}"
-        for closure in self.m.definition.closures:
-            yield f"the closure '{self.prefix}{closure.name}' ({closure.type}): URDF has no loops"
         for number, load in enumerate(self.m.definition.loads):
             if load.type == "friction":
                 continue
             yield f"load {number} of '{self.prefix[:-1] or self.m.definition.name}' ({load.type})"
-
-    def _left_out_of_balls(self) -> Iterator[str]:
-        """Quaternions of ball joints; damping of these and of floating ones."""
-        for i, place in self.balls.items():
-            name = f"'{self.prefix}{self.m.definition.bodies[i].name}'"
-            if not place:
-                yield f"the quaternion of {name}: yaw, pitch, roll here"
-            rates = [k for k, entry in enumerate(self.m.topology.joints) if entry.body == i]
-            if any(not self.m.laws[k].damping.is_zero for k in rates):
-                yield f"the damping of the joint of {name}"
-
-
-def beyond(outer: Pose, inner: Pose) -> Pose:
-    """The pose of what is placed in something placed."""
-    return outer[0] @ inner[0], outer[1] + outer[0] @ inner[1]
-
-
-def between(outer: Pose, inner: Pose) -> Pose:
-    """The pose in ``outer`` of what is placed beside it."""
-    return outer[0].T @ inner[0], outer[0].T @ (inner[1] - outer[1])
