@@ -63,6 +63,23 @@ def places(model: Model, q: np.ndarray) -> np.ndarray:
     return np.asarray(evaluate(model, "position", q)["position"])
 
 
+def test_kovalevskayas_top() -> None:
+    """A = B = 2 C, the mass centre on the first axis: |(p + i q)^2 - (m g l / C)(g1 + i g2)|^2 is constant for the
+    vertical g in the axes of the body (S. Kowalevski, Acta Mathematica 12, 1889), through every attitude.
+    """
+    C, length, gravity = 1.0, 0.5, 9.81
+    about_centre = (2 * C, 2 * C - length**2, C - length**2)
+    model = model_of([body("top", "base", {"type": "ball"}, about_centre, 1, (length, 0, 0))], (0, 0, -gravity))
+    motion = simulate(model, [0.8, 0.36, 0.48, 0], (0, 6), qd=[0.5, -0.4, 0.9], outputs=Outputs(count=200))
+    assert motion.is_right is True
+    a, x, y, z = motion.q.T
+    vertical = 2 * (x * z - a * y) + 2j * (y * z + a * x)
+    w = motion.qd[:, 0] + 1j * motion.qd[:, 1]
+    found = np.abs(w**2 - gravity * length / C * vertical) ** 2
+    np.testing.assert_allclose(found, found[0], rtol=1e-8)
+    assert np.ptp(np.abs(w)) > 0.2
+
+
 def test_eulers_top_in_elliptic_functions() -> None:
     """w = (a cn, b sn, c dn) of (p t, k^2); L. D. Landau and E. M. Lifshitz, Mechanics, section 37."""
     A, B, C = 1.0, 2.0, 3.0
