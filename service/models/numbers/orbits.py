@@ -36,7 +36,8 @@ def _orbits(source: Source, request: PeriodicOrbitRequest, report: ProgressRepor
     state = {name: getattr(request, name) for name in ("q", "qd")}
     read = read_states(model, state, 1)
     given = _state(arguments(request)) | {"qd": read.qd[0]}
-    shooting = Shooting(request.period, request.fixed, request.hold, request.turns)
+    section = None if request.section is None else request.section.value()
+    shooting = Shooting(request.period, request.fixed, request.hold, request.turns, section)
     family: dict[str, Any] = {"vary": request.vary, "values": request.values}
     family["events"] = [event.value() for event in request.events]
     return periodic_orbits(

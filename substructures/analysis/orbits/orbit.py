@@ -8,9 +8,12 @@ from typing import Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import positive
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.errors import InvalidArgument
 
 Stability = Literal["stable", "unstable", "neutral", "unknown"]
 #: |multiplier| - 1 that says something: multipliers of a double eigenvalue 1 are only known to the root of their errors
@@ -64,15 +67,31 @@ class Family:
 
 @dataclass(frozen=True)
 class Shooting:
-    """What is looked for. ``period`` [s]: a guess, of forced motions the period; ``is_fixed``: it stays as it is;
-    ``hold``: components of the state (``arm.q1``, ``arm.q1'``) that stay as they are; ``turns``: whole turns that
-    revolute coordinates make in a period.
+    """What is looked for. ``period`` [s]: a guess, of forced motions the period, or None: the time of return to the
+    ``section`` that the start is near; ``is_fixed``: it stays as it is; ``hold``: components of the state (``arm.q1``,
+    ``arm.q1'``) that stay as they are; ``turns``: whole turns that revolute coordinates make in a period.
     """
 
-    period: float
+    period: float | None
     is_fixed: bool = False
     hold: tuple[str, ...] = ()
     turns: Mapping[str, int] | None = None
+    section: Section | None = None
+
+    def longest(self) -> float:
+        """Of the period or the section, which is given in place of it, the longest time [s]. Raises InvalidArgument."""
+        if self.section is None:
+            if self.period is None:
+                message = "give 'period', or the 'section' whose time of return it is"
+                raise InvalidArgument.at("/period", "missing", message)
+            return positive(self.period, "period")
+        if self.period is not None:
+            message = "give 'period', or the 'section' whose time of return it is, not both"
+            raise InvalidArgument.at("/section", "contradiction", message)
+        if self.is_fixed:
+            message = "the time of return to 'section' is unknown: leave 'fixed' out, or give 'period'"
+            raise InvalidArgument.at("/fixed", "contradiction", message)
+        return self.section.duration
 
 
 def stability(multipliers: Array, is_free: bool) -> tuple[Stability, str]:

@@ -13,7 +13,6 @@ from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import positive
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputTimes
@@ -25,6 +24,7 @@ from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.orbits.hybrid import HybridFlow
 from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stability
 from substructures.analysis.orbits.quadrature import period_by_quadrature
+from substructures.analysis.orbits.returns import Returns, Section
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 from substructures.documents import escape
@@ -69,7 +69,7 @@ def periodic_orbits(
     """
     given = dict(parameters or {})
     start = Start(q, qd, given, inputs or {})
-    times = OutputTimes((0.0, positive(shooting.period, "period")))
+    times = OutputTimes((0.0, shooting.longest()))
     problem = TreeProblem(model=model, start=start, times=times, integrator=integrator, events=events)
     names = state_names(model)
     _check(model, shooting, vary, values, names)
@@ -134,15 +134,32 @@ class _Search:
         self.turned = np.zeros(2 * n)
         for name, turns in (shooting.turns or {}).items():
             self.turned[problem.model.coordinates.index(name)] = 2 * np.pi * turns
+        self.returns = None if shooting.section is None else Returns(problem, shooting.section)
+        if self.returns and self.flow.is_forced:
+            message = "what acts depends on the time, so that the period is known: give 'period' in place of 'section'"
+            raise InvalidArgument.at("/section", "not-supported", message)
+        #: whether the orbit begins on the section
+        self.is_met = self.returns is not None and not self.held
+
+    def _begun(self) -> tuple[Array, float]:
+        """Where the search begins. Raises EndsEarlyError."""
+        x, period = self.flow.start.copy(), self.shooting.period
+        if self.returns and period is None:
+            met, period = self.returns.first(x)
+            x = x if self.held else met
+        begun = x if self.held else self.flow.begun(x, period or 0.0)
+        self.is_met = self.is_met and begun is x
+        return begun, period or 0.0
 
     def run(self) -> Orbit:
         """The orbit, or how far the search came."""
-        x, period, best = self.flow.start.copy(), self.shooting.period, np.inf
-        if not self.held:
-            try:
-                x = self.flow.begun(x, period)
-            except EndsEarlyError as error:
-                return self._orbit(x, period, f"the motion from the start has no end: {error}", 0)
+        best = np.inf
+        try:
+            x, guess = self._begun()
+        except EndsEarlyError as error:
+            why = f"the motion from the start has no end: {error}"
+            return self._orbit(self.flow.start, self.shooting.period or np.nan, why, 0)
+        period = guess
         for k in range(ITERATIONS):
             try:
                 step, size = self._step(x, period)
@@ -154,7 +171,7 @@ class _Search:
             largest = max(np.abs(step[:-1]).max() / (1 + np.abs(x).max()), abs(step[-1]) / period)
             step *= min(1.0, LONGEST / largest) if largest > 0 else 1.0
             x, period = x + step[:-1], period + float(step[-1])
-            if period < SHORTEST * self.shooting.period:
+            if period < SHORTEST * guess:
                 why = f"the search comes to a period of {period:.3g} s, where there is nothing but rest"
                 return self._orbit(x, period, why, k)
         why = f"after {ITERATIONS} steps of Newton's method the motion does not come back: choose another start"
@@ -176,7 +193,10 @@ class _Search:
         rows = np.column_stack([monodromy - np.eye(2 * n), flow.rate(period, end)])
         right = -gap
         if not self.is_fixed and not self.held:  # no step along the motion
-            rows, right = np.vstack([rows, np.append(flow.rate(0.0, x), 0.0)]), np.append(right, 0.0)
+            along, short = flow.rate(0.0, x), 0.0
+            if self.returns and self.is_met:
+                along, short = self.returns.row(x, flow.conditions.values)
+            rows, right = np.vstack([rows, np.append(along, 0.0)]), np.append(right, short)
         kept = {*self.held, *([2 * n] if self.is_fixed else [])}
         free = [k for k in range(2 * n + 1) if k not in kept]
         step = np.zeros(2 * n + 1)
@@ -186,6 +206,8 @@ class _Search:
     def _orbit(self, x: Array, period: float, message: str, iterations: int) -> Orbit:
         n = self.flow.n
         try:
+            if np.isnan(period):
+                raise EndsEarlyError(message)
             motion, monodromy = self.flow.motion(x, period, TIMES)
         except EndsEarlyError as error:
             message, names = message or str(error), self.problem.model.coordinates
@@ -224,6 +246,8 @@ class _Search:
         gap = np.array([np.abs(self._differences(x, period) - monodromy).max()])
         scale = max(1.0, float(np.abs(monodromy).max())) ** 2
         found.append(Check.of(("return-map", "accurate", reason, ""), gap, last, scale, AGREE))
+        if self.returns:
+            found += self.returns.checks(x, period, self.flow.conditions.values if self.is_met else None)
         whole = self._by_quadrature(motion)
         if whole is not None:
             reason = "the period is that of the closed integral of sqrt(g/(2 (E - V))) dq, or a whole number of them"
@@ -250,4 +274,4 @@ class _Search:
         return np.array(columns).T
 
 
-__all__ = ["Family", "Orbit", "Shooting", "periodic_orbits", "stability"]
+__all__ = ["Family", "Orbit", "Section", "Shooting", "periodic_orbits", "stability"]
