@@ -14,7 +14,7 @@ from scipy.special import ellipk
 from substructures import couple, derive
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits import flow as flows
-from substructures.analysis.orbits import periodic
+from substructures.analysis.orbits import search
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 from substructures.analysis.orbits.quadrature import period_by_quadrature
@@ -95,7 +95,7 @@ def test_a_wrong_period_is_seen(pendulum: Model, monkeypatch: pytest.MonkeyPatch
     (twice,) = periodic_orbits(pendulum, [1.0], replace(shooting, period=2 * once.period)).found
     assert twice.period == pytest.approx(2 * once.period, rel=1e-9)
     assert twice.is_right
-    monkeypatch.setattr(periodic, "period_by_quadrature", lambda *_: once.period * (1 + 1e-6))
+    monkeypatch.setattr(search, "period_by_quadrature", lambda *_: once.period * (1 + 1e-6))
     (wrong,) = periodic_orbits(pendulum, [1.0], shooting).found
     assert wrong.is_right is False
     assert [check.name for check in wrong.checks if not check.holds] == ["quadrature"]

@@ -129,6 +129,7 @@ QUESTIONS: list[Row] = [
     ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/values", measured([250], "mm"), [0.25], "kg"),
     ("periodic-orbits", {"vary": "arm.q'", "period": 1, "q": [0, 0]}, "/values", measured([60], "rpm"), [2 * pi], "m"),
     ("periodic-orbits", {"q": [0, 0]}, "/period", measured(1, "min"), 60.0, "m"),
+    ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/between", [MM, 1], [0.25, 1], "kg"),
     ("periodic-orbits", AROUND, "/section/level", MM, 0.25, "rad"),
     ("periodic-orbits", AROUND, "/section/duration", measured(1, "min"), 60.0, "m"),
     ("poincare-sections", {"q": [0, 0], "quantity": "arm.q"}, "/duration", measured(1, "min"), 60.0, "m"),

@@ -42,6 +42,10 @@ class PeriodicOrbitRequest(StateRequest):
     turns: dict[str, int] = Field({}, description="whole turns of revolute coordinates in a period")
     vary: str | None = Field(None, description="of a family: a parameter, or a coordinate or velocity that is held")
     values: Annotated[tuple[Real, ...], OF_VARIED] = Field((), max_length=1000, description="of `vary`")
+    between: Annotated[tuple[Real, Real] | None, OF_VARIED] = Field(
+        None, description="in place of `values`: a parameter's first and last, followed by arclength through folds"
+    )
+    steps: Annotated[int, Field(ge=2, le=1000)] = Field(50, description="of that family over the range, at least")
     events: tuple[Event, ...] = Field((), max_length=MAX_EVENTS, description="that act, each with its `reset`")
     relative_tolerance: Relative = 1e-11
     absolute_tolerance: Absolute = 1e-13

@@ -16,6 +16,7 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument
 
 Stability = Literal["stable", "unstable", "neutral", "unknown"]
+BifurcationKind = Literal["fold", "branch-point", "period-doubling", "torus"]
 #: |multiplier| - 1 that says something: multipliers of a double eigenvalue 1 are only known to the root of their errors
 NOISE = 1e-4
 
@@ -51,17 +52,32 @@ class Orbit:
 
 
 @dataclass(frozen=True)
+class OrbitBifurcation:
+    """Where a family turns back, meets others or changes its stability: the orbit ``at`` it, with its ``value``; its
+    ``kind`` by the names of :mod:`substructures.analysis.orbits.families`, and the reason.
+    """
+
+    kind: BifurcationKind
+    reason: str
+    at: Orbit
+
+
+@dataclass(frozen=True)
 class Family:
-    """``found``: the orbits, each from the one before; ``coordinates``; ``vary``: what varies."""
+    """``found``: the orbits, each from the one before; ``coordinates``; ``vary``: what varies. Of a family that was
+    followed by arclength the ``bifurcations``, and a ``message`` where it ends within the range.
+    """
 
     coordinates: tuple[str, ...]
     vary: str | None
     found: tuple[Orbit, ...]
+    bifurcations: tuple[OrbitBifurcation, ...] = ()
+    message: str = ""
 
     @property
     def is_right(self) -> bool | None:
         """Whether all that were found are; None where any was not."""
-        rights = [orbit.is_right for orbit in self.found]
+        rights = [orbit.is_right for orbit in (*self.found, *(one.at for one in self.bifurcations))]
         return False if False in rights else None if None in rights else True
 
 
