@@ -41,6 +41,7 @@ def test_open_loops_singular_starts_and_long_spans_fail_with_advice() -> None:
     long = simulated(model, **request)
     assert (long.status, long.steps) == ("failed", 20)
     assert "max_steps" in long.message
+    assert long.events == ()
     assert 0 < long.t[-1] < 100
 
 
@@ -61,8 +62,13 @@ def test_a_singular_position_between_two_steps_is_noticed(method: str, tolerance
     assert "singular" in motion.message or "dead centre" in motion.message
     assert 0 < motion.t[-1] < 0.2
     assert motion.q[-1, 0] > -1e-6
+    (lost,) = motion.events
+    assert (lost.name, lost.kind, lost.t) == ("lost-rank", "lost-rank", motion.t[-1])
+    # in line: sin(crank - coupler) = 0
+    np.testing.assert_allclose(lost.q, 0, atol=1e-2)
     before = simulated(flat, **request, span=(0, 0.1), reduction=method, count=5)
     right(before)
+    assert before.events == ()
 
 
 def test_one_entry_for_all_models() -> None:

@@ -12,10 +12,10 @@ import pytest
 import scipy
 from analysis_models import walker
 
-from substructures import Definition, Event, InvalidArgument, Model, TreeSpec, couple, derive
+from substructures import Definition, Event, InvalidArgument, Model, Outputs, TreeSpec, couple, derive, simulate
 from substructures.analysis.orbits import hybrid
 from substructures.analysis.orbits.orbit import Orbit
-from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 
 G = 9.81
 BALL = {
@@ -125,6 +125,32 @@ def test_the_simplest_walker_is_stable_as_published() -> None:
     sizes = np.abs(orbit.multipliers)
     assert abs(orbit.multipliers - 1).min() < 1e-5
     assert np.sort(sizes)[0] < 1e-4
+
+
+@pytest.mark.parametrize("quantity", ["w.theta", STEP.quantity])
+def test_the_step_of_the_walker_takes_as_long_as_the_return(quantity: str) -> None:
+    """Unknown before, from upright legs or from the strike; the published gait on the way."""
+    theta, rate = START
+    q, qd = [theta, -2 * theta], [rate, -(1 - math.cos(2 * theta)) * rate]
+    section = Section(quantity, direction="falling")
+    (orbit,) = periodic_orbits(walker(0.009), q, Shooting(None, section=section), qd=qd, events=[STEP]).found
+    assert (orbit.status, orbit.is_right, orbit.stability) == ("finished", True, "stable")
+    assert orbit.period == pytest.approx(gait(0.009, *START).period, rel=1e-9)
+    (step,) = orbit.trajectory.events
+    assert step.after is not None
+    assert (step.after[0][0], step.after[1][0]) == pytest.approx(START, abs=2e-7)
+    if quantity == "w.theta":
+        assert orbit.q[0] == pytest.approx(0, abs=1e-12)
+
+
+def test_counts_of_crossings_go_on_through_resets(ball: Model) -> None:
+    """The third fall through half the height, after two bounces."""
+    floor = Event("floor", "b.z", direction="falling", reset={"b.z'": "-b.z'"})
+    half = Event("half", "b.z", 0.5, direction="falling", count=3)
+    motion = simulate(ball, [1], (0, 9), outputs=Outputs(events=[floor, half]))
+    whole = 2 * math.sqrt(2 / G)
+    assert [event.name for event in motion.events] == ["half", "floor"] * 2 + ["half"]
+    assert motion.events[-1].t == pytest.approx(2 * whole + math.sqrt(1 / G))
 
 
 @pytest.mark.deep

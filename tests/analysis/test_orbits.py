@@ -7,31 +7,22 @@ from typing import Any
 
 import numpy as np
 import pytest
+from orbit_trees import slider, tree_of
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from substructures import couple, derive
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits import flow as flows
-from substructures.analysis.orbits import periodic
+from substructures.analysis.orbits import search
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
-from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 from substructures.analysis.orbits.quadrature import period_by_quadrature
 from substructures.analysis.orbits.sections import poincare_section
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
 
 G = 9.81
-
-
-def slider(name: str, parent: str, axis: list[int], **more: Any) -> dict[str, Any]:
-    joint = {"type": "prismatic", "coordinate": name, "placement": {"position": [0, 0, 0]}, "axis": axis, **more}
-    return {"name": f"body_{name}", "parent": parent, "joint": joint}
-
-
-def tree_of(part: dict[str, Any] | str) -> Model:
-    instance = {"name": "p", "substructure": part if isinstance(part, str) else part["name"]}
-    return couple({"name": "one", "gravity": [0, 0, "-9.81"], "instances": [instance]}, {"p": derive(part)})
 
 
 @pytest.fixture(scope="module")
@@ -104,7 +95,7 @@ def test_a_wrong_period_is_seen(pendulum: Model, monkeypatch: pytest.MonkeyPatch
     (twice,) = periodic_orbits(pendulum, [1.0], replace(shooting, period=2 * once.period)).found
     assert twice.period == pytest.approx(2 * once.period, rel=1e-9)
     assert twice.is_right
-    monkeypatch.setattr(periodic, "period_by_quadrature", lambda *_: once.period * (1 + 1e-6))
+    monkeypatch.setattr(search, "period_by_quadrature", lambda *_: once.period * (1 + 1e-6))
     (wrong,) = periodic_orbits(pendulum, [1.0], shooting).found
     assert wrong.is_right is False
     assert [check.name for check in wrong.checks if not check.holds] == ["quadrature"]
@@ -259,6 +250,12 @@ def test_rest_is_no_orbit() -> None:
         (Shooting(1), {"vary": "p.q1"}, "/values"),
         (Shooting(1), {"values": [1.0]}, "/vary"),
         (Shooting(-1), {}, "/period"),
+        (Shooting(None), {}, "/period"),
+        (Shooting(1, section=Section("p.q1")), {}, "/section"),
+        (Shooting(None, True, section=Section("p.q1")), {}, "/fixed"),
+        (Shooting(None, section=Section("p.q7")), {}, "/section/quantity"),
+        (Shooting(None, section=Section("sin(t)")), {}, "/section/quantity"),
+        (Shooting(None, section=Section("p.q1")), {"inputs": {"tau.p.q1": "sin(t)"}}, "/section"),
         (Shooting(1), {"inputs": {"tau.p.q1": "p.q1"}}, "/inputs"),
         (Shooting(1), {"parameters": {"p.mass": 1}}, "/parameters/p.mass"),
     ],

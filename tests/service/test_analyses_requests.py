@@ -110,6 +110,14 @@ def test_orbits_through_events(client: TestClient) -> None:
     (orbit,) = client.post("/v1/trees/court/periodic-orbits", json=wanted).json()["found"]
     assert (orbit["is_right"], orbit["stability"]) == (True, "neutral")
     assert orbit["period"] == pytest.approx(2 * (2 / 9.81) ** 0.5)
+    section = {"quantity": "b.z", "level": 0.5, "direction": "falling"}
+    unknown = {name: given for name, given in wanted.items() if name not in ("period", "hold")} | {"section": section}
+    (again,) = client.post("/v1/trees/court/periodic-orbits", json=unknown).json()["found"]
+    assert (again["is_right"], again["q"]) == (True, pytest.approx([0.5]))
+    assert again["period"] == pytest.approx(orbit["period"])
+    assert {"section", "start"} <= {check["name"] for check in again["checks"]}
+    wrong = client.post("/v1/trees/court/periodic-orbits", json=unknown | {"section": section | {"quantity": "b.x"}})
+    assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/section/quantity")
 
 
 WRONG = [

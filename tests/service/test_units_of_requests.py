@@ -87,6 +87,7 @@ MOTION: list[Row] = [
     ("simulations", SPAN | {"constraints": [{"type": "rolling", "name": "a", "frame": "arm.tip"}]},
      "/constraints/0/radius", MM, 0.25, "rad"),
 ]  # fmt: skip
+AROUND: Plain = {"q": [0, 0], "section": {"quantity": "2*arm.l"}}
 LOCUS: Plain = {"parameter": "arm.l", "values": [1], "q": [0, 0]}
 QUESTIONS: list[Row] = [
     ("linearisations", {"q": [0, 0]}, "/q", *HANDS, "s"),
@@ -128,6 +129,9 @@ QUESTIONS: list[Row] = [
     ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/values", measured([250], "mm"), [0.25], "kg"),
     ("periodic-orbits", {"vary": "arm.q'", "period": 1, "q": [0, 0]}, "/values", measured([60], "rpm"), [2 * pi], "m"),
     ("periodic-orbits", {"q": [0, 0]}, "/period", measured(1, "min"), 60.0, "m"),
+    ("periodic-orbits", {"vary": "arm.l", "period": 1, "q": [0, 0]}, "/between", [MM, 1], [0.25, 1], "kg"),
+    ("periodic-orbits", AROUND, "/section/level", MM, 0.25, "rad"),
+    ("periodic-orbits", AROUND, "/section/duration", measured(1, "min"), 60.0, "m"),
     ("poincare-sections", {"q": [0, 0], "quantity": "arm.q"}, "/duration", measured(1, "min"), 60.0, "m"),
     ("poincare-sections", {"q": [0, 0], "quantity": "2*arm.l", "duration": 1}, "/level", MM, 0.25, "rad"),
     ("lyapunov-exponents", {"q": [0, 0]}, "/duration", measured(1, "min"), 60.0, "m"),
@@ -292,7 +296,7 @@ def test_the_table_has_all_numbers_of_all_requests() -> None:
     steps = [[step for step in row[2].split("/")[1:] if not step.isdigit()] for row in TABLE]
     listed = {".".join(path) for path in steps} | {f"{path[0]}.{path[-1]}" for path in steps}
     # what stands below of values by name belongs to the field
-    texts = {"series", "outputs", "events.quantity", "quantity"}
+    texts = {"series", "outputs", "events.quantity", "section.quantity", "quantity"}
     missing = [p for p in has_units - texts if not any(f"{x}.".startswith(f"{p}.") for x in listed)]
     assert not missing
 

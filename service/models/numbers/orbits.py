@@ -11,8 +11,10 @@ from service.models.source import Source
 from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest, PoincareSectionRequest
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.problem import Integrator
+from substructures.analysis.orbits.families import MOST
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
-from substructures.analysis.orbits.periodic import TIMES, Shooting, periodic_orbits
+from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+from substructures.analysis.orbits.search import TIMES
 from substructures.analysis.orbits.sections import poincare_section
 from substructures.quantities.numbers.states import read_states
 
@@ -32,12 +34,15 @@ def _integrator(
 
 def _orbits(source: Source, request: PeriodicOrbitRequest, report: ProgressReport) -> Any:
     model = source.model
-    check_size(source, max(1, len(request.values)), 3 * model.dof * TIMES)
+    count = MOST * request.steps if request.between else max(1, len(request.values))
+    check_size(source, count, 3 * model.dof * TIMES)
     state = {name: getattr(request, name) for name in ("q", "qd")}
     read = read_states(model, state, 1)
     given = _state(arguments(request)) | {"qd": read.qd[0]}
-    shooting = Shooting(request.period, request.fixed, request.hold, request.turns)
+    section = None if request.section is None else request.section.value()
+    shooting = Shooting(request.period, request.fixed, request.hold, request.turns, section)
     family: dict[str, Any] = {"vary": request.vary, "values": request.values}
+    family |= {"between": request.between, "steps": request.steps}
     family["events"] = [event.value() for event in request.events]
     return periodic_orbits(
         model, read.q[0], shooting, **given, **family, integrator=_integrator(source, request, report)

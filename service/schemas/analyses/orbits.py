@@ -8,23 +8,44 @@ from pydantic import Field
 
 from service.schemas.analyses.motions import MAX_EVENTS, Event, Seconds, StateRequest
 from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED
+from service.schemas.parts import RequestPart
+from substructures.analysis.orbits.returns import Section
 from substructures.documents.fields import PlainNumber, Real
 
 Relative = Annotated[Real, Field(ge=1e-14, le=1e-2)]
 Absolute = Annotated[Real, Field(ge=0, le=1e-2)]
 
 
+class OrbitSection(RequestPart):
+    """The surface ``quantity`` = ``level`` that an orbit crosses ``count`` times in its period."""
+
+    quantity: Annotated[PlainNumber, EXPRESSION] = Field(description="in coordinates, velocities and parameters")
+    level: Annotated[Real, OF_QUANTITY] = 0.0
+    direction: Literal["rising", "falling"] = "rising"
+    count: Annotated[int, Field(ge=1, le=1000)] = Field(1, description="the return that closes the orbit")
+    duration: Seconds = Field(100.0, description="s, at most, of one return")
+
+    def value(self) -> Section:
+        """As the science takes it."""
+        return Section(**dict(self))
+
+
 class PeriodicOrbitRequest(StateRequest):
-    """A state near an orbit and about its period; inputs are numbers, tables or expressions in t, of which it is a
-    period.
+    """A state near an orbit and about its period, or the section whose time of return that is; inputs are numbers,
+    tables or expressions in t, of which it is a period.
     """
 
-    period: Seconds = Field(description="s; a guess, where no input depends on the time")
+    period: Annotated[Seconds | None, Field(description="s; a guess, where no input depends on the time")] = None
+    section: OrbitSection | None = Field(None, description="near the start, in place of `period`, which is unknown")
     fixed: bool = Field(False, description="whether the period stays as it is")
     hold: tuple[str, ...] = Field((), max_length=500, description="coordinates and velocities that stay as given")
     turns: dict[str, int] = Field({}, description="whole turns of revolute coordinates in a period")
     vary: str | None = Field(None, description="of a family: a parameter, or a coordinate or velocity that is held")
     values: Annotated[tuple[Real, ...], OF_VARIED] = Field((), max_length=1000, description="of `vary`")
+    between: Annotated[tuple[Real, Real] | None, OF_VARIED] = Field(
+        None, description="in place of `values`: a parameter's first and last, followed by arclength through folds"
+    )
+    steps: Annotated[int, Field(ge=2, le=1000)] = Field(50, description="of that family over the range, at least")
     events: tuple[Event, ...] = Field((), max_length=MAX_EVENTS, description="that act, each with its `reset`")
     relative_tolerance: Relative = 1e-11
     absolute_tolerance: Absolute = 1e-13

@@ -36,6 +36,8 @@ from substructures.tree.model import Model
 
 #: largest residuals of positions and velocities [per s] along a right motion, over the width of their rows
 RESIDUAL = 1e-9
+#: of the event where the closures lose rank
+LOST_RANK = "lost-rank"
 OPENINGS = ("opening", "opening_rate")
 #: explicit ones, and implicit ones for stiff motions, that go on from the closures after every step
 METHODS = (*EXPLICIT, "Radau", "BDF")
@@ -65,8 +67,9 @@ def simulate_closed(problem: ClosedProblem) -> Trajectory:
     how far the closures are open in other positions, and T + V - work is constant, or, where an input that varies is
     part of V, a second run finds the same; work is that of forces without potential, of springs that change with time,
     and of prescribed coordinates. Loops that cannot be closed, a singular position at the start or on the way and a
-    span that cannot be finished are ``failed``, with advice and the motion up to there. Raises InvalidInput (pointers
-    start with names of arguments of ``simulate``) and MissingValue.
+    span that cannot be finished are ``failed``, with advice and the motion up to there; where the closures lose rank on
+    the way ``events`` has ``lost-rank``. Raises InvalidInput (pointers start with names of arguments of ``simulate``)
+    and MissingValue.
     """
     progress, folder = problem.integrator.progress, problem.integrator.folder
     require_fixed(problem.model, problem.kind.fixed)
@@ -183,11 +186,17 @@ def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, ra
         motion.status,
         motion.message,
         motion.steps,
-        in_order(crossings(problem.events, motion.found, s.n), told),
+        in_order(crossings(problem.events, motion.found, s.n), told, _lost(motion, t, q, qd)),
         {"evaluations": float(motion.evaluations)},
         motion.cancelled,
         span,
     )
+
+
+def _lost(motion: IntegratedMotion, t: Array, q: Array, qd: Array) -> list[Crossing]:
+    """The last state, where the motion ended because the closures lose rank there."""
+    is_lost = motion.status == "failed" and SINGULAR in motion.message
+    return [Crossing(LOST_RANK, float(t[-1]), q[-1], qd[-1], kind=LOST_RANK)] if is_lost else []
 
 
 def _at_states(

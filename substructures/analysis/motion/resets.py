@@ -7,6 +7,7 @@ a ball that comes to rest) end the motion where they accumulate.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any, Literal, TypeVar
@@ -120,6 +121,7 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
         if why is not None:  # the state before the event is the last result
             return replace(_joined([*pieces, piece]), status=why[0], message=why[1])
         pieces.append(_without_its_end(piece, due))
+        whole = replace(whole, events=_to_come(whole.events, piece))
         start, t = replace(start, q=y[:n].tolist(), qd=y[n:].tolist()), last.t
 
 
@@ -137,6 +139,12 @@ def _from(whole: Problem, start: Start, t: float, due: Array, steps: int) -> Pro
     left = replace(choice, progress=told, max_steps=max(1, choice.max_steps - steps))
     times = OutputTimes((t, end), OutputGrid(tuple(due.tolist())))
     return replace(whole, start=start, times=times, integrator=left)
+
+
+def _to_come(events: Sequence[Event], piece: Trajectory) -> list[Event]:
+    """What is left of the counts of events that do not act."""
+    met = Counter(event.name for event in piece.events)
+    return [event if event.reset else replace(event, count=max(1, event.count - met[event.name])) for event in events]
 
 
 def _forwards(report: ProgressReport | None) -> ProgressReport | None:

@@ -16,7 +16,7 @@ from substructures.errors import listed
 class Crossing:
     """An event: ``name``, when [s], and the state; where it acts the state ``after`` it (q, q'), and by how much the
     energy has changed [J]. ``kind``: what a contact of that name does, impact, lift_off, stick or slip; of an impact
-    with its ``impulse`` along the normal and both tangents [N s].
+    with its ``impulse`` along the normal and both tangents [N s]; or lost-rank, where closures no longer determine it.
     """
 
     name: str

@@ -8,11 +8,15 @@ from typing import Literal
 
 import numpy as np
 
+from substructures.analysis.arguments import positive
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.errors import InvalidArgument
 
 Stability = Literal["stable", "unstable", "neutral", "unknown"]
+BifurcationKind = Literal["fold", "branch-point", "period-doubling", "torus"]
 #: |multiplier| - 1 that says something: multipliers of a double eigenvalue 1 are only known to the root of their errors
 NOISE = 1e-4
 
@@ -48,31 +52,62 @@ class Orbit:
 
 
 @dataclass(frozen=True)
+class OrbitBifurcation:
+    """Where a family turns back, meets others or changes its stability: the orbit ``at`` it, with its ``value``; its
+    ``kind`` by the names of :mod:`substructures.analysis.orbits.families`, and the reason.
+    """
+
+    kind: BifurcationKind
+    reason: str
+    at: Orbit
+
+
+@dataclass(frozen=True)
 class Family:
-    """``found``: the orbits, each from the one before; ``coordinates``; ``vary``: what varies."""
+    """``found``: the orbits, each from the one before; ``coordinates``; ``vary``: what varies. Of a family that was
+    followed by arclength the ``bifurcations``, and a ``message`` where it ends within the range.
+    """
 
     coordinates: tuple[str, ...]
     vary: str | None
     found: tuple[Orbit, ...]
+    bifurcations: tuple[OrbitBifurcation, ...] = ()
+    message: str = ""
 
     @property
     def is_right(self) -> bool | None:
         """Whether all that were found are; None where any was not."""
-        rights = [orbit.is_right for orbit in self.found]
+        rights = [orbit.is_right for orbit in (*self.found, *(one.at for one in self.bifurcations))]
         return False if False in rights else None if None in rights else True
 
 
 @dataclass(frozen=True)
 class Shooting:
-    """What is looked for. ``period`` [s]: a guess, of forced motions the period; ``is_fixed``: it stays as it is;
-    ``hold``: components of the state (``arm.q1``, ``arm.q1'``) that stay as they are; ``turns``: whole turns that
-    revolute coordinates make in a period.
+    """What is looked for. ``period`` [s]: a guess, of forced motions the period, or None: the time of return to the
+    ``section`` that the start is near; ``is_fixed``: it stays as it is; ``hold``: components of the state (``arm.q1``,
+    ``arm.q1'``) that stay as they are; ``turns``: whole turns that revolute coordinates make in a period.
     """
 
-    period: float
+    period: float | None
     is_fixed: bool = False
     hold: tuple[str, ...] = ()
     turns: Mapping[str, int] | None = None
+    section: Section | None = None
+
+    def longest(self) -> float:
+        """Of the period or the section, which is given in place of it, the longest time [s]. Raises InvalidArgument."""
+        if self.section is None:
+            if self.period is None:
+                message = "give 'period', or the 'section' whose time of return it is"
+                raise InvalidArgument.at("/period", "missing", message)
+            return positive(self.period, "period")
+        if self.period is not None:
+            message = "give 'period', or the 'section' whose time of return it is, not both"
+            raise InvalidArgument.at("/section", "contradiction", message)
+        if self.is_fixed:
+            message = "the time of return to 'section' is unknown: leave 'fixed' out, or give 'period'"
+            raise InvalidArgument.at("/fixed", "contradiction", message)
+        return self.section.duration
 
 
 def stability(multipliers: Array, is_free: bool) -> tuple[Stability, str]:

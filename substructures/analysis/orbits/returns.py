@@ -1,0 +1,119 @@
+"""Returns of a motion to a section, a surface of the state space: where an orbit of unknown period begins.
+
+H. Poincare, Les methodes nouvelles de la mecanique celeste III, 1899, chapter 27.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from substructures.analysis.arguments import NumberOrExpression, exact, one_of, positive, real, require_read, whole
+from substructures.analysis.equations.expressions import names, vector
+from substructures.analysis.motion.conditions import state_names
+from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
+from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.orbits.flow import EndsEarlyError
+from substructures.analysis.verdict import About, Check
+from substructures.array import Array
+from substructures.errors import InvalidArgument
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.program import Program, program
+from substructures.loads.scope import Scope
+
+#: of the event that stands for the section
+NAME = "(section)"
+#: relative, of the time of return and the level
+RETURN = 1e-7
+#: relative, of times of crossings at which an event acts
+SAME = 1e-12
+PLACE = "/section/quantity"
+
+
+@dataclass(frozen=True)
+class Section:
+    """The surface ``quantity`` (an expression in coordinates, velocities and parameters, its unit) = ``level`` that an
+    orbit crosses in a ``direction`` ``count`` times in its period; each return takes at most a ``duration`` [s].
+
+    Raises InvalidArgument.
+    """
+
+    quantity: NumberOrExpression
+    level: float = 0.0
+    direction: Literal["rising", "falling"] = "rising"
+    count: int = 1
+    duration: float = 100.0
+
+    def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "level", real(self.level, "/level"))
+            one_of(self.direction, "direction", ("rising", "falling"))
+            whole(self.count, "count", 1, 1000)
+            positive(self.duration, "duration")
+        except InvalidArgument as error:
+            raise error.below("/section") from None
+
+
+class Returns:
+    """Of the motions of a problem without inputs that depend on the time. Raises InvalidInput, MissingValue."""
+
+    def __init__(self, problem: TreeProblem, section: Section) -> None:
+        self.problem, self.section = problem, section
+        self._program = _slopes(problem, section)
+
+    def first(self, x: Array) -> tuple[Array, float]:
+        """The state (2n,) in which the motion from x (2n,) first crosses the section, behind an event that acts there,
+        and the time [s] until it has come back. Raises EndsEarlyError.
+        """
+        section, n = self.section, len(x) // 2
+        # before the others: where one of them acts at the same time, it is met, too
+        event = Event(NAME, section.quantity, section.level, section.direction, count=section.count + 1)
+        times = OutputTimes((0.0, (section.count + 1) * section.duration), OutputGrid(count=2))
+        start = replace(self.problem.start, q=x[:n].tolist(), qd=x[n:].tolist())
+        problem = replace(self.problem, start=start, times=times, events=(event, *self.problem.events))
+        motion = simulate_tree(problem)
+        met = [crossing for crossing in motion.events if crossing.name == NAME]
+        if len(met) <= section.count:
+            why = motion.message or f"choose another start, or a longer duration than {section.duration:g} s"
+            raise EndsEarlyError(f"it meets the section {len(met)} times where {section.count + 1} are needed: {why}")
+        begun = met[0]
+        acts = [each.after for each in motion.events if each.after and abs(each.t - begun.t) <= SAME * begun.t]
+        return np.concatenate(acts[-1] if acts else (begun.q, begun.qd)), met[-1].t - begun.t
+
+    def row(self, x: Array, values: dict[str, float]) -> tuple[Array, float]:
+        """The derivatives (2n,) of the quantity by the state x (2n,), and what it is short of its level."""
+        given = values | dict(zip(state_names(self.problem.model), x.tolist(), strict=True))
+        found = interpret(self._program, given, ["slopes", "gap"])
+        return found["slopes"], -float(found["gap"][0])
+
+    def checks(self, x: Array, period: float, values: dict[str, float] | None) -> list[Check]:
+        """The time of return, and with the ``values`` of parameters whether the orbit begins on the section."""
+        last, again = np.array([period]), self.first(x)[1]
+        reason = "the period is the time in which the motion comes back to the section"
+        about: About = ("section", "accurate", reason, "1")
+        found = [Check.of(about, np.array([again / period - 1]), last, 1.0, RETURN)]
+        if values is not None:
+            slopes, short = self.row(x, values)
+            scale = float(np.abs(slopes) @ (1 + np.abs(x)))
+            about = ("start", "zero", "the orbit begins on the section", "")
+            found.append(Check.of(about, np.array([short]), last, scale, RETURN))
+        return found
+
+
+def _slopes(problem: TreeProblem, section: Section) -> Program:
+    """Outputs ``slopes`` (2n,), ``gap`` (1,)."""
+    scope = Scope(Graph())
+    quantity = scope.read(exact(section.quantity, PLACE), PLACE, names(problem.model, scope, False))
+    slopes = gradient([quantity], list(state_names(problem.model)))[0]
+    require_read(scope)
+    level = scope.graph.lift(exact(section.level, "/section/level"))
+    found = program(scope.graph, {"slopes": vector(slopes), "gap": vector([quantity - level])}, scope.symbols)
+    if any(symbol.kind == "time" for symbol in found.symbols):
+        message = "a section whose time of return is unknown does not depend on t: give 'period' in its place"
+        raise InvalidArgument.at(PLACE, "not-supported", message)
+    return found
