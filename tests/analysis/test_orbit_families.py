@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 from orbit_trees import slider, tree_of
 from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
 
 from substructures.analysis.orbits.orbit import Family
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
@@ -64,6 +65,29 @@ def test_three_orbits_at_one_value(bent: Family) -> None:
         start = [*orbit.q, *orbit.qd]
         other = solve_ivp(rate, (0, 2 * np.pi), start, method="DOP853", rtol=1e-12, atol=1e-13)
         np.testing.assert_allclose(other.y[:, -1], start, atol=1e-8)
+
+
+def test_rest_that_is_shaken_awakes_with_twice_the_period() -> None:
+    """x'' + d x' + (1 + 0.2 cos 2t) x = 0: a multiplier is -1 where it is of Mathieu's equation, near d = 0.1."""
+    bodies = [{**slider("x", "base", [1, 0, 0], damping="d"), "mass": 1}]
+    loads = [{"type": "potential", "potential": "(1 + s)*x^2/2"}]
+    known = {"parameters": {"d": {"value": "0.2", "unit": "N s/m"}}, "inputs": {"s": {"unit": "N/m"}}}
+    model = tree_of({"name": "mathieu", "bodies": bodies, "loads": loads, **known})
+    given: Any = {"inputs": {"p.s": "0.2*cos(2*t)"}, "vary": "p.d", "between": (0.2, 0.05), "steps": 5}
+    found = periodic_orbits(model, [0.0], Shooting(np.pi), **given)
+    assert found.is_right
+    (doubled,) = found.bifurcations
+    assert (doubled.kind, doubled.at.value) == ("period-doubling", pytest.approx(0.1, rel=1e-3))
+
+    def beyond(d: float) -> float:
+        """1 + tr M + det M, zero where an eigenvalue of the monodromy matrix M is -1."""
+        rate: Any = lambda t, z: [z[1], -d * z[1] - (1 + 0.2 * np.cos(2 * t)) * z[0]]  # noqa: E731
+        M = np.array([solve_ivp(rate, (0, np.pi), e, rtol=1e-12, atol=1e-13).y[:, -1] for e in np.eye(2)])  # noqa: N806
+        return float(1 + np.trace(M) + np.linalg.det(M))
+
+    assert doubled.at.value == pytest.approx(brentq(beyond, 0.09, 0.11), rel=1e-7)
+    stable = [orbit.stability == "stable" for orbit in found.found]
+    assert stable == [(orbit.value or 0.0) > doubled.at.value for orbit in found.found]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import io
 from concurrent.futures import ThreadPoolExecutor
+from math import pi
 from pathlib import Path
 from typing import Any
 
@@ -118,6 +119,30 @@ def test_orbits_through_events(client: TestClient) -> None:
     assert {"section", "start"} <= {check["name"] for check in again["checks"]}
     wrong = client.post("/v1/trees/court/periodic-orbits", json=unknown | {"section": section | {"quantity": "b.x"}})
     assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/section/quantity")
+
+
+def test_a_family_of_orbits(client: TestClient) -> None:
+    """x'' + d x' + (1 + 0.2 cos 2t) x = 0 awakes near d = 0.1."""
+    joint = {"type": "prismatic", "coordinate": "x", "damping": "d"}
+    part = {"name": "mathieu", "bodies": [{"name": "b", "parent": "base", "joint": joint, "mass": 1}]}
+    part |= {"parameters": {"d": {"value": 0.2, "unit": "N s/m"}}, "inputs": {"s": {"unit": "N/m"}}}
+    part |= {"loads": [{"type": "potential", "potential": "(1 + s)*x^2/2"}]}
+    tree = {"name": "shaken", "instances": [{"name": "p", "definition": part}]}
+    assert client.post("/v1/trees", json=tree).status_code == 201
+    wanted = {
+        "q": [0],
+        "period": pi,
+        "inputs": {"p.s": "0.2*cos(2*t)"},
+        "vary": "p.d",
+        "between": [0.2, 0.05],
+        "steps": 3,
+    }
+    answer = client.post("/v1/trees/shaken/periodic-orbits", json=wanted)
+    assert answer.status_code == 200, answer.text
+    (met,) = answer.json()["bifurcations"]
+    assert (met["kind"], met["at"]["value"]) == ("period-doubling", pytest.approx(0.1, rel=1e-3))
+    wrong = client.post("/v1/trees/shaken/periodic-orbits", json=wanted | {"values": [0.1]})
+    assert (wrong.status_code, wrong.json()["errors"][0]["pointer"]) == (422, "/between")
 
 
 WRONG = [
