@@ -39,6 +39,8 @@ Runner = Callable[[Exported, Path], dict[str, float]]
 
 def exported_of(*parts: str, quantities: tuple[str, ...] = QUANTITIES) -> Exported:
     model = tree_of(*parts)
+    # of ball joints, whose rates are no derivatives, an FMU needs them
+    quantities = (*quantities, *(["position_rates"] if model.balls else []))
     return exported_model(Sources(model), interface_of_model(model, "demo@1", "sha256:1"), quantities, "demo")
 
 
@@ -147,13 +149,16 @@ def by_fmpy(exported: Exported, folder: Path) -> dict[str, float]:
     values = state(exported.interface)
     vectors = exported.interface.vectors
     known = {name: values[name] for symbol in "qup" for name in vectors[symbol].names}
-    speeds = {f"{name}_d": values[f"{name}'"] for name in vectors["q"].names}
+    # rates of ball joints are derivatives of nothing
+    plain = {name.removesuffix("'"): values[name] for name in vectors["qd"].names}
+    speeds = {f"{name}_d" if name in vectors["q"].names else name: x for name, x in plain.items()}
+    changes = {"forward_dynamics": speeds, "position_rates": vectors["q"].names}
     with instance(folder / f"{exported.name}.fmu", **known, **speeds) as (one, at):
 
         def call(function: Any, _: Mapping[str, float]) -> dict[str, Any]:
             ((name, output),) = function.program.outputs.items()
-            is_rate = function.quantity == "forward_dynamics"
-            places = [at[f"der({each})"] for each in speeds] if is_rate else [at[name]]
+            moved = changes.get(function.quantity)
+            places = [at[name]] if moved is None else [at[f"der({each})"] for each in moved]
             size = int(np.prod(output.shape))
             return {name: np.array(one.getFloat64(places, nValues=size)).reshape(output.shape)}
 
