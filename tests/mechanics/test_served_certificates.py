@@ -26,6 +26,7 @@ from substructures.analysis.identification import base_parameters as base
 from substructures.analysis.motion import parameter_sensitivity, right_hand_side, variation
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
+from substructures.expr.differentiate import in_directions
 from substructures.expr.graph import Expr
 from substructures.mechanics.factorisation import Factors
 from substructures.part import outputs as part_outputs
@@ -238,7 +239,11 @@ FAULTS: dict[str, tuple[Any, str, Callable[..., Any]]] = {
         "times_velocity",
         lambda f, g: {(a,): x * f.velocity_symbol(a) for (a, _), x in g.items()},
     ),
-    "perturbation": (derivatives, "directional", halved(derivatives.directional)),
+    "perturbation": (
+        derivatives,
+        "in_directions",
+        lambda rows, ways: [[x / 2 for x in row] for row in in_directions(rows, ways)],
+    ),
     "perturbation of closed loops": (perturbation, "directional", halved(perturbation.directional)),
     "sensitivity": (parameter_sensitivity, "directional", halved(parameter_sensitivity.directional)),
     "variation": (variation, "directional", halved(variation.directional)),
