@@ -24,7 +24,8 @@ CHOSEN = {"quantity": "metric", "target": "c", "format": "text"}
 NEEDED = re.compile(r"\{\w+\}|=(?:&|$)")
 #: of which one of several members is needed, or a tree with loops
 OF_A_CHOICE = tuple(
-    f"/v1/trees/{{ref}}/{name}" for name in ("steady-motions", "reduced-equations", "excitations", "identifications")
+    f"/v1/trees/{{ref}}/{name}"
+    for name in ("steady-motions", "reduced-equations", "excitations", "identifications", "periodic-orbits")
 )
 #: an answer without an end
 STREAMS = "/events"
