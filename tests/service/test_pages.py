@@ -259,7 +259,10 @@ def test_the_whole_catalogue_can_be_seen(shipped: TestClient) -> None:
         drawn = shipped.get(item["links"]["picture"])
         assert len(drawn.content) < 20_000
         assert "nan" not in drawn.text
-        draw(shipped, item["links"]["picture"], q=",".join(["0.1"] * item["dof"]))
+        # quaternions have a norm: those of the pose
+        scene = shipped.get(f"/v1/substructures/{item['name']}/scene").json()
+        q = scene["poses"]["home"] if scene.get("positions") else [0.1] * item["dof"]
+        draw(shipped, item["links"]["picture"], q=",".join(map(str, q)))
         page = read(shipped, f"/substructures/{item['name']}")
         assert item["title"] in page.text
         assert len(page.text) < 100_000
