@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
+from closed_trees import tree_model
+
 from substructures import Definition, Model, TreeSpec, couple, derive
 
 G = 9.81
@@ -78,3 +80,16 @@ def walker(foot: str) -> dict[str, Any]:
         ],
         "ports": [{"name": f"f{leg}", "body": leg, "position": [0, 0, -1]} for leg in ("a", "b")],
     }
+
+
+def on_moving_plate(x: str, y: str) -> Model:
+    """A mass on a plate that moves along x and y as formulas of t say."""
+    slide = {"type": "prismatic", **PLACED}
+    bodies = [
+        {"name": "frame", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
+        {"name": "plate", "parent": "frame", "joint": {**slide, "coordinate": "y", "axis": [0, 1, 0]}, "mass": 1},
+    ]
+    contact = {"name": "plate", "point": "b.body", "plane": "f.plate", "friction": "0.3"}
+    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "point"}]
+    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": {"f.x": x, "f.y": y}, "contacts": [contact]}
+    return tree_model(tree, {"floor": {"name": "floor", "bodies": bodies}, "point": point()})

@@ -11,6 +11,7 @@ import pytest
 from analysis_models import catalogue_model
 from catalogue_entries import shipped_part
 from in_depth import seeds
+from random_trees import Kind, model_of, number, random_definition
 
 from substructures import InvalidArgument, TooLarge, catalogue, couple, derive
 from substructures.abbreviation import abbreviate as module
@@ -22,7 +23,6 @@ from substructures.expr.interpret import interpret
 from substructures.part.definition import Definition
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
-from tests.random_trees import Kind, model_of, number, random_definition
 
 RANGES = {"velocities": (-2, 3), "accelerations": (-4, 4)}
 KIND = Kind(

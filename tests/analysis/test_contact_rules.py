@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
+from contact_models import BALL, G, block, of
 
 from substructures import (
     Contact,
@@ -28,7 +29,6 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.expr.interpret import interpret
-from tests.contact_models import BALL, G, block, of
 
 SLIDING = [Contact(name, f"b.{name}", type="point_line", friction=0.3) for name in "lr"]
 

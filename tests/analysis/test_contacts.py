@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
+from contact_models import BALL, PLACED, G, block, box, of, plane_body, walker
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
-from tests.contact_models import BALL, PLACED, G, block, box, of, plane_body, walker
 
 SLIDING = [Contact(name, f"b.{name}", type="point_line", friction=0.3) for name in "lr"]
 

@@ -9,11 +9,10 @@ import numpy as np
 import pytest
 import scipy
 from closed_trees import tree_model
+from contact_models import BALL, PLACED, G, on_moving_plate
 
 from substructures import Contact, InvalidInput, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.trajectory import Trajectory
-from tests.contact_models import BALL, PLACED, G
-from tests.contact_models import point as free_point
 
 A, W = 0.05, 20.0
 GIVEN = {"input": True}
@@ -34,20 +33,6 @@ def point() -> dict[str, Any]:
         {"name": "body", "parent": "across", "joint": {**slide, "coordinate": "z", "axis": [0, 0, 1]}, "mass": 2},
     ]
     return {"name": "point", "bodies": bodies}
-
-
-def on_circling_plate() -> Model:
-    """2 kg in space on a plate that moves along x and y."""
-    slide = {"type": "prismatic", **PLACED}
-    bodies = [
-        {"name": "frame", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
-        {"name": "plate", "parent": "frame", "joint": {**slide, "coordinate": "y", "axis": [0, 1, 0]}, "mass": 1},
-    ]
-    contact = {"name": "plate", "point": "b.body", "plane": "f.plate", "friction": "0.3"}
-    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "point"}]
-    driven = {"f.x": "0.04*sin(8*t)", "f.y": "0.05*cos(7*t)"}
-    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": driven, "contacts": [contact]}
-    return tree_model(tree, {"floor": {"name": "floor", "bodies": bodies}, "point": free_point()})
 
 
 def on(plane: dict[str, Any], motion: Any, what: dict[str, Any]) -> Model:
@@ -104,7 +89,7 @@ def test_a_belt_takes_a_point_along() -> None:
 
 def test_a_plate_that_circles_takes_a_point_along_until_it_breaks_away() -> None:
     """The way of slip turns until it ends: u' = -mu g u/|u| - a of the plate, and it holds while |a| < mu g."""
-    model = on_circling_plate()
+    model = on_moving_plate("0.04*sin(8*t)", "0.05*cos(7*t)")
     motion = simulate(model, [0, 0, 0], (0, 0.4872), qd=[0.4, 0.2, 0])
     mu = 0.3 * G
 

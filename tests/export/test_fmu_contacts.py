@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_model
-from contact_models import BALL, PLACED, G, block, box, of, point
+from contact_models import BALL, PLACED, G, block, box, of, on_moving_plate, point
 from run_code import require_clean_sources
 
 from substructures import Model, couple, derive, simulate
@@ -69,16 +69,7 @@ def thrown() -> Model:
 
 def carried() -> Model:
     """A mass on a plate that is shaken on a slant: it slips along a curve, sticks, breaks away, and sticks again."""
-    slide = {"type": "prismatic", **PLACED}
-    bodies = [
-        {"name": "frame", "parent": "base", "joint": {**slide, "coordinate": "x", "axis": [1, 0, 0]}},
-        {"name": "plate", "parent": "frame", "joint": {**slide, "coordinate": "y", "axis": [0, 1, 0]}, "mass": 1},
-    ]
-    contact = {"name": "floor", "point": "b.body", "plane": "f.plate", "friction": "0.3"}
-    instances = [{"name": "f", "substructure": "floor"}, {"name": "b", "substructure": "point"}]
-    driven = {"f.x": "0.04*sin(8*t)", "f.y": "0.03*sin(8*t)"}
-    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": driven, "contacts": [contact]}
-    return tree_model(tree, {"floor": {"name": "floor", "bodies": bodies}, "point": point()})
+    return on_moving_plate("0.04*sin(8*t)", "0.03*sin(8*t)")
 
 
 def corners(friction: str, restitution: str = "0") -> Model:

@@ -7,13 +7,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 from exported_models import LIMIT, exported_of, tree_of, write
 from run_code import load_python, octave
 
 from substructures import couple, evaluate
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.quantities.numbers.evaluation import Sources
-from tests.catalogue_entries import shipped_part
 
 CONSTANTS = ("c", "cpp", "rust", "fortran", "julia", "modelica", "maxima", "maple", "reduce", "fricas", "mathematica")
 

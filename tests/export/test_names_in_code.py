@@ -5,10 +5,10 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from catalogue_entries import shipped_part
 
 from substructures import couple, render
 from substructures.export import interface_of_model
-from tests.catalogue_entries import shipped_part
 
 TREE: dict[str, Any] = {
     "name": "crane",

@@ -5,13 +5,13 @@ from __future__ import annotations
 from typing import Any
 
 import pytest
+from bad_documents import GOOD, TREE, Plain, changed, good
 
 from substructures.part.definition import Definition
 from substructures.part.topology import topology
 from substructures.part.units import check_units
 from substructures.tree.document import TreeSpec
 from substructures.tree.units import check_tree_units
-from tests.bad_documents import GOOD, TREE, Plain, changed, good
 
 FIRST, LAST = ("bodies", 0, "joint"), ("bodies", 2, "joint")
 

@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 import pytest
+from bad_documents import GOOD, TREE, Path, changed
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate
 from substructures.documents import read_json
 from substructures.part.parameters import counted, uncounted
 from substructures.part.part import Part, recheck
-from tests.bad_documents import GOOD, TREE, Path, changed
 
 METRES: dict[str, Any] = {
     "name": "arm",

@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
+from damaged import damages
 
 from substructures import Definition, Model, Part, catalogue, couple, derive
 from substructures.documents import read_json, write_json
@@ -17,8 +19,6 @@ from substructures.tree.certificate import certify_tree
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple_shape
 from substructures.tree.shape import CertifiedProgram
-from tests.catalogue_entries import shipped_part
-from tests.damaged import damages
 
 
 class Shapes(dict[str, CertifiedProgram]):

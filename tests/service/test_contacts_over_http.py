@@ -7,9 +7,8 @@ import zipfile
 from typing import Any
 
 import pytest
+from contact_models import BALL
 from fastapi.testclient import TestClient
-
-from tests.contact_models import BALL
 
 FLOOR = {"name": "floor", "point": "b.body", "restitution": 0.8}
 BODY = {"q": [1], "span": [0, 5], "count": 11, "contacts": [FLOOR]}

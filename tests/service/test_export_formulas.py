@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 import pytest
 from fastapi.testclient import TestClient
-
-from tests.run_code import load_python
+from run_code import load_python
 
 from .analysis_trees import client as client
 from .analysis_trees import store as store

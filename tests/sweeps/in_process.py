@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Any
 
+from catalogue_entries import shipped_part
+
 from substructures import derive
 from substructures.documents import read_model
 from substructures.part.part import Part
@@ -12,7 +14,6 @@ from substructures.sweeps.block import Block, Refusals, compute, shape_maker, sl
 from substructures.sweeps.document import SweepDocument
 from substructures.sweeps.plan import Plan, given_options
 from substructures.sweeps.shapes import Option, Shape, option_of
-from tests.catalogue_entries import shipped_part
 
 
 class Sweep:

@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
 from substructures import couple, simulate
 from substructures.errors import InvalidInput
 from substructures.sweeps.block import disagreement
-from tests.catalogue_entries import shipped_part
 from tests.sweeps.in_process import Sweep
 
 TURN = np.array([0.5, -0.1, 0.7, 0.2])

@@ -7,11 +7,11 @@ from typing import Any
 
 import numpy as np
 import pytest
+from catalogue_entries import shipped_part
 
 from substructures import couple, linearise
 from substructures.sweeps import block as blocks
 from substructures.sweeps.block import disagreement, joined
-from tests.catalogue_entries import shipped_part
 from tests.sweeps.in_process import Sweep
 
 STATE = {"q": [0.2, 0.4, -0.3], "qd": [0.1, 0.2, 0.3], "qdd": [1, 0, 2]}

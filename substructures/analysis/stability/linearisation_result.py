@@ -65,17 +65,9 @@ class Linearisation:
         return self.stability is not None
 
 
-@dataclass(frozen=True, kw_only=True, repr=False)
-class BallLinearisation(Linearisation):
-    """Of a tree with ball joints, whose rates v are no derivatives: M dv' + D dv + K dq = F du, dq' = dv + R dq;
-    x = (dq, dv). Of such a joint dq are the displacement of a floating one [m] and the rotation vector [rad], in the
-    axes of the body that it carries, as its rates are: dQ = 1/2 Q (0, dq). ``R`` (n, n) is 0 at rest; ``positions``:
-    names of the numbers of a state; ``qd`` (n,): its rates. Where v' = 0 and A stays as it is at constant rates, the
-    motion is steady (a top upright, a body about a principal axis): ``modes`` and ``stability`` of its neighbours.
-    """
+class MovingLinearisation(Linearisation):
+    """About a state that moves at rates ``qd`` (n,); where the motion is steady its neighbours have modes, too."""
 
-    positions: tuple[str, ...]
-    R: Array
     qd: Array
 
     def _finding(self) -> str:
@@ -92,6 +84,20 @@ class BallLinearisation(Linearisation):
     def is_equilibrium(self) -> bool:
         """Whether the steady motion is rest."""
         return self.is_steady and not self.qd.any()
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
+class BallLinearisation(MovingLinearisation):
+    """Of a tree with ball joints, whose rates v are no derivatives: M dv' + D dv + K dq = F du, dq' = dv + R dq;
+    x = (dq, dv). Of such a joint dq are the displacement of a floating one [m] and the rotation vector [rad], in the
+    axes of the body that it carries, as its rates are: dQ = 1/2 Q (0, dq). ``R`` (n, n) is 0 at rest; ``positions``:
+    names of the numbers of a state; ``qd`` (n,): its rates. Where v' = 0 and A stays as it is at constant rates, the
+    motion is steady (a top upright, a body about a principal axis): ``modes`` and ``stability`` of its neighbours.
+    """
+
+    positions: tuple[str, ...]
+    R: Array
+    qd: Array
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
@@ -112,7 +118,7 @@ class ClosedLinearisation(Linearisation):
 
 
 @dataclass(frozen=True, kw_only=True, repr=False)
-class ConstrainedLinearisation(Linearisation):
+class ConstrainedLinearisation(MovingLinearisation):
     """Of a motion with velocity constraints: M dv' + D dv + K dq = F du and dq' = T dv + R dq; x = (q, v).
 
     For p quasi-``velocities`` and the ``constraints`` that hold: M, D (p, p), K (p, n), F (p, m), A (n+p, n+p),
@@ -131,18 +137,3 @@ class ConstrainedLinearisation(Linearisation):
     R: Array
     T: Array
     ignorable: tuple[str, ...]
-
-    def _finding(self) -> str:
-        if self.stability is None or not self.qd.any():
-            return super()._finding()
-        return f"about a steady motion, {self.stability.verdict}: {self.stability.reason}"
-
-    @property
-    def is_steady(self) -> bool:
-        """Whether modes and stability are those of a steady motion, or of an equilibrium."""
-        return self.stability is not None
-
-    @property
-    def is_equilibrium(self) -> bool:
-        """Whether the steady motion is rest."""
-        return self.is_steady and not self.qd.any()

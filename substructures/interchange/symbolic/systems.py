@@ -11,7 +11,7 @@ from sympy.physics.mechanics import Force, Particle, PinJoint, PrismaticJoint, R
 from sympy.physics.vector import ReferenceFrame, dynamicsymbols
 
 from substructures.errors import InvalidArgument
-from substructures.interchange.symbolic.texts import from_sympy
+from substructures.interchange.symbolic.texts import expression_of, from_sympy
 
 Plain = dict[str, Any]
 _TYPES = {PinJoint: "revolute", PrismaticJoint: "prismatic", WeldJoint: "fixed"}
@@ -34,7 +34,7 @@ class _Reader:
 
     def text(self, expression: Any, what: str) -> str | int:
         """A formula of parameters. Raises InvalidArgument where it moves."""
-        given = sympy.sympify(expression, strict=True)  # a text would be evaluated
+        given = expression_of(expression)
         if given.has(dynamicsymbols._t):
             raise _refused(what, f"varies with time: {given}")
         self.free |= given.free_symbols

@@ -40,13 +40,20 @@ def from_sympy(expression: Any, names: Mapping[Any, str] | None = None) -> str:
     >>> from_sympy(-k * sympy.sin(q) ** 2 / 3)
     '-k*sin(q)**2/3'
     """
-    try:
-        given = sympy.sympify(expression, strict=True)  # a text would be evaluated
-    except sympy.SympifyError:
-        raise _refused(expression, "is no expression of SymPy") from None
+    given = expression_of(expression)
     known = {key: _checked(str(name)) for key, name in (names or {}).items()}
     _require(given, known)
     return str(_Printer(known).doprint(given))
+
+
+def expression_of(given: Any) -> Any:
+    """An expression of SymPy, or a number as such a one. A text is refused: SymPy would evaluate it. Raises
+    InvalidArgument.
+    """
+    try:
+        return sympy.sympify(given, strict=True)
+    except sympy.SympifyError:
+        raise _refused(given, "is no expression of SymPy") from None
 
 
 def _refused(what: Any, why: str) -> InvalidArgument:
