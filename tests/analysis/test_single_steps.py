@@ -19,7 +19,7 @@ from substructures.analysis.motion import rolling, simulation, single_steps
 from substructures.analysis.motion.integrators import fixed_step, integration
 from substructures.analysis.motion.integrators.fixed_step import StepMethod
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, FixedStep, Outputs, simulate
+from substructures.analysis.simulate import ClosedMotion, ConstrainedMotion, FixedStep, Integrator, Outputs, simulate
 from substructures.compile.motion import CompiledRates
 
 CRANK = slider_crank()
@@ -117,6 +117,15 @@ def test_steps_of_a_fixed_size_that_are_too_long(monkeypatch: pytest.MonkeyPatch
 
     monkeypatch.setattr(fixed_step, "rk4_of", wrong)
     assert failed(simulated(shipped("simple-pendulum"), **request)) == ["steps"]
+
+
+def test_they_are_done_more_carefully() -> None:
+    """With a tenth of the tolerances, or ten times them where smaller ones are out of reach; at full order at once."""
+    tight = single_steps.careful(Integrator(relative_tolerance=1e-8, absolute_tolerance=1e-9))
+    assert (tight.method, tight.relative_tolerance, tight.absolute_tolerance) == pytest.approx(("DOP853", 1e-9, 1e-10))
+    loose = single_steps.careful(Integrator(method="BDF", relative_tolerance=1e-13, absolute_tolerance=1e-14), 0.4)
+    assert (loose.method, loose.max_step) == ("Radau", 0.2)
+    assert loose.relative_tolerance == pytest.approx(1e-12)
 
 
 def test_a_step_that_cannot_be_done_again(monkeypatch: pytest.MonkeyPatch) -> None:

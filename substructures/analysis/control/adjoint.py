@@ -103,9 +103,8 @@ def adjoint_equations(
 ) -> AdjointEquations:
     """The adjoint equations of a model for controls (names of inputs), a cost, and ``varied`` parameters.
 
-    Raises InvalidInput for names that are not known (``/controls/i``, ``/varied/i``), for faults in the cost
-    (``/cost/running``), and for driven coordinates beside closures. HORIZON among ``varied`` gives the derivatives by
-    time there.
+    HORIZON among ``varied``: derivatives by time. Raises InvalidInput for names that are not known (``/controls/i``,
+    ``/varied/i``), for faults in the cost (``/cost/running``), and for driven coordinates beside closures.
     """
     require_known("controls", "input", controls, inputs_of(model))
     require_known("varied", "parameter", varied, {*model.parameters, HORIZON})
@@ -116,44 +115,55 @@ def adjoint_equations(
     running, terminal = read_costs(model, cost, scope)
     needed, metric, force = _equations(model, source, scope.graph)
     own = _Multipliers.of(model, scope)
-    held, opened, holding = _closed(model, scope, own.rho)
-    n, rates = model.dof, [f"{name}'" for name in model.coordinates]
-    names = [*model.coordinates, *rates, *controls, *varied]
-    moving = [*model.coordinates, *rates, *varied]
-    missing = [x - y for x, y in zip(needed, held, strict=True)] if own.labels else needed
+    missing, opened, holding = _closed(model, scope, own.rho, needed)
+    n, states = model.dof, [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
     # d(lambda_0 l - mu . (ID - G^T rho) - nu . (G q'' + c))/dz for every z of q, q', u, p in one walk
-    slope = pullback([running, *missing, *opened], [own.weight, *(-x for x in (*own.mu, *own.nu))], names)
-    # dphi/d(q, q', p)
-    end = pullback([terminal], [scope.graph.one], moving)
-    accelerations = (scope.names[f"{name}''"] for name in model.coordinates)
-    rate = [scope.names[name] for name in rates]
-    # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
-    pairs = zip(own.costates, [*rate, *accelerations], strict=True)
+    slope = pullback(
+        [running, *missing, *opened], [own.weight, *(-x for x in (*own.mu, *own.nu))], [*states, *controls, *varied]
+    )
+    moved = [scope.names[f"{name}{prime}"] for prime in ("'", "''") for name in model.coordinates]
+    pairs = zip(own.costates, moved, strict=True)
     outputs = {
         "metric": metric,
         "force": force,
         "running_cost": Formulas((), {(): running}),
+        # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
         "hamiltonian": Formulas((), {(): own.weight * running + scope.graph.sum(x * y for x, y in pairs)}),
         # -dH/dq, and -dH/dq' = -(lambda_q + slope)
         "adjoint_q": array((n,), lambda a: -slope[a]),
         "adjoint_qd": array((n,), lambda a: -(own.costates[a] + slope[n + a])),
         "control_gradient": array((len(controls),), lambda i: slope[2 * n + i]),
         "parameter_gradient": array((len(varied),), lambda i: slope[2 * n + len(controls) + i]),
-        "terminal_cost": Formulas((), {(): terminal}),
+    } | holding
+    outputs |= _terminal(terminal, [*states, *varied], n, scope.graph)
+    result = _certified(program(scope.graph, outputs, scope.symbols), model, cost, (controls, varied), own)
+    return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied), own.labels)
+
+
+def _terminal(phi: Expr, names: Sequence[str], n: int, graph: Graph) -> dict[str, Formulas]:
+    """phi, and dphi/d(q, q', p) for these ``names``."""
+    end = pullback([phi], [graph.one], names)
+    return {
+        "terminal_cost": Formulas((), {(): phi}),
         "terminal_q": array((n,), lambda a: end[a]),
         "terminal_qd": array((n,), lambda a: end[n + a]),
-        "terminal_parameters": array((len(varied),), lambda i: end[2 * n + i]),
-    } | holding
+        "terminal_parameters": array((len(names) - 2 * n,), lambda i: end[2 * n + i]),
+    }
+
+
+def _certified(
+    made: Program, model: Model, cost: Cost, names: tuple[Sequence[str], Sequence[str]], own: _Multipliers
+) -> Program:
+    """The program, once it was compared; ``names``: of controls, and of what is varied."""
     texts = {name: exact(getattr(cost, name), f"/cost/{name}") for name in ("running", "terminal")}
-    result = certified(
-        program(scope.graph, outputs, scope.symbols),
+    return certified(
+        made,
         model,
-        adjoint(controls, texts, varied, own.labels),
+        adjoint(names[0], texts, names[1], own.labels),
         "adjoint equations",
         needs=(*NEEDS, HOLDING[1]) if own.labels else NEEDS,
         more=dict.fromkeys(own.names, "input"),
     )
-    return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied), own.labels)
 
 
 @dataclass(frozen=True)
@@ -192,14 +202,17 @@ def _equations(model: Model, source: Program, graph: Graph) -> tuple[list[Expr],
     return [zero + found.get((a,), zero) for a in range(n)], own["metric"], Formulas((n,), force)
 
 
-def _closed(model: Model, scope: Scope, rho: Sequence[Expr]) -> tuple[list[Expr], list[Expr], dict[str, Formulas]]:
-    """G^T rho (n,), G q'' + c (k,), and G and c; nothing without closures."""
+def _closed(
+    model: Model, scope: Scope, rho: Sequence[Expr], needed: list[Expr]
+) -> tuple[list[Expr], list[Expr], dict[str, Formulas]]:
+    """ID - G^T rho (n,) from ID, G q'' + c (k,), and G and c; ID alone without closures."""
     if not model.closures:
-        return [], [], {}
+        return needed, [], {}
     graph, k = scope.graph, len(rho)
     found = replay(model.program, graph, {}, HOLDING)
     G, c = (found[name].entries for name in HOLDING)
     second = [scope.names[f"{name}''"] for name in model.coordinates]
     held = [graph.sum(G[i, a] * rho[i] for i in range(k) if (i, a) in G) for a in range(model.dof)]
     moved = (graph.sum(G[i, a] * x for a, x in enumerate(second) if (i, a) in G) for i in range(k))
-    return held, [x + c.get((i,), graph.zero) for i, x in enumerate(moved)], {name: found[name] for name in HOLDING}
+    missing = [x - y for x, y in zip(needed, held, strict=True)]
+    return missing, [x + c.get((i,), graph.zero) for i, x in enumerate(moved)], {name: found[name] for name in HOLDING}
