@@ -18,6 +18,8 @@ from substructures.array import Array
 from substructures.pictures.plot import Line, Panel, plot
 
 TIME = "t in s"
+#: spread of what is the same at all crossings of a section [rad, m, per s]
+HELD = 1e-9
 
 
 def draw(found: Trajectory | RootLocus | SteadyMotions | FrequencyResponse, joints: str) -> str:
@@ -57,9 +59,16 @@ def draw_section(section: PoincareSection, joints: str) -> str:
     panels = []
     for a, name in enumerate(section.coordinates):
         unit = "rad" if joints[a] == "R" else "m"
-        dots = Line(f"{len(section.t)} crossings", section.q[:, a], section.qd[:, a], dots=True)
+        dots = Line(f"{len(section.t)} crossings", _held(section.q[:, a]), _held(section.qd[:, a]), dots=True)
         panels.append(Panel(name, f"{name} in {unit}", f"{name}' in {unit}/s", (dots,)))
     return plot(f"section, {_title(section)}", panels)
+
+
+def _held(x: Array) -> Array:
+    """What a section holds, up to where it is found, as one number: an axis of rounding says nothing."""
+    level = float(np.median(x)) if len(x) else 0.0
+    is_held = np.abs(x - level).max(initial=0) <= HELD * (1 + abs(level))
+    return np.full(len(x), round(level, 9)) if is_held else x
 
 
 def _title(motion: Trajectory) -> str:

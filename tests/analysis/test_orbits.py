@@ -12,6 +12,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from substructures import couple, derive
+from substructures.analysis.drawings import draw_section
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.orbits import flow as flows
 from substructures.analysis.orbits import search
@@ -153,6 +154,15 @@ def test_a_section_of_henon_and_heiles(henon_heiles: Model) -> None:
     other = solve_ivp(rate, (0, found.t[-1] + 1e-3), start, **options)
     np.testing.assert_allclose(found.t, other.t_events[0][-10:], rtol=1e-8)
     np.testing.assert_allclose(np.hstack([found.q, found.qd]), other.y_events[0][-10:], atol=1e-7)
+
+
+def test_what_a_section_holds_is_drawn_as_one_number(pendulum: Model) -> None:
+    """Crossings of q = 0 are found up to rounding, of which no axis is made."""
+    found = poincare_section(pendulum, [0.5], "p.q1", 20)
+    assert 0 < np.ptp(found.q) < 1e-9
+    drawn = draw_section(found, pendulum.joints)
+    assert drawn.count("<circle") == len(found.t) > 3
+    assert "e-1" not in drawn
 
 
 def test_order_and_chaos_are_seen_in_sections(henon_heiles: Model) -> None:
