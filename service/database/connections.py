@@ -87,14 +87,33 @@ class Database:
             yield connection
 
     @contextmanager
-    def write(self) -> Iterator[Connection]:
-        """A transaction that commits when the block ends and leaves nothing behind when it raises."""
+    def write(self, *, durable: bool = True) -> Iterator[Connection]:
+        """A transaction that commits when the block ends and leaves nothing behind when it raises.
+
+        What is not ``durable`` survives the end of this process, but maybe not that of the machine: its commit does not
+        wait for the disk.
+        """
         self._check_file()
-        with self.writer.begin() as connection:
+        with self.writer.connect() as connection, self._soon(connection, durable), connection.begin():
             if not self.is_sqlite:  # its locks must not outlast a process that stands still
                 connection.exec_driver_sql(f"SET LOCAL idle_in_transaction_session_timeout = {IDLE_MS}")
+                if not durable:
+                    connection.exec_driver_sql("SET LOCAL synchronous_commit = off")
             yield connection
             self._check_file()  # what is committed to a file that is gone must not be acknowledged
+
+    @contextmanager
+    def _soon(self, connection: Connection, durable: bool) -> Iterator[None]:
+        """While SQLite does not wait for the disk, unless ``durable``; not to be changed within a transaction."""
+        if durable or not self.is_sqlite:
+            yield
+            return
+        execute = connection.connection.driver_connection.execute  # type: ignore[union-attr]
+        execute("PRAGMA synchronous=NORMAL")
+        try:
+            yield
+        finally:
+            execute("PRAGMA synchronous=FULL")
 
     def ping(self) -> None:
         """Raise when the database does not answer."""

@@ -64,7 +64,7 @@ class IdempotencyClaim:
         if not self.key or self._is_claimed:
             return None
         lifetime = timedelta(hours=self._store.settings.limits.idempotency_hours)
-        with self._database.write() as connection:
+        with self._database.write(durable=False) as connection:  # a claim need not outlive the request
             self._store.usage.take(connection, "answer", self._principal, 0)
             # who takes a claim over too early is fenced off: the first to finish is the only one
             idempotency.forget(connection, lifetime, LEASE)
@@ -113,7 +113,7 @@ class IdempotencyClaim:
         """Give the claim up: the request may be sent again."""
         if self._is_claimed:
             self._store.claims.drop(self._wanted)
-            with self._database.write() as connection:
+            with self._database.write(durable=False) as connection:
                 idempotency.release(connection, self._wanted)
 
 

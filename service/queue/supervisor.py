@@ -232,7 +232,7 @@ class Supervisor:
 
     def _renew(self, engine: Engine) -> None:
         """Keep the leases. What was taken over by others is stopped; what a failed round left to us is put back."""
-        with self._store.database.write() as connection:
+        with self._store.database.write(durable=False) as connection:
             set_clock(connection)
             lock_owned(connection, self._owner)
             mine = queue.renew(connection, self._owner, self._lease)

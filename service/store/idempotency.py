@@ -58,7 +58,7 @@ class Claims:
                     self._thread = None
                     return
             try:
-                with self._database.write() as connection:
+                with self._database.write(durable=False) as connection:
                     gone = {claim for claim in held if not renew(connection, claim)}
             except Exception as error:
                 _log.error("claims on idempotency keys cannot be renewed: %s", str(error).partition("\n")[0])

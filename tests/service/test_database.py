@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing, suppress
 from pathlib import Path
 from typing import Any
 
@@ -16,6 +17,8 @@ from service.database.connections import Database, DatabaseError
 from service.database.migrate import upgrade
 from service.database.schema import NEWEST, MigrationError, is_newest
 from service.database.tables import metadata, parts
+
+from .databases import fresh
 
 
 @pytest.fixture
@@ -115,6 +118,25 @@ def test_pragmas(database: Database) -> None:
                 for name in ("journal_mode", "synchronous", "foreign_keys")
             ]
             assert values == ["wal", 2, 1]
+
+
+@pytest.mark.parametrize(
+    ("kind", "asked", "told"),
+    [("sqlite", "PRAGMA synchronous", (2, 1)), ("postgresql", "SHOW synchronous_commit", ("on", "off"))],
+)
+def test_only_what_is_not_durable_does_not_wait_for_the_disk(
+    kind: str, asked: str, told: tuple[Any, Any], tmp_path: Path
+) -> None:
+    found = []
+    with fresh(kind, tmp_path) as address, closing(Database(address)) as database:
+        for durable in (True, False, True):
+            with database.write(durable=durable) as connection:
+                found.append(connection.exec_driver_sql(asked).scalar())
+        with suppress(ZeroDivisionError), database.write(durable=False):
+            raise ZeroDivisionError
+        with database.write() as connection:
+            found.append(connection.exec_driver_sql(asked).scalar())
+    assert found == [told[0], told[1], told[0], told[0]]
 
 
 def test_readers_cannot_write(database: Database) -> None:
