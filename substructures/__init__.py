@@ -85,8 +85,8 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.analysis.stability.linearise import linearise
     from substructures.analysis.stability.regulator import regulator
     from substructures.analysis.stability.steady_motions import steady_motions
-    from substructures.ensembles.columns import MotionColumn
     from substructures.ensembles.ensemble import simulate_ensemble
+    from substructures.ensembles.motion_column import MotionColumn
     from substructures.errors import (
         Fault,
         InvalidArgument,
@@ -192,7 +192,7 @@ _WHERE = {
     "substructures.analysis.stability.linearise": ("linearise",),
     "substructures.analysis.stability.regulator": ("regulator",),
     "substructures.analysis.stability.steady_motions": ("steady_motions",),
-    "substructures.ensembles.columns": ("MotionColumn",),
+    "substructures.ensembles.motion_column": ("MotionColumn",),
     "substructures.ensembles.ensemble": ("simulate_ensemble",),
     "substructures.errors": (
         *("Fault", "InvalidArgument", "InvalidDocument", "InvalidInput", "InvalidProgram", "MissingValue"),

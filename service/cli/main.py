@@ -158,6 +158,7 @@ def loaded(name: str) -> Any:
     gc.disable()  # what a module defines stays: nothing to collect in a tenth of the time that it takes to start
     try:
         found = _FUNCTIONS[name]
+        gc.freeze()  # nor to be looked at whenever there is something to collect
     finally:
         gc.enable()
     group = typer.Typer(cls=_Group, add_completion=False, no_args_is_help=True, help=command.text)

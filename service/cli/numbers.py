@@ -17,7 +17,7 @@ from service.cli.documents import is_document, named, read_document
 from service.cli.options import Server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
-from service.models.numbers import ANALYSES, analysis_of
+from service.models.numbers import OFFERED, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, written
 from substructures.formats.logs import log_of
 
@@ -73,8 +73,8 @@ def numbers(wanted: Wanted, name: str, given: Path | None, log: Path | None = No
 
 def _media(out: Path | None, name: str) -> str:
     media = MEDIA_TYPES.get(out.suffix.removeprefix(".")) if out is not None else JSON
-    if media is None or media not in ANALYSES[name].media:
-        known = [f".{suffix}" for suffix, each in MEDIA_TYPES.items() if each in ANALYSES[name].media]
+    if media is None or media not in OFFERED[name].media:
+        known = [f".{suffix}" for suffix, each in MEDIA_TYPES.items() if each in OFFERED[name].media]
         raise ValueError(f"the result of '{name}' can be written as {', '.join(known)}")
     return media
 

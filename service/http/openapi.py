@@ -45,7 +45,6 @@ PREFER = {
     "description": "`wait=N`: at most N seconds, then it becomes a job; `respond-async`: it becomes one at once",
     "schema": {"type": "string"},
 }
-_ANALYSED: tuple[type[BaseModel], ...] = tuple(dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
 _REQUESTS = (
     *(AliasRequest, WithdrawalRequest, EvaluationRequest, KernelsRequest, JobRequest, CancelRequest, VisibilityRequest),
     EquivalenceRequest,
@@ -62,7 +61,6 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
     AnyTreeLoad,
     *_REQUESTS,
     VelocityConstraints,
-    *_ANALYSED,
     Problem,
 )
 
@@ -75,7 +73,8 @@ def operation_id(route: APIRoute) -> str:
 def document(app: FastAPI) -> dict[str, Any]:
     """The document of an app."""
     result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
-    _, extra = models_json_schema([(model, "validation") for model in _READ_BY_US], ref_template=TEMPLATE)
+    read_by_us = (*_READ_BY_US, *dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
+    _, extra = models_json_schema([(model, "validation") for model in read_by_us], ref_template=TEMPLATE)
     schemas = result.setdefault("components", {}).setdefault("schemas", {})
     schemas.update(extra["$defs"])
     for schema in schemas.values():

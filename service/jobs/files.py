@@ -8,8 +8,7 @@ from typing import Any
 
 from service.content.integrity import digest_of
 from service.jobs.worker import Worker
-from substructures.interchange.as_part import Options
-from substructures.interchange.importing import text_of_file
+from substructures.interchange.files.wanted import Options, text_of_file
 
 DEFAULT = Options()
 

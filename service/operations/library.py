@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
+from importlib import import_module
 from typing import Any
 
 from service.content.cache import Cache
@@ -28,11 +29,15 @@ from service.schemas.entries import PartEntry
 from service.schemas.jobs import ItemDocument
 from service.sources import read_source
 from substructures.errors import InvalidDocument
-from substructures.interchange.importing import document_of
 
 PAGE = 200  # parts that are searched at a time
 
 Reader = Callable[[Mapping[str, Any]], Mapping[str, Any]]
+
+
+def _read_here(given: Mapping[str, Any]) -> Mapping[str, Any]:
+    found: Mapping[str, Any] = import_module("substructures.interchange.importing").document_of(given)
+    return found
 
 
 class StoreLibrary:
@@ -43,7 +48,7 @@ class StoreLibrary:
         connection: Connection,
         viewer: Viewer,
         sources: Sequence[str] = (),
-        file: Reader = document_of,
+        file: Reader = _read_here,
         blobs: Cache[bytes] | None = None,
     ) -> None:
         """``sources``: settings of the instances that may be mirrored; ``file`` reads a robot file; ``blobs``: kept by

@@ -9,7 +9,7 @@ from typing import Any
 from service.content.derivation import recipe_of
 from service.content.summaries import PartContent
 from service.database.connections import Connection
-from service.jobs.kinds.requested import publication_of
+from service.jobs.kinds.requested.publication import publication_of
 from service.jobs.worker import Worker
 from service.messages.refusals import Refused
 from service.messages.viewer import PRIVATE, PUBLIC, Viewer

@@ -18,7 +18,7 @@ from service.content.tree_content import TreeSummary
 from service.database.connections import Connection, Database
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
-from service.jobs.kinds.requested.renewed import RENEWED
+from service.jobs.kinds.requested import REQUESTED
 from service.messages.refusals import Refused
 from service.messages.viewer import CONSOLE, OPEN, SCOPES, Viewer
 from service.operations.catalogue import mend_part
@@ -45,7 +45,7 @@ class CoupledAnew:
 
 
 class Compute(Protocol):
-    """Computes a work of :data:`service.jobs.kinds.requested.renewed.RENEWED`, here or elsewhere."""
+    """Computes a work of :data:`service.jobs.kinds.requested.REQUESTED`, here or elsewhere."""
 
     def __call__(self, kind: str, item: ItemDocument, blobs: Mapping[str, bytes], /) -> Outcome:
         """What it has made. Raises what the work raises."""
@@ -53,7 +53,7 @@ class Compute(Protocol):
 
 def here(kind: str, item: ItemDocument, blobs: Mapping[str, bytes]) -> Outcome:
     """Compute in this process, for who works on a store directly."""
-    return RENEWED[kind](item, blobs)
+    return REQUESTED[kind](item, blobs)
 
 
 def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES, compute: Compute = here) -> PartContent:

@@ -10,8 +10,7 @@ from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.messages.negotiation import MEDIA_TYPES as PRINTED
 from service.messages.negotiation import choose_media_type
-from service.models.numbers import ANALYSES
-from service.models.numbers.analysis import Analysis
+from service.models.numbers import OFFERED, Offered
 from service.models.results import JSON
 from service.operations.analyses import FORMATS, analyse, velocity_equations
 from service.routes.bodies import binary, body_of, printed
@@ -23,7 +22,7 @@ router = APIRouter(prefix="/v1/trees/{ref}", tags=["analyses"])
 READ = [needs("read")]
 
 
-def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response]]:
+def _endpoint(name: str, analysis: Offered) -> Callable[..., Awaitable[Response]]:
     @timed("analyse")
     def _run(ref: str, request: Request, body: JsonBody, store: StoreOf, act: ActOf) -> Response:
         media = choose_media_type(request.headers.get("accept", "*/*"), analysis.media)
@@ -34,7 +33,7 @@ def _endpoint(name: str, analysis: Analysis) -> Callable[..., Awaitable[Response
     return _run
 
 
-def _add(name: str, analysis: Analysis) -> None:
+def _add(name: str, analysis: Offered) -> None:
     others = {media: binary() for media in analysis.media if media != JSON}
     router.add_api_route(
         f"/{name}",
@@ -44,12 +43,12 @@ def _add(name: str, analysis: Analysis) -> None:
         summary=analysis.text,
         response_model=AnalysisResult,
         dependencies=READ,
-        openapi_extra=body_of(analysis.schema.__name__),
+        openapi_extra=body_of(analysis.schema),
         responses={200: {"content": others}, **ACCEPTED},
     )
 
 
-for _name, _analysis in ANALYSES.items():
+for _name, _analysis in OFFERED.items():
     _add(_name, _analysis)
 
 

@@ -10,7 +10,7 @@ from fastapi import APIRouter, Depends, Query, Request, Response
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import conditional, remembered
-from service.jobs.kinds.requested import BODY
+from service.jobs.kinds.requested.printed import BODY
 from service.jobs.worker import Worker
 from service.messages.answers import Answer, etag, json_answer
 from service.messages.negotiation import MEDIA_TYPES

@@ -22,9 +22,7 @@ from service.routes.bodies import binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility
 from service.schemas.imports import ImportView
-from substructures.interchange.as_part import Base, Fixed, Options, Parameters
-from substructures.interchange.kinds import KINDS
-from substructures.interchange.turning import Rotations
+from substructures.interchange.files.wanted import KINDS, Base, Fixed, Options, Parameters, Rotations
 from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/imports", tags=["imports"])

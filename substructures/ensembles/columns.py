@@ -4,52 +4,26 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Any
 
 import numpy as np
-from pydantic import Field, model_validator
-from pydantic_core import PydanticCustomError
 
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import state_names
 from substructures.array import Array
 from substructures.compile.kernel import NO_PLACES, Places
-from substructures.documents import DocumentPart
-from substructures.documents.fields import PlainNumber
+from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
 from substructures.quantities.numbers.evaluation import Evaluation, EvaluationOptions, Sources, evaluate
 from substructures.quantities.quantity import TABLE
 
-MOST_COLUMNS = 100
-#: what becomes of the values at all times; the integral is one over the time of the motion
-Take = Literal["end", "largest", "smallest", "largest_absolute", "mean", "rms", "integral"]
 INTEGRANDS = "integrands"  # output of a program
 FORWARD = "forward_dynamics"  #: the accelerations of a motion
 QUANTILES = (0.05, 0.25, 0.5, 0.75, 0.95)
 _TAKEN: dict[str, Callable[[Array], Array]] = {**TAKEN, "end": lambda x: x[:, -1]}
-
-
-class MotionColumn(DocumentPart):
-    """A number of a motion: an ``expression`` in coordinates, velocities, parameters, inputs and t, or a ``quantity``
-    (and which element of it, ``of``), and what to ``take`` of its values at all times, or its ``integral`` over the
-    time, with the tolerances of the motion.
-    """
-
-    expression: PlainNumber | None = None
-    quantity: str | None = None
-    of: str | list[str] | None = None
-    take: Annotated[Take, Field(description="of the values at all times")] = "end"
-
-    @model_validator(mode="after")
-    def _one(self) -> MotionColumn:
-        if (self.expression is None) == (self.quantity is None):
-            raise PydanticCustomError("one-source", "give either 'expression' or 'quantity'")
-        if self.take == "integral" and self.expression is None:
-            raise PydanticCustomError("no-integrand", "an 'integral' is one of an 'expression'")
-        return self
 
 
 @dataclass(frozen=True)

@@ -19,10 +19,11 @@ from substructures.analysis.motion.problems.kinds import ConstrainedMotion, Tree
 from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
-from substructures.ensembles.columns import MotionColumn, MotionColumns, statistics
+from substructures.ensembles.columns import MotionColumns, statistics
 from substructures.ensembles.constrained import accelerations, kept_gaps
 from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
 from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
+from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.one_by_one import OneByOne
 from substructures.ensembles.result import TOLD, Ensemble, Failure
 from substructures.errors import InvalidArgument

@@ -19,6 +19,7 @@ _BUILD: dict[str, Callable[..., Expr]] = {
     "tan": tan,
     "sqrt": lambda x: x.graph.sqrt(x),
 }
+_INDEX = operator.attrgetter("index")
 
 
 def build(graph: Graph, op: str, args: Iterable[Expr]) -> Expr:
@@ -37,7 +38,7 @@ def reachable(roots: Iterable[Expr], leaf: Callable[[Expr], bool] = lambda _: Fa
             seen.add(node)
             if not leaf(node):
                 stack.extend(node.args)
-    return sorted(seen, key=lambda node: node.index)
+    return sorted(seen, key=_INDEX)
 
 
 def transfer(roots: Iterable[Expr], graph: Graph, bindings: Mapping[str, Expr]) -> list[Expr]:

@@ -8,40 +8,22 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
-from typing import Any, Literal
+from typing import Any
 
 from substructures.interchange.bindings import relations_of
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.merge import Seat, minus, plus, together
 from substructures.interchange.names import Names, library_name, title_of
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, Number, Triple, is_zero
 from substructures.interchange.report import Place, refuse
 from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion, Robot
-from substructures.interchange.turning import Rotations, is_turning, turning_joint
+from substructures.interchange.turning import is_turning, turning_joint
 from substructures.part.definition import MAX_BODIES
 from substructures.part.topology import BASE
-
-Parameters = Literal["none", "inertia", "all"]
-Fixed = Literal["ports", "bodies", "dropped"]
-Base = Literal["fixed", "floating"]
 
 MAX_PORTS = 500
 _MOMENTS = ("xx", "yy", "zz", "xy", "xz", "yz")
 _UNITS = {"m": "kg", "c": "m", "I": "kg m^2", "p": "m", "r": "rad"}
-
-
-@dataclass(frozen=True)
-class Options:
-    """How a file becomes a part.
-
-    ``parameters``: which numbers become named parameters with the file's values as defaults; ``fixed``: what links on
-    fixed joints become besides being merged: ``ports``, ``bodies`` of their own instead, or nothing; ``base``: whether
-    the root link may move freely; ``rotations``: with what ball and free joints turn.
-    """
-
-    parameters: Parameters = "inertia"
-    fixed: Fixed = "ports"
-    base: Base = "fixed"
-    rotations: Rotations = "angles"
 
 
 @dataclass(frozen=True)
@@ -57,7 +39,11 @@ class PartOfFile:
     seats: Mapping[str, tuple[str, Seat]] = field(default_factory=dict)  #: of every link its body, and where in it
 
 
-def as_part(robot: Robot, options: Options = Options(), name: str | None = None) -> PartOfFile:
+def as_part(
+    robot: Robot,
+    options: Options = Options(),  # noqa: B008 -- frozen
+    name: str | None = None,
+) -> PartOfFile:
     """The definition of a robot. Raises InvalidDocument for more bodies than a definition may have."""
     return _Builder(robot, options).part(name)
 

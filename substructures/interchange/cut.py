@@ -11,7 +11,8 @@ from dataclasses import dataclass, replace
 from typing import Any
 
 from substructures.errors import InvalidArgument, listed, meant
-from substructures.interchange.as_part import Options, PartOfFile, as_part, place_of
+from substructures.interchange.as_part import PartOfFile, as_part, place_of
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.names import Names, library_name
 from substructures.interchange.numbers import Triple
 from substructures.interchange.report import refuse

@@ -7,9 +7,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Options, PartOfFile, as_part
+from substructures.interchange.as_part import PartOfFile, as_part
 from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
+from substructures.interchange.files.wanted import Options, text_of_file
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
 from substructures.interchange.report import MOST_REMARKS, Report, refuse
@@ -121,13 +121,6 @@ def document_of(given: Mapping[str, Any]) -> Mapping[str, Any]:
         return given
     read = import_file(text_of_file(given), kind=given.get("kind"))
     return read.definition if read.tree is None else read.tree
-
-
-def text_of_file(given: Mapping[str, Any]) -> bytes:
-    """The bytes of ``{"file": text, "kind": ...}``. Raises InvalidDocument."""
-    if set(given) - {"file", "kind"} or not isinstance(given["file"], str):
-        raise InvalidDocument.at("/file", "file-expected", "a file is its text, and perhaps its kind")
-    return given["file"].encode("utf-8", "replace")
 
 
 def _with_losses(document: dict[str, Any], report: Report) -> dict[str, Any]:

@@ -8,6 +8,7 @@ from typing import Any
 from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.files.content import is_par, is_table, is_usd, is_xml
+from substructures.interchange.files.wanted import KINDS
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Robot, tell_of_missing_masses
@@ -18,7 +19,6 @@ from substructures.interchange.urdf.reader import read_urdf
 from substructures.interchange.usd.reader import read_usd
 from substructures.interchange.xml import Node, read_xml
 
-#: a row of a table without its head
 #: what reads a root element, with the contents of included files by name
 Reader = Callable[[Node, Mapping[str, bytes]], Robot]
 #: by the root element of XML formats
@@ -29,7 +29,6 @@ _ROOTS: Mapping[str, tuple[str, Reader]] = {
 }
 #: most bytes of what is no XML: 200 rows with long expressions
 MAX_ROWS = 2**20
-KINDS = ("urdf", "mjcf", "sdf", "usd", "dh", "par")
 _NO_XML = (
     "this is neither XML (URDF, MJCF, SDF), nor USD, nor a SYMORO file, nor a table of Denavit-Hartenberg parameters: "
     "the first line of a table names its columns, a, alpha, d, theta among them (name,type,a,alpha,d,theta,mass, ...)"

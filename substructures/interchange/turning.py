@@ -5,13 +5,12 @@ roll (singular at pitch = +-pi/2), or without singular angles, with quaternions.
 from __future__ import annotations
 
 from collections.abc import Callable
-from typing import Any, Literal
+from typing import Any
 
+from substructures.interchange.files.wanted import Rotations
 from substructures.interchange.numbers import is_zero
 from substructures.interchange.report import refuse
 from substructures.interchange.robot import Motion
-
-Rotations = Literal["angles", "quaternions"]
 
 _AXES = ("x", "y", "z")
 _TURNS = ("yaw", "pitch", "roll")

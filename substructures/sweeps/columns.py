@@ -12,6 +12,7 @@ from substructures.array import Array
 from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument, InvalidDocument, among
 from substructures.expr.syntax import RESERVED
+from substructures.late import Table
 from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.numbers.states import longest, read_states
@@ -20,17 +21,11 @@ from substructures.sweeps.conditions import Condition, Expression, read_conditio
 from substructures.sweeps.document import (
     AnalysisColumn,
     Column,
-    EquilibriumColumn,
-    LinearColumn,
     ReachColumn,
     SimulationColumn,
     SweepDocument,
 )
 from substructures.sweeps.grouped import alike, inside
-from substructures.sweeps.linear import linear_columns
-from substructures.sweeps.motions import simulation_columns
-from substructures.sweeps.reach import reach_columns
-from substructures.sweeps.rest import equilibrium_columns
 from substructures.sweeps.shapes import Shape
 
 #: what a tree has without a state
@@ -45,12 +40,15 @@ WITH_CHRISTOFFEL = (
     "Gamma_a00",
 )
 #: what computes the columns of an analysis, all of one kind together: shape, columns by name, parameters, rows
-ANALYSES: dict[type[AnalysisColumn], Callable[[Shape, Any, Mapping[str, Any], int], dict[str, Array]]] = {
-    LinearColumn: linear_columns,
-    EquilibriumColumn: equilibrium_columns,
-    ReachColumn: reach_columns,
-    SimulationColumn: simulation_columns,
-}
+ANALYSES: Table[Callable[[Shape, Any, Mapping[str, Any], int], dict[str, Array]]] = Table(
+    "ANALYSES",
+    {
+        "linearisation": "substructures.sweeps.linear",
+        "equilibrium": "substructures.sweeps.rest",
+        "reach": "substructures.sweeps.reach",
+        "simulation": "substructures.sweeps.motions",
+    },
+)
 
 
 @dataclass(frozen=True)
@@ -101,9 +99,9 @@ class Columns:
             found[name] = np.broadcast_to(np.asarray(_static(shape, what, parameters), dtype=np.float64), (rows,))
         for same in alike({n: c.over for n, c in self.quantities.items()}):
             found |= _quantities(shape, {name: self.quantities[name] for name in same}, parameters, rows)
-        for kind, compute in ANALYSES.items():
-            if chosen := {name: c for name, c in self.analyses.items() if isinstance(c, kind)}:
-                found |= compute(shape, chosen, parameters, rows)
+        for kind in ANALYSES:
+            if chosen := {name: c for name, c in self.analyses.items() if c.analysis == kind}:
+                found |= ANALYSES[kind](shape, chosen, parameters, rows)
         known = {**samples, **found}
         for name, expression in self.expressions.items():
             known[name] = found[name] = expression.of(known, rows)

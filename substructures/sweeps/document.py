@@ -10,7 +10,7 @@ from pydantic_core import PydanticCustomError
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS
 from substructures.documents import DocumentPart
 from substructures.documents.fields import NAME, Real
-from substructures.ensembles.columns import MOST_COLUMNS, MotionColumn
+from substructures.ensembles.motion_column import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.quantity_columns import QuantityColumn
 from substructures.ensembles.samples import Samples
 

@@ -90,3 +90,6 @@ def _taken(take: str, eigenvalues: ComplexArray) -> Array:
     with np.errstate(invalid="ignore", divide="ignore"):
         ratios = np.where(size > 0, -real / size, 0.0)
     return np.where(np.isnan(size).any(axis=1), np.nan, ratios.min(axis=1))
+
+
+ANALYSES = {"linearisation": linear_columns}

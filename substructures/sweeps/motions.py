@@ -10,8 +10,8 @@ import numpy as np
 from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
-from substructures.ensembles.columns import MotionColumn
 from substructures.ensembles.ensemble import simulate_ensemble
+from substructures.ensembles.motion_column import MotionColumn
 from substructures.errors import InvalidInput
 from substructures.quantities.numbers.states import read_states
 from substructures.sweeps.document import SimulationColumn
@@ -72,3 +72,6 @@ def _place(pointer: str, column: str) -> str:
     if field in ("columns", "parameters"):
         return pointer
     return f"{column}/at{pointer}" if field in STATE else f"{column}{pointer}"
+
+
+ANALYSES = {"simulation": simulation_columns}

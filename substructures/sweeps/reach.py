@@ -191,3 +191,6 @@ def _best(at: Callable[[Array], Array], candidates: Array) -> Array:
     """Of some values (k, rows) those with the largest of ``at``, (rows,)."""
     values = np.stack([at(x) for x in candidates])
     return np.asarray(np.take_along_axis(candidates, values.argmax(axis=0)[None], axis=0)[0])
+
+
+ANALYSES = {"reach": reach_columns}

@@ -118,3 +118,6 @@ def equilibrium_columns(
             q = AtRest(shape, columns[same[0]].at, parameters, rows).settled()
         found |= {name: q[:, names.index(columns[name].of)] for name in same}
     return found
+
+
+ANALYSES = {"equilibrium": equilibrium_columns}

@@ -11,8 +11,8 @@ from substructures import couple, derive, simulate
 from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.ensembles import lanes, members
-from substructures.ensembles.columns import MotionColumn
 from substructures.ensembles.ensemble import simulate_ensemble
+from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.sampled import with_samples
 from substructures.ensembles.samples import Samples
 from substructures.errors import InvalidInput

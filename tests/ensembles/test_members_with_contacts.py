@@ -14,8 +14,8 @@ from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.analysis.motion.problems.outputs import Outputs
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.simulate import Contact, TreeMotion
-from substructures.ensembles.columns import MotionColumn
 from substructures.ensembles.ensemble import simulate_ensemble
+from substructures.ensembles.motion_column import MotionColumn
 from substructures.errors import InvalidArgument
 
 FLOOR = Contact("floor", "b.body", restitution=0.8)

@@ -83,3 +83,15 @@ def test_directional_derivative_is_linear_in_the_seeds() -> None:
     assert found is a * derivative(f, "x") + b * derivative(f, "q")
     assert directional([graph.one], {"x": a})[0].is_zero
     assert directional([], {}) == []
+
+
+@pytest.mark.parametrize(
+    ("text", "varies"),
+    [("x*y", True), ("sqrt(x^2 + 2*x + 1)^2 - (x + 1)^2 + y", False), ("y*x/x + y^2", False), ("y + 1e-40*x", True)],
+)
+def test_what_changes_with_a_symbol(text: str, varies: bool) -> None:
+    graph = Graph()
+    vanish, x = Vanishing(graph), read(graph, text)
+    assert vanish.varies(x, frozenset("x")) is varies
+    assert vanish.varies(x, frozenset("y"))
+    assert not vanish.varies(read(graph, "sqrt(-1 - x^2)"), frozenset("x"))  # it has no value

@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
 
 sys.path.insert(0, str(Path(__file__).parent))

@@ -15,8 +15,8 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ConstrainedMotion, Integrator
 from substructures.errors import InvalidDocument
 from substructures.export import render
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import Side
 

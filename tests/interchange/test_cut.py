@@ -10,8 +10,8 @@ import pytest
 
 from substructures import Definition, TreeSpec, derive
 from substructures.errors import InvalidArgument, InvalidDocument
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import Side
 

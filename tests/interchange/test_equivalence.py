@@ -12,8 +12,8 @@ from catalogue_entries import shipped_part
 from substructures import Definition, TreeSpec, derive
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidArgument
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import Equivalence, equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
 

@@ -13,7 +13,7 @@ import pytest
 
 from substructures import Definition, TreeSpec
 from substructures.errors import InvalidInput, TooLarge
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 
 from .seeds import SEEDS

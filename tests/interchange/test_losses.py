@@ -9,7 +9,7 @@ import pytest
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
 from substructures.tree.publishing.published import Publication, published
 

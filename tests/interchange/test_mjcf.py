@@ -11,7 +11,7 @@ import pytest
 from substructures import Definition, TreeSpec, couple, derive, evaluate, linearise
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")

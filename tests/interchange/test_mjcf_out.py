@@ -25,8 +25,8 @@ from substructures.errors import InvalidArgument, MissingValue, TooLarge
 from substructures.export.robots import file_of_part, file_of_tree
 from substructures.export.robots.mjcf import MOST
 from substructures.export.robots.urdf import rpy_of
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
 from substructures.part.part import Part

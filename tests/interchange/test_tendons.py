@@ -10,7 +10,7 @@ import pytest
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")

@@ -16,8 +16,8 @@ from related import reduction
 
 from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
 

@@ -9,7 +9,7 @@ import pytest
 
 from substructures import Definition, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Options
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
 
 LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'

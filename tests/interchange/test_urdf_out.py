@@ -19,8 +19,8 @@ from substructures.errors import InvalidDocument, MissingValue
 from substructures.export.robots import file_of_part, file_of_tree
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
-from substructures.interchange.as_part import Options
 from substructures.interchange.equivalence import equivalence
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
 from substructures.interchange.sides import Side
 from substructures.part.part import Part

@@ -6,15 +6,20 @@ import os
 import subprocess
 import sys
 from pathlib import Path
+from typing import get_args
 
 import pytest
 
 from service.cli import choices
 from service.cli.main import COMMANDS, main
+from service.jobs import kinds
+from service.jobs.kinds.requested import REQUESTED
 from service.models import exporting, numbers
 from service.models.formulas import _QUANTITIES, OF_PARTS
 from substructures import catalogue, export, printers
 from substructures.documents import write_json
+from substructures.sweeps.columns import ANALYSES as OF_SWEEPS
+from substructures.sweeps.document import AnalysisColumn
 
 HEAVY = {"fastapi", "sqlalchemy", "numpy", "scipy", "sympy", "pydantic", "llvmlite", "httpx2", "heyoka"}
 
@@ -34,6 +39,14 @@ def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
 
 def test_a_server_starts_without_what_few_requests_need() -> None:
     late = {"alembic", "distributed", "heyoka", "pandas", "pint", "pyarrow", "scipy.linalg", "scipy.optimize", "sympy"}
+    late |= MOTIONS | {
+        "substructures.analysis.stability",
+        "substructures.analysis.control",
+        "substructures.abbreviation",
+    }
+    late |= {"substructures.analysis.closed", "substructures.ensembles.ensemble", "service.models.numbers.analysis"}
+    late |= {f"service.jobs.kinds.{kind}" for kind in ("analyse", "evaluate", "export", "verify")}
+    late |= {"substructures.interchange.importing", "substructures.interchange.kinds"}
     program = "import sys, service.cli.commands.server; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not late & set(done.stdout.split())
@@ -110,6 +123,12 @@ def test_names_of_formats_are_those_of_who_writes_them() -> None:
 def test_tables_name_the_modules_of_their_entries() -> None:
     assert [name for name, entry in _QUANTITIES.items() if entry.needs_parts] == list(OF_PARTS)
     assert all(analysis.schema.__doc__ for analysis in numbers.ANALYSES.values())
+    schemas = {name: analysis.schema.__name__ for name, analysis in numbers.ANALYSES.items()}
+    assert schemas == {name: offered.schema for name, offered in numbers.OFFERED.items()}
+    assert all(table[name] for table in (kinds._KINDS, REQUESTED) for name in table)
+    assert set(OF_SWEEPS) == {
+        get_args(kind.model_fields["analysis"].annotation)[0] for kind in get_args(AnalysisColumn)
+    }
     with pytest.raises(KeyError):
         numbers.ANALYSES["simulation"]
 

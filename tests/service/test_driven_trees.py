@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.kinds.sweep import SWEEP, rows_of
+from service.jobs.kinds import sweep
 from service.messages.negotiation import MEDIA_TYPES
 from substructures.documents import read_json
 
@@ -134,6 +134,6 @@ def test_jobs_take_it() -> None:
     choices = {"cart": ["cart", {"substructure": "cart", "at": "world"}]}
     swept = {"template": stored, "choices": choices, "samples": {"of": {"A": {"values": [0.1, 0.2]}}}, "proof": 10}
     (item,) = library.items("sweep", {**swept, "columns": {"bias": column}})
-    found = rows_of(SWEEP.run(item, library.blobs, lambda _: None).files["rows"])["bias"]
+    found = sweep.rows_of(sweep.KINDS["sweep"].run(item, library.blobs, lambda _: None).files["rows"])["bias"]
     assert found.shape == (4,)
     np.testing.assert_allclose(found[1::2], 2 * found[::2])

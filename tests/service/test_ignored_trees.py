@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.kinds.sweep import SWEEP, rows_of
+from service.jobs.kinds import sweep
 from service.messages.negotiation import MEDIA_TYPES
 from substructures.documents import read_json
 
@@ -174,6 +174,6 @@ def test_jobs_take_it() -> None:
     choices = {"g": ["table", {"substructure": "table", "at": "world"}]}
     swept = {"template": stored, "choices": choices, "samples": {"of": {"h": {"values": [1, 2]}}}, "proof": 10}
     (item,) = library.items("sweep", {**swept, "columns": {"bias": column}})
-    found = rows_of(SWEEP.run(item, library.blobs, lambda _: None).files["rows"])["bias"]
+    found = sweep.rows_of(sweep.KINDS["sweep"].run(item, library.blobs, lambda _: None).files["rows"])["bias"]
     # -p^2 r/(J + r^2)^2
     np.testing.assert_allclose(found, np.array([-1, -4, -1, -4]) * 0.4 / 0.36**2)

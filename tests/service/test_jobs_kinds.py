@@ -10,8 +10,8 @@ import pytest
 from service.content.summaries import PartContent, part_content
 from service.content.tree_content import TreeContent, summary_text
 from service.database.packed import unpack
-from service.jobs import kinds
 from service.jobs.kinds import KINDS, expand, run, submission
+from service.jobs.kinds import derive as of_derive
 from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
@@ -276,6 +276,6 @@ def test_what_the_process_does_not_outlive_is_no_problem_of_the_item(
     def broken(*_: Any) -> Any:
         raise error("error return without exception set")
 
-    monkeypatch.setitem(kinds._KINDS, "derive", replace(kinds._KINDS["derive"], run=broken))
+    monkeypatch.setitem(of_derive.KINDS, "derive", replace(of_derive.KINDS["derive"], run=broken))
     with pytest.raises(error):
         run("derive", {}, {}, lambda _: None)

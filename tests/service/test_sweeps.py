@@ -248,10 +248,10 @@ def test_bad_sweeps_are_refused_by_name(filled: TestClient, change: dict[str, An
 def test_items_are_ranges_that_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> None:
     library = MemoryLibrary([PENDULUM, SLIDER])
     request = {name: x for name, x in SWEEP.items() if name not in ("kind", "labels")} | {"proof": 0}
-    whole = [kind.SWEEP.run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
+    whole = [kind.KINDS["sweep"].run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
     assert len(whole) == 1
     monkeypatch.setattr(kind, "AT_ONCE", 7)
-    parts = [kind.SWEEP.run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
+    parts = [kind.KINDS["sweep"].run(item, library.blobs, lambda _: None) for item in library.items("sweep", request)]
     assert len(parts) == 6
     read = [[kind.rows_of(each.files["rows"]) for each in some] for some in (whole, parts)]
     for name in ("row", "torque", "arm.m"):
@@ -262,10 +262,10 @@ def test_a_planted_fault_in_one_range_fails_it(monkeypatch: pytest.MonkeyPatch) 
     library = MemoryLibrary([PENDULUM, SLIDER])
     request = {name: x for name, x in SWEEP.items() if name not in ("kind", "labels")} | {"proof": 400}
     item = library.items("sweep", request)[0]
-    assert kind.SWEEP.run(item, library.blobs, lambda _: None).problem is None
+    assert kind.KINDS["sweep"].run(item, library.blobs, lambda _: None).problem is None
     real = block.values_of
     monkeypatch.setattr(block, "values_of", lambda some: {n: x * (1 + 1e-9) for n, x in real(some).items()})
-    outcome = kind.SWEEP.run(item, library.blobs, lambda _: None)
+    outcome = kind.KINDS["sweep"].run(item, library.blobs, lambda _: None)
     assert outcome.problem is not None
     assert outcome.problem["code"] == "proof-failed"
 

@@ -18,13 +18,11 @@ from service.cli.output import print_json
 from service.cli.tree_files import part_or_tree
 from substructures.documents import write_json
 from substructures.errors import InvalidDocument
-from substructures.interchange.as_part import Base, Fixed, Options, Parameters
 from substructures.interchange.equivalence import Equivalence, equivalence
 from substructures.interchange.files.archive import PACKAGE, Beside, main_of
+from substructures.interchange.files.wanted import KINDS, Base, Fixed, Options, Parameters, Rotations
 from substructures.interchange.importing import Imported, import_file
-from substructures.interchange.kinds import KINDS
 from substructures.interchange.sides import sides
-from substructures.interchange.turning import Rotations
 
 #: an included file or mesh is read when it is in the folder of the file, or below it
 _MOST_BYTES = 64 * 2**20

@@ -19,7 +19,7 @@ from time import monotonic, process_time
 
 from service.jobs.engines.engine import AttemptReport, Budget, Outcome, Work
 from service.jobs.engines.wire import Message, MessageReader, read_work, report_frame
-from service.jobs.kinds import failed, run
+from service.jobs.kinds import failed, load, run
 from service.messages.refusals import Refused
 from service.processes.lifetime import end_with
 
@@ -36,6 +36,7 @@ def main(arguments: list[str]) -> int:
     end_with(parent)  # elsewhere than on Linux the end of the input does
     _give_up_rights()
     os.nice(niceness)
+    load()
     _send(reports, Message({"ready": os.getpid()}))
     reader = MessageReader()
     blobs: dict[str, bytes] = {}

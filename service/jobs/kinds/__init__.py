@@ -8,45 +8,35 @@ from typing import Any
 
 from service.content.integrity import CheckedBlobs
 from service.jobs.engines.engine import Outcome
-from service.jobs.kinds.analyse import analysis_kind
-from service.jobs.kinds.assemble import ASSEMBLE
 from service.jobs.kinds.choices import combinations
-from service.jobs.kinds.compare import COMPARE
-from service.jobs.kinds.derive import DERIVE
-from service.jobs.kinds.evaluate import EVALUATE
-from service.jobs.kinds.export import EXPORT
 from service.jobs.kinds.kind import ItemProgress, Kind
 from service.jobs.kinds.library import Library
-from service.jobs.kinds.mirror import MIRROR, MIRROR_KIND
 from service.jobs.kinds.requested import REQUESTED
-from service.jobs.kinds.sweep import OWN, SWEEP
-from service.jobs.kinds.upgrade import UPGRADE
-from service.jobs.kinds.verify import VERIFY
 from service.messages.refusals import Refused, known_refusal, problem
 from service.schemas.jobs import ItemDocument, SubmittedItems, SubmittedSweep
 from service.settings import Limits
 from substructures.documents import read_model
 from substructures.errors import InvalidDocument, InvalidInput, InvalidProgram, meant
+from substructures.late import Table
+from substructures.sweeps.document import SweepDocument
 
-__all__ = ["KINDS", "Library", "expand", "given", "resolve", "run", "submission"]
+__all__ = ["KINDS", "Library", "expand", "given", "load", "resolve", "run", "submission"]
 
 SWEEP_KIND = "sweep"
-_KINDS: dict[str, Kind] = {
-    "assemble": ASSEMBLE,
-    "evaluate": EVALUATE,
-    "export": EXPORT,
-    "derive": DERIVE,
-    "verify": VERIFY,
-    "upgrade": UPGRADE,
-    "compare": COMPARE,
-    "simulate": analysis_kind("simulations"),
-    "optimise": analysis_kind("optimal-controls"),
-    "analyse": analysis_kind(),
-    MIRROR_KIND: MIRROR,
-    SWEEP_KIND: SWEEP,
-}
-KINDS = tuple(_KINDS)
+#: kinds whose module is called otherwise
+_OTHERS = {"simulate": "analyse", "optimise": "analyse"}
+KINDS = (
+    *("assemble", "evaluate", "export", "derive", "verify", "upgrade", "compare"),
+    *("simulate", "optimise", "analyse", "mirror", SWEEP_KIND),
+)
+_KINDS: Table[Kind] = Table("KINDS", {name: f"{__name__}.{_OTHERS.get(name, name)}" for name in KINDS})
 _log = logging.getLogger(__name__)
+
+
+def load() -> None:
+    """Import all that computes, so that it is there before the time of the first item begins."""
+    for table in (_KINDS, REQUESTED):
+        dict(table)
 
 
 def submission(document: Mapping[str, Any]) -> SubmittedItems | SubmittedSweep:
@@ -82,7 +72,7 @@ def expand(asked: SubmittedItems | SubmittedSweep, limits: Limits, library: Libr
 def given(asked: SubmittedItems | SubmittedSweep, limit: int) -> list[tuple[str, Any]]:
     """The items as given or put together, each with the place of its faults."""
     if isinstance(asked, SubmittedSweep):
-        return [("", asked.model_dump(include=set(OWN), exclude_unset=True))]
+        return [("", asked.model_dump(include=set(SweepDocument.model_fields), exclude_unset=True))]
     if asked.template is not None and asked.choices is not None:
         return [("/template", item) for item in combinations(asked.template, asked.choices, limit)]
     items = asked.items or []

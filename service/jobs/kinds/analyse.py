@@ -22,7 +22,7 @@ from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
 from service.jobs.kinds.values import check_analysis, without_formulas
 from service.messages.refusals import Refused, problem
-from service.models.numbers import ANALYSES, analysis_of
+from service.models.numbers import ANALYSES, OFFERED, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, Answered, trajectory_of, written
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
@@ -39,7 +39,7 @@ MANY = ("ensembles", "optimal-parameters")
 TOLD = ("status", "message", "is_right", "cost", "value", "parameters", "warnings")
 
 
-def analysis_kind(name: str | None = None) -> Kind:
+def _kind(name: str | None = None) -> Kind:
     """The kind for one analysis; without a name every item says which."""
 
     def spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
@@ -59,7 +59,7 @@ def _limits(limits: Limits) -> ItemDocument:
 
 
 def _check_format(name: str, form: str) -> None:
-    known = [form for form, media in MEDIA_TYPES.items() if media in ANALYSES[name].media]
+    known = [form for form, media in MEDIA_TYPES.items() if media in OFFERED[name].media]
     if form not in known:
         message = f"unknown format '{form[:40]}'; '{name}' can be {', '.join(known)}{meant(form, known)}"
         raise InvalidDocument.at("/format", "unknown-format", message)
@@ -122,3 +122,6 @@ def fault_of(name: str, told: Mapping[str, Any]) -> Refused | None:
 def _brief(found: Answered) -> Answered:
     motion = trajectory_of(found)
     return found if motion is None else Answered(motion.summary(), found.warnings)
+
+
+KINDS = {"simulate": _kind("simulations"), "optimise": _kind("optimal-controls"), "analyse": _kind()}

@@ -204,4 +204,4 @@ def _part(index: int, instance: Instance, item: ItemDocument, blobs: Blobs) -> P
         raise error.below(f"/instances/{index}/definition") from None
 
 
-ASSEMBLE = Kind(_spread, pinned_tree, _run)
+KINDS = {"assemble": Kind(_spread, pinned_tree, _run)}

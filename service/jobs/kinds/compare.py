@@ -12,7 +12,7 @@ from typing import Any
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
 from service.jobs.kinds.decoded import part_of
-from service.jobs.kinds.derive import DERIVE
+from service.jobs.kinds.derive import resolve_definition
 from service.jobs.kinds.items import Compared
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, admitted, inside
 from service.jobs.kinds.library import Library
@@ -69,7 +69,7 @@ def pinned_side(given: Any, nodes: int, library: Library) -> tuple[ItemDocument,
         return pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": nodes}, library, is_stored=True)
     if "instances" in given:
         return pinned_tree({"tree": given, "nodes": nodes}, library)
-    return DERIVE.resolve({"definition": given, "nodes": nodes}, library)
+    return resolve_definition({"definition": given, "nodes": nodes}, library)
 
 
 def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
@@ -99,4 +99,4 @@ def _name(pinned: ItemDocument) -> str:
     return str(pinned["tree" if "tree" in pinned else "definition"]["name"])
 
 
-COMPARE = Kind(_spread, _resolve, _run)
+KINDS = {"compare": Kind(_spread, _resolve, _run)}

@@ -32,7 +32,8 @@ def _spread(item: ItemDocument, limits: Limits, _library: Library) -> list[ItemD
     return [{"definition": definition, "nodes": limits.job_nodes, **entry}]
 
 
-def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
+def resolve_definition(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
+    """The item with its definition in canonical form; no blobs. Raises InvalidDocument."""
     definition = Definition.read(item["definition"])
     check_units(definition, topology(definition)).require()
     plain = read_json(definition.canonical())
@@ -99,4 +100,4 @@ def _run(item: ItemDocument, _blobs: Blobs, _progress: ItemProgress) -> Outcome:
     return Outcome(summary, part_content(part).files())
 
 
-DERIVE = Kind(_spread, _resolve, _run)
+KINDS = {"derive": Kind(_spread, resolve_definition, _run)}

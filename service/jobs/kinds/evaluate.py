@@ -9,7 +9,7 @@ has its chunk: ``states`` is the digest of the npz file with the columns.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
@@ -24,7 +24,7 @@ from service.jobs.kinds.items import STATES, Evaluated
 from service.jobs.kinds.joint_limits import joint_limits
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, inside, known_tree
 from service.jobs.kinds.library import Library, StoredTree
-from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states
+from service.jobs.kinds.states import grid_size, grid_states, read_grid, read_sample, sample_states, states_per_item
 from service.jobs.kinds.trees import pinned, sources_of
 from service.jobs.kinds.values import check_described, check_states, without_formulas
 from service.schemas.jobs import ItemDocument
@@ -43,7 +43,6 @@ from substructures.quantities.numbers.evaluation import (
     EvaluationOptions,
     evaluate,
     interpreted,
-    numbers_per_state,
     read_quantities,
 )
 from substructures.quantities.quantity import LABELS, needs_parts
@@ -85,12 +84,6 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     given = request.given()
     ranges = [[start, min(start + chunk, count)] for start in range(0, count, chunk)]
     return [{**common, **described, "request": _sliced(given, count, *each), "range": each} for each in ranges]
-
-
-def states_per_item(quantities: Sequence[str], dof: int, frames: int, limits: Limits) -> int:
-    """How many states an item may have. Raises InvalidArgument."""
-    size = 8 * numbers_per_state(read_quantities(quantities), dof, frames)
-    return max(1, min(limits.job_states, limits.binary_bytes // size))
 
 
 def _request(item: Evaluated, model: Model) -> EvaluationRequest:
@@ -257,4 +250,4 @@ def _evaluator(
     return kernel.evaluate(values, threads=1, places=places)
 
 
-EVALUATE = Kind(_spread, _resolve, _run)
+KINDS = {"evaluate": Kind(_spread, _resolve, _run)}

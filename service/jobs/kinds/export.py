@@ -231,4 +231,4 @@ def _interface(source: Source) -> Interface:
     return interface_of_model(source.model, digest=source.digest)
 
 
-EXPORT = Kind(_spread, _resolve, _run)
+KINDS = {"export": Kind(_spread, _resolve, _run)}

@@ -46,4 +46,4 @@ def _run(_item: ItemDocument, _blobs: Blobs, _progress: ItemProgress) -> Outcome
     raise Refused(500, "internal-error", "a mirror is made where the store is, and by no worker")
 
 
-MIRROR = Kind(_spread, _resolve, _run)
+KINDS = {MIRROR_KIND: Kind(_spread, _resolve, _run)}

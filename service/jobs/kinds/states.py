@@ -13,10 +13,12 @@ import numpy as np
 
 from service.jobs.kinds.kind import inside
 from service.schemas.state_sets import Grid, Sample
+from service.settings import Limits
 from substructures.array import Array
 from substructures.documents import pointer_step, read_model
 from substructures.errors import Fault, InvalidDocument, among
 from substructures.quantities.measured import PlaceUnits, si_values
+from substructures.quantities.numbers.evaluation import numbers_per_state, read_quantities
 
 NamedAxis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)
@@ -90,3 +92,9 @@ def sample_states(sample: Mapping[str, Any], start: int, stop: int) -> dict[str,
         low, high = (float(x) for x in sample["ranges"][name])
         result[name] = low + (high - low) * unit[:, k]
     return result
+
+
+def states_per_item(quantities: Sequence[str], dof: int, frames: int, limits: Limits) -> int:
+    """How many states an item may have. Raises InvalidArgument."""
+    size = 8 * numbers_per_state(read_quantities(quantities), dof, frames)
+    return max(1, min(limits.job_states, limits.binary_bytes // size))

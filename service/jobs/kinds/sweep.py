@@ -250,4 +250,4 @@ def rows_of(content: bytes) -> dict[str, np.ndarray[Any, Any]]:
     return read_npz(BytesIO(content), len(content))
 
 
-SWEEP = Kind(_spread, _resolve, _run)
+KINDS = {"sweep": Kind(_spread, _resolve, _run)}

@@ -84,4 +84,4 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     return Outcome({**told, **figures}, files)
 
 
-UPGRADE = Kind(_spread, _resolve, _run)
+KINDS = {"upgrade": Kind(_spread, _resolve, _run)}

@@ -108,4 +108,4 @@ def _outcome(name: str, digest: str, certificate: Mapping[str, Any], more: Mappi
     return Outcome(summary, {"certificate": write_json(dict(certificate))})
 
 
-VERIFY = Kind(_spread, _resolve, _run)
+KINDS = {"verify": Kind(_spread, _resolve, _run)}

@@ -9,7 +9,7 @@ from typing import Any
 from pydantic import BaseModel
 
 from service.models.requests import read_request
-from service.models.results import PLAIN, Answered, trajectory_of
+from service.models.results import Answered, trajectory_of
 from service.models.source import Source
 from service.models.warnings import warnings_of
 from substructures.analysis.motion.integrators.progress import ProgressReport
@@ -19,14 +19,11 @@ from substructures.tree.model import Model
 
 @dataclass(frozen=True)
 class Analysis:
-    """``schema``: of the body; ``follow``: computes the result of a body that was read; ``media``: what the result can
-    be; ``text``: what it is; ``needs_parts``: of the tree, beside its formulas.
-    """
+    """``schema``: of the body; ``follow``: computes the result of a body that was read; ``needs_parts``: of the tree,
+    beside its formulas."""
 
     schema: type[BaseModel]
     follow: Callable[[Source, Any, ProgressReport], Any]
-    text: str
-    media: tuple[str, ...] = PLAIN
     needs_parts: bool = False
 
     def read(self, body: Any, model: Model) -> BaseModel:

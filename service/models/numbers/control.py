@@ -6,7 +6,6 @@ from typing import Any
 
 from service.models.numbers.analysis import Analysis
 from service.models.requests import arguments
-from service.models.results import TRAJECTORY
 from service.models.source import Source
 from service.schemas.analyses.control import GradientRequest, OptimalControlRequest
 from substructures.analysis.control.cost_gradient import cost_gradient
@@ -27,13 +26,9 @@ ANALYSES = {
     "cost-gradients": Analysis(
         GradientRequest,
         lambda source, read, _: cost_gradient(source.model, **control_arguments(**arguments(read))),
-        "The cost of a motion under given controls and its gradient by the adjoint",
-        TRAJECTORY,
     ),
     "optimal-controls": Analysis(
         OptimalControlRequest,
         _optimal_control,
-        "Controls of least cost, judged by the necessary conditions",
-        TRAJECTORY,
     ),
 }

@@ -56,7 +56,5 @@ def _ensemble(source: Source, request: EnsembleRequest, report: ProgressReport) 
 
 
 ANALYSES = {
-    "ensembles": Analysis(
-        EnsembleRequest, _ensemble, "Motions from many starts and with many parameters, each with its verdict"
-    ),
+    "ensembles": Analysis(EnsembleRequest, _ensemble),
 }

@@ -23,5 +23,5 @@ def _curvature(source: Source, read: CurvatureRequest, _: ProgressReport) -> Any
 
 
 ANALYSES = {
-    "curvatures": Analysis(CurvatureRequest, _curvature, "Riemann's tensor of the configuration space, Ricci, scalar"),
+    "curvatures": Analysis(CurvatureRequest, _curvature),
 }

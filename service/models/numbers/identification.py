@@ -66,13 +66,11 @@ ANALYSES = {
     "excitations": Analysis(
         ExcitationRequest,
         _excitation,
-        "How well a motion excites the base inertial parameters",
         needs_parts=True,
     ),
     "identifications": Analysis(
         IdentificationRequest,
         _identification,
-        "Base inertial parameters from a measured motion",
         needs_parts=True,
     ),
 }

@@ -28,11 +28,9 @@ ANALYSES = {
     "loop-states": Analysis(
         LoopRequest,
         _loop_state,
-        "A consistent state of closed loops: mobility, redundancy, accelerations, reaction forces",
     ),
     "reduced-equations": Analysis(
         ReducedRequest,
         _reduced,
-        "Equations of motion of closed loops in independent coordinates: metric, Christoffel symbols, forces",
     ),
 }

@@ -6,7 +6,6 @@ from typing import Any
 
 from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
-from service.models.results import TRAJECTORY
 from service.models.source import Source
 from service.schemas.analyses.motions import (
     AnySimulationRequest,
@@ -104,10 +103,6 @@ ANALYSES = {
     "simulations": Analysis(
         AnySimulationRequest,
         _simulation,
-        "The motion from a start, with the drift of all first integrals as judge",
-        TRAJECTORY,
     ),
-    "sensitivities": Analysis(
-        SensitivityRequest, _sensitivities, "A motion and its derivatives by parameters and by the start", TRAJECTORY
-    ),
+    "sensitivities": Analysis(SensitivityRequest, _sensitivities),
 }

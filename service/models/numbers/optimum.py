@@ -18,7 +18,6 @@ ANALYSES = {
     "optimal-parameters": Analysis(
         OptimalParametersRequest,
         _optimum,
-        "Parameters that make an expression in columns least, within bounds and conditions",
         needs_parts=True,
     ),
 }

@@ -6,7 +6,6 @@ from typing import Any
 
 from service.models.numbers.analysis import Analysis, check_size, without
 from service.models.requests import arguments
-from service.models.results import TRAJECTORY
 from service.models.source import Source
 from service.schemas.analyses.orbits import LyapunovRequest, PeriodicOrbitRequest, PoincareSectionRequest
 from substructures.analysis.motion.integrators.progress import ProgressReport
@@ -64,18 +63,13 @@ def _exponents(source: Source, request: LyapunovRequest, report: ProgressReport)
 
 
 ANALYSES = {
-    "periodic-orbits": Analysis(
-        PeriodicOrbitRequest, _orbits, "Motions that come back, with Floquet's multipliers and their stability"
-    ),
+    "periodic-orbits": Analysis(PeriodicOrbitRequest, _orbits),
     "poincare-sections": Analysis(
         PoincareSectionRequest,
         _section,
-        "The states in which a motion crosses a surface in one direction",
-        TRAJECTORY,
     ),
     "lyapunov-exponents": Analysis(
         LyapunovRequest,
         _exponents,
-        "How fast neighbouring motions part: whether a motion is chaotic, and how sure",
     ),
 }

@@ -6,7 +6,6 @@ from typing import Any
 
 from service.models.numbers.analysis import Analysis, check_size
 from service.models.requests import arguments
-from service.models.results import DRAWN
 from service.models.source import Source
 from service.schemas.analyses.stability import (
     EquilibriaRequest,
@@ -53,36 +52,25 @@ ANALYSES = {
     "linearisations": Analysis(
         LinearisationRequest,
         _linearisation,
-        "Perturbation equations M, D, K, F and state space A, B, C, D about states; modes and stability at equilibria; "
-        "of closed loops in independent coordinates, about one state; with velocity constraints about one motion",
     ),
     "frequency-responses": Analysis(
         FrequencyResponseRequest,
         _response,
-        "What outputs do where inputs oscillate: G(i w) of a tree linearised about a state, with its poles",
-        DRAWN,
     ),
     "regulators": Analysis(
         RegulatorRequest,
         lambda source, read, _: regulator(source.model, **arguments(read)),
-        "Linear quadratic regulator about an equilibrium, with what inputs reach and weights see",
     ),
     "equilibria": Analysis(
         EquilibriaRequest,
         lambda source, read, _: equilibria(source.model, **arguments(read)),
-        "All equilibria that are found, each with its vibrations and stability; also of closed loops",
     ),
     "steady-motions": Analysis(
         SteadyMotionsRequest,
         _steady,
-        "Steady motions: cyclic coordinates at constant rates, all others still; each with its stability and why; "
-        "families over a parameter, a rate or a momentum with their bifurcations",
-        DRAWN,
     ),
     "root-loci": Analysis(
         RootLocusRequest,
         lambda source, read, _: root_locus(source.model, **arguments(read)),
-        "Eigenvalues of an equilibrium over a parameter",
-        DRAWN,
     ),
 }

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from service.jobs.kinds.evaluate import states_per_item
+from service.jobs.kinds.states import states_per_item
 from service.messages.viewer import Viewer
 from service.operations.jobs import jobs
 from service.queries.jobs.uploads import put_uploads

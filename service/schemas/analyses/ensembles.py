@@ -21,7 +21,7 @@ from service.schemas.measured import SECONDS, WithUnits
 from service.schemas.numbers import StateColumns, ValueColumns
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
 from substructures.documents.fields import Name, Positive, Real
-from substructures.ensembles.columns import MOST_COLUMNS, MotionColumn
+from substructures.ensembles.motion_column import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.samples import Samples
 
 InputColumns = Annotated[dict[str, float | list[float] | str], SkipValidation, WithUnits()]

@@ -9,7 +9,7 @@ from pydantic import Field
 from service.schemas.measured import BY_NAME
 from substructures.documents import DocumentPart
 from substructures.documents.fields import Name, Real
-from substructures.ensembles.columns import MOST_COLUMNS
+from substructures.ensembles.motion_column import MOST_COLUMNS
 from substructures.sweeps.document import Column
 
 

@@ -233,7 +233,9 @@ class _Search:
 
     def _constant(self, expr: Expr) -> Expr | None:
         """The value of a formula that depends on parameters only, else None."""
-        states = {s.name for s in self.f.symbols.values() if s.kind != "parameter"}
+        states = frozenset(s.name for s in self.f.symbols.values() if s.kind != "parameter")
+        if self.vanishes.smooth.varies(expr, states):
+            return None
         if not depends_on([expr], states):
             return expr
         # a jump has no derivative that tells of it

@@ -138,21 +138,22 @@ def _dependent(D: Array) -> Iterator[tuple[list[int], Array]]:
     sizes[sizes == 0] = 1
     A = D / sizes
     # A[:, base] = basis R with R upper triangular
-    basis, R, base = np.zeros((len(A), 0)), np.zeros((0, 0)), list[int]()
+    basis, R, base = np.empty(A.shape, order="F"), np.zeros((A.shape[1],) * 2), list[int]()
     for j in range(A.shape[1]):
-        along = basis.T @ A[:, j]
-        left = A[:, j] - basis @ along
-        more = basis.T @ left
-        left, along = left - basis @ more, along + more
+        some = basis[:, : len(base)]
+        along = some.T @ A[:, j]
+        left = A[:, j] - some @ along
+        more = some.T @ left
+        left, along = left - some @ more, along + more
         size = float(np.linalg.norm(left))
         if size > FREE:
-            basis, base = np.column_stack([basis, left / size]), [*base, j]
-            R = np.block([[R, along[:, None]], [np.zeros((1, len(R))), np.full((1, 1), size)]])
+            basis[:, len(base)], R[: len(base), len(base)], R[len(base), len(base)] = left / size, along, size
+            base.append(j)
             continue
-        c = np.linalg.solve(R, along)
-        some = [k for k, x in enumerate(c) if abs(x) > SMALL * max(1.0, float(np.abs(c).max(initial=0)))]
-        support = [*(base[k] for k in some), j]
-        yield support, np.array([*(-c[some]), 1.0]) / sizes[support]
+        c = np.linalg.solve(R[: len(base), : len(base)], along)
+        used = [k for k, x in enumerate(c) if abs(x) > SMALL * max(1.0, float(np.abs(c).max(initial=0)))]
+        support = [*(base[k] for k in used), j]
+        yield support, np.array([*(-c[used]), 1.0]) / sizes[support]
 
 
 def _integral(ansatz: Ansatz, columns: Sequence[Column], found: Direction, kind: IntegralKind, number: int) -> Integral:

@@ -104,12 +104,16 @@ class VanishingOnAllSides:
 
     def __init__(self, graph: Graph) -> None:
         self.smooth = Vanishing(graph)
+        self._plain = set[Expr]()  # nodes without corners below
 
     def __call__(self, expr: Expr) -> bool:
         """True for the zero function; False where it is not, or cannot be told."""
         if expr.is_zero:
             return True
-        found = corners([expr])
+        nodes = reachable([expr], self._plain.__contains__)
+        found = [node for node in nodes if _inner(node) is not None]
+        if not found:
+            self._plain.update(nodes)
         return all(self._on(expr, sides) for sides in _needed(expr, found)) if found else self.smooth(expr) is True
 
     def _on(self, expr: Expr, sides: Mapping[Expr, int] | None) -> bool:

@@ -58,31 +58,44 @@ class Vanishing:
         self.graph, self.random = graph, SystemRandom()
         self.symbols: list[dict[Expr, Fraction]] = [{} for _ in range(POINTS)]
         self.values: dict[tuple[int, int], dict[Expr, tuple[Any, Any]]] = {}
+        self.moved: dict[frozenset[str], dict[Expr, tuple[Any, Any]]] = {}
 
     def __call__(self, expr: Expr) -> bool | None:
         """True for the zero function, False for another one, None where neither is known."""
         if expr.is_zero:
             return True
-        nodes = reachable([expr])
-        names = [node for node in nodes if node.op == "sym"]
         seen: list[dict[Expr, Fraction]] = []
+        looks = [PRECISION]
         for point in range(POINTS):
-            verdict = self._at(expr, nodes, point)
+            verdict = self._at(expr, point, looks)
             if verdict is False:
                 return False
             if verdict:
                 seen.append(self.symbols[point])
+        names = [node for node in reachable([expr]) if node.op == "sym"]
         both = all(len({point[name] > 0 for point in seen}) == 2 for name in names)
         if both and len(seen) >= ENOUGH:
             return True
         return True if _is_proven(expr) else None
 
-    def _at(self, expr: Expr, nodes: list[Expr], point: int) -> bool | None:
-        """Whether the value at a point is zero, as far as digits tell."""
-        bits = sum(_bits(node) for node in nodes if node.is_number)
-        for precision in (PRECISION, min(MORE + 8 * bits, MOST)):
+    def varies(self, expr: Expr, names: frozenset[str]) -> bool:
+        """Whether some symbols are proven to change the value: it differs at two points that differ in them alone."""
+        with flint.ctx.workprec(PRECISION):
+            first, _ = self._value(expr, self.values.setdefault((0, PRECISION), {}), self.symbols[0])
+            there = {x: self.symbols[1 if str(x.value) in names else 0][x] for x in self.symbols[0]}
+            second, _ = self._value(expr, self.moved.setdefault(names, {}), there)
+            return not (first - second).contains(0)
+
+    def _at(self, expr: Expr, point: int, looks: list[int]) -> bool | None:
+        """Whether the value at a point is zero, as far as digits tell; ``looks``: their precisions."""
+        for second in (False, True):
+            if second and len(looks) == 1:
+                bits = sum(_bits(node) for node in reachable([expr]) if node.is_number)
+                looks.append(min(MORE + 8 * bits, MOST))
+            precision = looks[second]
             with flint.ctx.workprec(precision):
-                value, size = self._value(expr, nodes, point, precision)
+                known = self.values.setdefault((point, precision), {})
+                value, size = self._value(expr, known, self.symbols[point])
                 if not (value.is_finite() and size.is_finite()):
                     return None
                 if not value.contains(0):
@@ -90,12 +103,11 @@ class Vanishing:
                 small = bool(value.rad() < size * flint.arb(2) ** (GUARD - precision))
         return True if small else None
 
-    def _value(self, expr: Expr, nodes: list[Expr], point: int, precision: int) -> tuple[Any, Any]:
-        """The value, and the sum of the absolute values of its terms."""
-        known = self.values.setdefault((point, precision), {})
-        for node in nodes:
+    def _value(self, expr: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]) -> tuple[Any, Any]:
+        """The value, and the sum of the absolute values of its terms; what is ``known`` below it is not looked at."""
+        for node in reachable([expr], known.__contains__):
             if node not in known:
-                known[node] = self._operation(node, known, self.symbols[point])
+                known[node] = self._operation(node, known, symbols)
         return known[expr]
 
     def _operation(

@@ -14,7 +14,8 @@ from dataclasses import replace
 import numpy as np
 
 from substructures.expr.interpret import interpret
-from substructures.interchange.as_part import Options, as_part
+from substructures.interchange.as_part import as_part
+from substructures.interchange.files.wanted import Options
 from substructures.interchange.merge import plus
 from substructures.interchange.numbers import ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse

@@ -56,3 +56,6 @@ def read_derived(source: str, outcome: Outcome) -> Any:
     kind = get_type_hints(PROGRAMS[source].function)["return"]
     values = {field.name: told[field.name] for field in fields(kind)}
     return kind(**{name: tuple(value) if isinstance(value, list) else value for name, value in values.items()})
+
+
+REQUESTED = {"derived": derived_of}

@@ -67,3 +67,6 @@ def _rename(told: dict[str, Any], prefix: str) -> None:
     told["positions"] = [name.removeprefix(prefix) for name in told["positions"]]
     for frame in told["frames"]:
         frame["instance"] = ""
+
+
+REQUESTED = {"picture": picture_of, "scene": scene_of}

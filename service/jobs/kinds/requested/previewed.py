@@ -45,3 +45,6 @@ def _parts(item: ItemDocument) -> tuple[TreeSpec, Mapping[str, Part]]:
         return TreeSpec.read({"name": part.name, "instances": [instance]}), {INSTANCE: part}
     spec = TreeSpec.read(item["tree"])
     return spec, {each.name: derive(each.definition, nodes) for each in spec.instances if each.definition is not None}
+
+
+REQUESTED = {"preview": preview_of}

@@ -38,4 +38,4 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     return Outcome(told, {"program": pack(model.program), **tree_summary(spec, model).files()})
 
 
-RENEWED: Mapping[str, Renewed] = {"renew-part": _part, "renew-tree": _tree}
+REQUESTED: Mapping[str, Renewed] = {"renew-part": _part, "renew-tree": _tree}

@@ -132,3 +132,6 @@ def _between_trees(a: ItemDocument, b: ItemDocument, called: Mapping[str, Any], 
         if name in theirs and part.definition.digest != theirs[name].definition.digest
     ]
     return of_trees((first, models[0]), (second, models[1]), common, lambda given: called.get(given, given))
+
+
+REQUESTED = {"report": report_of, "difference": difference_of}

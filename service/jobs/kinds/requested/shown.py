@@ -137,3 +137,6 @@ def _quantity(found: Part | Source, name: str) -> Program:
 
 def _interface(found: Part | Source) -> Interface:
     return interface_of_part(found) if isinstance(found, Part) else interface_of_model(found.model)
+
+
+REQUESTED = {"program": program_of, "origins": origins_of, "entry": entry_of, "integrals": integrals_of}
