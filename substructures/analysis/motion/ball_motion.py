@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
@@ -25,7 +26,16 @@ from substructures.analysis.motion.integrators.fixed_step import march, require_
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
-from substructures.analysis.motion.judges import ROUNDING, Condition, MotionStates, energy_balance, spread, unbalanced
+from substructures.analysis.motion.judges import (
+    ROUNDING,
+    AlongMotion,
+    Condition,
+    MotionStates,
+    energy_balance,
+    judge,
+    spread,
+    unbalanced,
+)
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
@@ -40,7 +50,6 @@ from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
-from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached
@@ -114,9 +123,10 @@ class BallRates:
 def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
     """The motion of a tree with ball joints from a start over a span of time.
 
-    Series: ``kinetic_energy``, ``potential_energy``, ``energy``, ``work`` [J], varying inputs, and those of the
-    problem. Checks: the balance of energy, and the norms of quaternions. What goes wrong on the way is a trajectory
-    with status ``failed``. Raises InvalidInput (pointers start with names of arguments of ``simulate``), MissingValue.
+    Series: ``kinetic_energy``, ``potential_energy``, ``energy``, ``work`` [J], momenta and other first integrals,
+    varying inputs, and those of the problem. Checks: the balance of energy, all first integrals, and the norms of
+    quaternions. What goes wrong on the way is a trajectory with status ``failed``. Raises InvalidInput (pointers start
+    with names of arguments of ``simulate``), MissingValue.
     """
     _require_known(problem, kind)
     conditions = _conditions(problem)
@@ -189,18 +199,18 @@ def _moved(
 def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion: IntegratedMotion) -> Trajectory:
     model, m = problem.model, f.m
     t, x, results = motion.judged()
-    values: dict[str, Any] = {**conditions.values, **conditions.inputs_at(t, x[:, :-1]), "t": t}
-    values |= dict(zip(state_names(model), x[:, :-1].T, strict=True))
-    found = interpret_in_blocks(model.program, values, ["metric", "potential_energy"], len(t))
+    values: dict[str, Any] = {**conditions.values, **conditions.inputs_at(t, x[:, :-1])}
     v = x[:, m:-1]
+    along = _along(conditions, problem, MotionStates(t, x[:, :m], v, values, x[:, -1]))
     series = {
-        "kinetic_energy": np.einsum("kab,ka,kb->k", found["metric"], v, v) / 2,
-        "potential_energy": found["potential_energy"],
+        "kinetic_energy": np.einsum("kab,ka,kb->k", along.sizes["metric"], v, v) / 2,
+        "potential_energy": along.sizes["potential_energy"],
         "work": x[:, -1],
     }
     varied, limit = conditions.varied_potential(), problem.drift_limit
     energy = unbalanced(varied) if varied else energy_balance(t, series, not x[:, -1].any(), limit)
-    series["energy"] = series["kinetic_energy"] + series["potential_energy"]
+    series = along.series | series | {"energy": series["kinetic_energy"] + series["potential_energy"]}
+    others = (check for check in judge(along, limit) if check.name not in ("energy", "energy-balance"))
     norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in quaternions_in(model.positions, model.balls)])
     kept = Check.of(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
     unit = partial(with_lengths, model)
@@ -211,7 +221,7 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
         unit(x[results, :m]),
         v[results],
         {name: some[results] for name, some in series.items()} | conditions.series_at(t[results], x[results, :-1]),
-        (energy, kept),
+        (energy, *others, kept),
         motion.status,
         motion.message,
         motion.steps,
@@ -224,6 +234,14 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
         span,
         positions=model.positions,
     )
+
+
+def _along(conditions: Conditions, problem: MotionProblem, states: MotionStates) -> AlongMotion:
+    """All first integrals; inputs and parameters that are 0 all the time leave more constant."""
+    model = problem.model
+    acting = [name for name in problem.start.inputs if name not in conditions.zero]
+    integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
+    return AlongMotion.of(model, integrals, states)
 
 
 def with_lengths(model: Model, q: Array) -> Array:
