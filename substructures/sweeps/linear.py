@@ -36,10 +36,10 @@ def linear_columns(
 
 def _about(rest: AtRest, how: LinearColumn, takes: Collection[str]) -> dict[str, Array]:
     q = rest.settled() if how.settle else rest.start
-    qdd = np.zeros_like(q) if how.held else rest.accelerations(q)
+    qdd = rest.still if how.held else rest.accelerations(q)
     M, D, K = rest.matrices(q, qdd)
     good = rest.is_rest(q, qdd, M, K) & np.isfinite(D).all(axis=(1, 2))
-    eigenvalues = np.full((rest.rows, 2 * q.shape[1]), np.nan, dtype=np.complex128)
+    eigenvalues = np.full((rest.rows, 2 * M.shape[1]), np.nan, dtype=np.complex128)
     if good.any():
         eigenvalues[good] = _eigenvalues(M[good], D[good], K[good])
     return {take: np.where(good, _taken(take, eigenvalues), np.nan) for take in takes}

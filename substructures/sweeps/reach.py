@@ -2,6 +2,7 @@
 
 The square of the distance is a + b cos q + c sin q in the angle of one joint and a parabola in the travel of one, so
 that the largest over one coordinate is known from three values; coordinate by coordinate it grows up to a largest one.
+Times |Q|^2 it is a quadratic form in the quaternion Q of one ball joint, whose largest eigenvalue is the largest of it.
 Where a coordinate moves more than one joint (relations, screws) values on a grid take the place of that.
 """
 
@@ -15,6 +16,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument, among
+from substructures.quantities.numbers.quaternions import quaternions_in
 from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import WORLD, ReachColumn
 from substructures.sweeps.grouped import alike, inside
@@ -68,14 +70,22 @@ class _Search:
         require_open(model.closures, "sweep other columns")
         require_untied(model, "columns of reach")
         self.ends = _frame(model, self.column.of, "of"), _frame(model, self.column.about, "about")
-        self.matters, self.is_simple = np.ones((2, model.dof, self.rows), dtype=np.bool_)
+        m, own = len(model.positions), dict(zip(model.coordinates, model.joints, strict=True))
+        self.turns = {some[0]: some for some in quaternions_in(model.positions, model.balls)}
+        within = {a for some in self.turns.values() for a in some}
+        #: of all numbers of a state but quaternions; places of floating joints slide
+        self.kinds = {a: own.get(name, "P") for a, name in enumerate(model.positions) if a not in within}
+        self.matters, self.is_simple = np.ones((2, m, self.rows), dtype=np.bool_)
+        self.matters[[a for a in within if a not in self.turns]] = False
         judge = self.shape.sources.judge
         limits = {} if judge is None else judge.limits(self.parameters)
-        self.low, self.high = np.zeros((2, model.dof, self.rows))
+        self.low, self.high = np.zeros((2, m, self.rows))
+        self.high[list(within)] = 1
         draw = np.random.default_rng(0)
-        self.starts = [np.full(model.dof, 0.5), *draw.uniform(0.05, 0.95, (STARTS - 1, model.dof))]
+        self.starts = [np.full(m, 0.5), *draw.uniform(0.05, 0.95, (STARTS - 1, m))]
         self._require_steady()
-        for a, (name, kind) in enumerate(zip(model.coordinates, model.joints, strict=True)):
+        for a, kind in self.kinds.items():
+            name = model.positions[a]
             self._look(a, np.tile(self.starts[-1], (self.rows, 1)))
             if name in limits:
                 self.low[a], self.high[a] = limits[name][:2]
@@ -103,15 +113,17 @@ class _Search:
         near = self._with(q, a, x + 0.5)
         size = np.fmax(here, near)
         self.matters[a] = np.abs(near - here) > SAME * size
-        if self.shape.model.joints[a] == "R":
+        if self.kinds[a] == "R":
             off = near - self._sinusoid(q, here, a)(x + 0.5)
         else:  # the third difference of a parabola is 0
             off = self._with(q, a, x + 1) - 3 * near + 3 * here - self._with(q, a, x - 0.5)
         self.is_simple[a] = np.abs(off) <= SAME * size
 
     def square(self, q: Array) -> Array:
-        """|r_of - r_about|^2 (rows,) [m^2] at coordinates (rows, n)."""
-        model = self.shape.model
+        """|r_of - r_about|^2 (rows,) [m^2] at states (rows, m), whose quaternions have any length that is not 0."""
+        model, q = self.shape.model, q.copy()
+        for some in self.turns.values():
+            q[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
         states = read_states(model, {"q": q, "parameters": self.parameters}, None)
         inputs = {f"{name}{primes}": self.t for name in model.driven for primes in PRIMES if name in model.inputs}
         given = {"parameters": self.parameters, "t": self.t, "inputs": inputs}
@@ -141,21 +153,35 @@ class _Search:
             before = here
             for a in np.flatnonzero(self.matters.any(axis=1)).tolist():
                 there = q.copy()
-                there[:, a] = self._along(q, here, a)
+                if a in self.turns:
+                    there[:, self.turns[a]] = self._turned(q, self.turns[a])
+                else:
+                    there[:, a] = self._along(q, here, a)
                 found = self.square(there)
                 better = runs & self.matters[a] & (found > here)
-                q[better, a] = there[better, a]
+                q[better] = there[better]
                 here = np.where(better, found, here)
             runs = runs & (here - before > LEAST * here)
             if not runs.any():
                 break
         return here
 
+    def _turned(self, q: Array, some: list[int]) -> Array:
+        """The quaternion (rows, 4) of one ball joint at which the distance is largest, the others as they are."""
+        form, there = np.zeros((self.rows, 4, 4)), q.copy()
+        for i, j in zip(*np.triu_indices(4), strict=True):
+            there[:, some] = np.fmax(np.eye(4)[i], np.eye(4)[j])
+            form[:, i, j] = form[:, j, i] = np.nan_to_num(self.square(there))
+        # N_ii of Q = e_i; of e_i + e_j, whose square is 2, half of N_ii + 2 N_ij + N_jj
+        own = np.einsum("kii->ki", form).copy()
+        form -= (own[:, :, None] + own[:, None, :]) / 2 * (1 - np.eye(4))
+        return np.asarray(np.linalg.eigh(form)[1][:, :, -1])
+
     def _along(self, q: Array, here: Array, a: int) -> Array:
         """The values of one coordinate (rows,) at which the distance is largest, the others as they are."""
         low, high, simple = self.low[a], self.high[a], self.is_simple[a]
         ends, points = np.stack([low, high]), np.linspace(low, high, POINTS)
-        if self.shape.model.joints[a] != "R":
+        if self.kinds[a] != "R":
             return _best(lambda x: self._with(q, a, x), ends if simple.all() else points)
         fit = self._sinusoid(q, here, a)
         top = q[:, a] + fit.top

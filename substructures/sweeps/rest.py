@@ -15,6 +15,7 @@ from substructures.analysis.stability.operating_point import AT_REST
 from substructures.array import Array
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.numbers.quaternions import moved_on
 from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import EquilibriumColumn
 from substructures.sweeps.grouped import alike, check_fields, inside
@@ -40,7 +41,7 @@ class AtRest:
 
     @property
     def start(self) -> Array:
-        """The coordinates (rows, n) of ``at``. Raises InvalidInput."""
+        """The state (rows, m) of ``at``. Raises InvalidInput."""
         model = self.shape.model
         require_open(model.closures, "sweep other columns")
         require_untied(model, "columns of equilibria and linearisations")
@@ -51,20 +52,27 @@ class AtRest:
         states = read_states(model, self.at, 1)
         if states.qd.any():
             raise InvalidArgument.at("/qd", "not-at-rest", "an equilibrium is at rest: leave 'qd' out")
-        return np.broadcast_to(states.q, (self.rows, model.dof))
+        return np.broadcast_to(states.q, (self.rows, len(model.positions)))
+
+    @property
+    def still(self) -> Array:
+        """No rates (rows, n)."""
+        return np.zeros((self.rows, self.shape.model.dof))
 
     def accelerations(self, q: Array) -> Array:
-        """q'' (rows, n) [rad/s^2, m/s^2]: g^-1 Q."""
+        """q'', or changes of rates, (rows, n) [rad/s^2, m/s^2]: g^-1 Q."""
         more = {name: self.at[name] for name in ("inputs", "t") if name in self.at}
         options = EvaluationOptions(evaluator=self.shape.evaluate)
-        sources, zero = self.shape.sources, np.zeros_like(q)
+        sources, zero = self.shape.sources, self.still
         found = evaluate(sources, "forward_dynamics", q, zero, parameters=self.parameters, options=options, **more)
         return np.asarray(found["forward_dynamics"]).reshape(self.rows, -1)
 
     def matrices(self, q: Array, qdd: Array) -> tuple[Array, Array, Array]:
-        """M, D, K (rows, n, n) of M dq'' + D dq' + K dq = 0 about q, with the forces that hold it there."""
+        """M, D, K (rows, n, n) of M dq'' + D dq' + K dq = 0 about q, with the forces that hold it there; of ball joints
+        dq has displacements and rotation vectors in the axes of bodies.
+        """
         model = self.shape.model
-        states = read_states(model, {"q": q, "qd": np.zeros_like(q), "qdd": np.nan_to_num(qdd)}, None)
+        states = read_states(model, {"q": q, "qd": self.still, "qdd": np.nan_to_num(qdd)}, None)
         values = known_values(model, {**self.at, "parameters": self.parameters}, states, model.parameters)
         found = self.shape.evaluate(perturbation(model), values, list(MATRICES), self.rows)
         M, D, K = (np.asarray(found[name]) for name in MATRICES)
@@ -72,7 +80,7 @@ class AtRest:
 
     def is_rest(self, q: Array, qdd: Array, M: Array, K: Array) -> NDArray[np.bool_]:
         """Where accelerations are rounding beside what a unit displacement causes, as for one state."""
-        good: NDArray[np.bool_] = np.asarray(np.isfinite(q + qdd).all(axis=1))
+        good: NDArray[np.bool_] = np.asarray(np.isfinite(q).all(axis=1) & np.isfinite(qdd).all(axis=1))
         for matrix in (M, K):
             good = good & np.isfinite(matrix).all(axis=(1, 2))
         good = good & (np.abs(np.linalg.det(np.where(good[:, None, None], M, 1.0))) > 0)
@@ -82,14 +90,13 @@ class AtRest:
         return good
 
     def settled(self) -> Array:
-        """The equilibrium (rows, n) that Newton's method finds from ``at``; NaN where it finds none."""
+        """The equilibrium (rows, m) that Newton's method finds from ``at``; NaN where it finds none."""
         # M dq'' = Q and K dq = Q: dq = K^+ M q'' (free coordinates stay), no longer than LONGEST
-        q = np.array(self.start)
+        q, model = np.array(self.start), self.shape.model
         found, runs = np.full_like(q, np.nan), np.ones(self.rows, dtype=np.bool_)
-        zero = np.zeros_like(q)
         for _ in range(STEPS):
             qdd = self.accelerations(q)
-            M, _, K = self.matrices(q, zero)
+            M, _, K = self.matrices(q, self.still)
             runs &= np.isfinite(qdd).all(axis=1) & np.isfinite(K).all(axis=(1, 2))
             if not runs.any():
                 break
@@ -97,7 +104,8 @@ class AtRest:
             force = M[runs] @ qdd[runs][:, :, None]
             step = (np.linalg.pinv(K[runs], rcond=FREE) @ force)[:, :, 0]
             size = np.abs(step).max(axis=1, keepdims=True)
-            q[runs] += step * np.minimum(1.0, LONGEST / np.fmax(size, LONGEST))
+            step *= np.minimum(1.0, LONGEST / np.fmax(size, LONGEST))
+            q[runs] = moved_on(model.positions, model.coordinates, model.balls, q[runs], step)
             found[there] = q[there]  # one step beyond what counts as rest: down to rounding
             runs &= ~there
         return found
@@ -106,8 +114,11 @@ class AtRest:
 def equilibrium_columns(
     shape: Shape, columns: Mapping[str, EquilibriumColumn], parameters: Mapping[str, Any], rows: int
 ) -> dict[str, Array]:
-    """The coordinates of equilibria (rows,) [rad, m], NaN where none is found. Raises InvalidInput, MissingValue."""
-    found, names = dict[str, Array](), shape.model.coordinates
+    """The coordinates, or positions of ball joints, of equilibria (rows,) [rad, m], NaN where none is found.
+
+    Raises InvalidInput, MissingValue.
+    """
+    found, names = dict[str, Array](), shape.model.positions
     for same in alike({name: column.at for name, column in columns.items()}):
         for name in same:
             of = columns[name].of

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -90,12 +91,53 @@ def test_eulers_top_in_elliptic_functions() -> None:
     k2 = (B - A) / C * a * b / (c * p)
     motion = simulate(model, [0.6, 0, 0.8, 0], (0, 30), qd=[a, 0, c])
     assert motion.is_right is True
-    assert {check.name for check in motion.checks} == {"energy", "quaternions", "steps"}
+    momenta = {f"angular_momentum.{axis}" for axis in "xyz"}
+    assert {check.name for check in motion.checks} == {"energy", *momenta, "quaternions", "steps"}
     sn, cn, dn, _ = ellipj(p * motion.t, k2)
     np.testing.assert_allclose(motion.qd, np.stack([a * cn, b * sn, c * dn], axis=1), atol=1e-8)
     np.testing.assert_allclose(np.linalg.norm(motion.q, axis=1), 1, rtol=1e-14)
     L = evaluate(model, "momentum", motion.q, motion.qd)["momentum"]["angular"]
     np.testing.assert_allclose(L, np.broadcast_to(L[0], L.shape), atol=1e-8)
+
+
+@pytest.mark.parametrize(("method", "order", "error"), [("rk4", 4, 2e-8), ("semi-implicit-euler", 1, 0.05)])
+def test_fixed_steps_have_the_order_of_their_method(method: Any, order: int, error: float) -> None:
+    """Beside the closed form of the turning, and of the place of a body that slides meanwhile; Euler's steps are turns,
+    which keep quaternions at length 1.
+    """
+    model = model_of([body("top", "base", {"type": "floating"}, (1, 1, 2), 3)])
+    w, W, v = 0.7, 1.1, np.array([0.3, -0.2, 0.5])  # w_z = W, w_x + i w_y = w exp(i W t): Euler's equations of A = B
+    gaps, norms = [], []
+    for step in (0.02, 0.01):
+        motion = simulate(
+            model, [0, 0, 0, 1, 0, 0, 0], (0, 2), qd=[*v, w, 0, W], integrator=Integrator(FixedStep(step, method))
+        )
+        turning = w * np.exp(1j * W * motion.t)
+        rates = np.stack([turning.real, turning.imag, W + 0 * motion.t], axis=1)
+        expected = np.concatenate([np.outer(motion.t, v), rates], axis=1)
+        gaps.append(np.abs(np.concatenate([motion.q[:, :3], motion.qd[:, 3:]], axis=1) - expected).max())
+        norms.append({check.name: check for check in motion.checks}["quaternions"].relative)
+    assert gaps[0] < error
+    assert np.log2(gaps[0] / gaps[1]) == pytest.approx(order, abs=0.15)
+    assert max(norms) < (1e-8 if order == 4 else 1e-14)
+
+
+def test_events_act_on_balls() -> None:
+    """A body that falls upright is thrown back with half of its velocity: t = sqrt(2 h/g) (1 + 2 e + 2 e^2 ...), and
+    one that is turned upside down goes on there.
+    """
+    model = model_of([body("hull", "base", {"type": "floating", "velocities": [*"abc", "wx", "wy", "wz"]})], (0, 0, -2))
+    bounce = Event("bounce", "x.r_hull_z", direction="falling", reset={"x.c'": "-x.c'/2"})
+    found = simulate(model, [0, 0, 1, 1, 0, 0, 0], (0, 2.8), outputs=Outputs(events=[bounce]))
+    assert found.is_right is True
+    np.testing.assert_allclose([each.t for each in found.events], [1, 2, 2.5, 2.75], rtol=1e-9)
+    np.testing.assert_allclose(
+        [each.energy_change for each in found.events], -0.75 * 2 / 4.0 ** np.arange(4), rtol=1e-8
+    )
+    over = replace(bounce, reset={"x.c'": "x.c'", "x.q_hull_w": 0, "x.q_hull_x": 3})
+    found = simulate(model, [0, 0, 1, 1, 0, 0, 0], (0, 2), outputs=Outputs(events=[over]))
+    assert found.is_right is True
+    np.testing.assert_allclose(found.q[-1], [0, 0, 0 + 2 * 1 - 1, 0, 1, 0, 0], atol=1e-9)
 
 
 def test_lagranges_top_precesses_steadily() -> None:
@@ -184,7 +226,11 @@ def test_what_is_not_known_is_refused() -> None:
     model = satellite()
     start = [0, 0, 0, 1, 0, 0, 0, 0]
     with pytest.raises(InvalidInput, match="DOP853"):
-        simulate(model, start, (0, 1), integrator=Integrator(FixedStep(0.01)))
+        simulate(model, start, (0, 1), integrator=Integrator("Taylor"))
+    with pytest.raises(InvalidInput, match="do not stop for events"):
+        simulate(
+            model, start, (0, 1), integrator=Integrator(FixedStep(0.01)), outputs=Outputs(events=[Event("e", "t")])
+        )
     with pytest.raises(InvalidInput, match="regularised"):
         simulate(model, start, (0, 1), kind=TreeMotion("exact"))
     with pytest.raises(InvalidDocument, match="'spherical' and 'free'"):

@@ -4,10 +4,11 @@ Energy: H' = Q_a q'^a + V' is the zero formula; of given motions Jacobi's (secti
 Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0, then p_c = g_cb q'^b. The same for constant
 directions c^a: c^a p_a (:mod:`.symmetries`). Momenta of the whole: the derivative of p . e or L . e along the motion
 is the zero formula, as gravity, loads and the reactions of the world have no resultant along (about) e.
+Ball joints: p_c of a rate is in the axes of the body; in place of d_c g_ab stands d_a g_cb + d_b g_ca - 2 Gamma~_cab.
 Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
 g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0. So do
-velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. Zero is what the graph, in which
-equal formulas are one node, and :mod:`substructures.expr.calculus.vanish` find to be so.
+velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. Zero is what the graph, whose equal
+formulas are one node, and :mod:`substructures.expr.calculus.vanish` find so.
 """
 
 from __future__ import annotations
@@ -39,7 +40,6 @@ from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.quantities.numbers.states import input_defaults
-from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 from substructures.tree.model_outputs import KINEMATICS
 
@@ -63,7 +63,6 @@ def first_integrals(
     """
     if degree not in (1, 2):
         raise InvalidArgument.at("/degree", "unknown-degree", f"no integrals of degree {str(degree)[:80]}: give 1 or 2")
-    require_chains(model.balls)
     known = model.input_names
     inputs, zero = acting_inputs(model) if inputs is None else list(inputs), list(zero)
     faults = [
@@ -96,7 +95,8 @@ def _found(known: Known, tied: Constraints, given: Names, zero: Names, degree: i
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
     integrals = tuple(i for i, _ in search.found)
     result, rows = program(f.graph, outputs, f.symbols), f.multipliers
-    expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result))
+    told = [vars(each) for each in integrals]
+    expectation = constant(result, told, rows, rows_expected(f, result), model.balls)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
     result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
@@ -149,9 +149,7 @@ class _Search:
     def cyclic(self) -> None:
         """p_c for every coordinate c that neither metric nor forces depend on."""
         f = self.f
-        gamma, forces = f.elements("christoffel"), f.vector("forces")
-        # d_c g_ab = Gamma_abc + Gamma_bac
-        slopes = {(min(a, b), max(a, b), c): x + gamma.get((b, a, c), self.zero) for (a, b, c), x in gamma.items()}
+        forces, slopes = f.vector("forces"), f.metric_slopes
         varied = {c for (_, _, c), x in slopes.items() if not self.vanishes(x)}
         # dphi_k/dq^c = G_kc, or B_kc
         varied |= {c for (_, c), x in f.constraint_rows.items() if not self.vanishes(x)}
@@ -161,7 +159,8 @@ class _Search:
             if c not in varied and self.vanishes(forces[c]):
                 self.cyclic_names.append(name)
                 unit = "N m s" if f.model.joints[c] == "R" else "N s"
-                reason = f"the metric does not depend on '{name}' and no generalised force acts on it"
+                where = ", in the axes of its body" * (name not in f.model.positions)
+                reason = f"the metric does not depend on '{name}'{where} and no generalised force acts on it"
                 reason += f"; {constraints_in(f.model)} do not depend on it" if f.multipliers else ""
                 self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
         moving = {i: x for i, x in slopes.items() if i[2] in varied}
@@ -246,7 +245,7 @@ class _Search:
         if not self.vanishes(directional([expr], seeds)[0]):
             return None
         try:
-            return transfer([expr], self.f.graph, dict.fromkeys(states, self.zero))[0]
+            return transfer([expr], self.f.graph, self.f.at_zero(states))[0]
         except ZeroDivisionError:
             return None
 

@@ -11,7 +11,7 @@ import numpy as np
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.errors import InvalidDocument
 from substructures.expr.calculus.corners import between_corners
-from substructures.expr.differentiate import directional
+from substructures.expr.differentiate import directional, in_directions
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Symbol
 from substructures.mechanics.balls import displacement_rates
@@ -89,6 +89,33 @@ class ModelFormulas(Workspace):
             found = displacement_rates([self.rates[a] for a in at])
             result |= {(at[i], at[k]): self.graph.lift(x) for (i, k), x in found.items()}
         return result
+
+    @cached_property
+    def metric_slopes(self) -> dict[tuple[int, int, int], Expr]:
+        """d_c g_ab at (a, b, c), a <= b; of ball joints, in whose rates dT/dv^c moves with the body, what stands for it
+        in p_c' = 1/2 d_c g_ab v^a v^b + Q_c.
+        """
+        gamma, zero = self.elements("christoffel"), self.graph.zero
+        if not self.model.balls:
+            # Gamma_abc + Gamma_bac
+            pairs = ((index, x + gamma.get((index[1], index[0], index[2]), zero)) for index, x in gamma.items())
+            return {(min(a, b), max(a, b), c): x for (a, b, c), x in pairs}
+        g = self.elements("metric")
+        moved = dict(zip(g, in_directions(list(g.values()), self.displacements), strict=True))
+        none, n = [zero] * self.n, range(self.n)
+        # d_a g_cb + d_b g_ca - 2 Gamma~_cab
+        found = {
+            (a, b, c): moved.get((c, b), none)[a] + moved.get((c, a), none)[b] - 2 * gamma.get((c, a, b), zero)
+            for a in n
+            for b in range(a, self.n)
+            for c in n
+        }
+        return {index: x for index, x in found.items() if not x.is_zero}
+
+    def at_zero(self, names: Iterable[str]) -> dict[str, Expr]:
+        """0 for these symbols, but for quaternions, which turn nothing."""
+        turning = {ball["positions"][-4] for ball in self.model.balls}
+        return {name: self.graph.one if name in turning else self.graph.zero for name in names}
 
     @cached_property
     def factors(self) -> MetricElimination:

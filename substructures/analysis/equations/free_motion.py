@@ -17,10 +17,13 @@ from substructures.analysis.equations.integral import Integral, IntegralKind
 from substructures.expr.calculus.integrate import potential
 from substructures.expr.graph import Expr
 from substructures.expr.program import Symbol
+from substructures.mechanics.balls import turned_by
 
 AXES = "xyz"
 #: operations of models whose mass centre is looked for, and terms of its derivatives
 LIMIT, TERMS = 20_000, 200
+#: rates of a joint that turns alone
+TURNS = 3
 
 
 @dataclass(frozen=True)
@@ -78,15 +81,34 @@ class FreeMotion:
             known = f.elements("linear_momentum")
             columns = [-known.get((a, i), f.graph.zero) for a in range(f.n)]
             wanted = self.pull[i] is not None and not all(x.is_zero for x in columns) and len(f.model.program) <= LIMIT
-            self.moments[i] = potential(columns, f.model.coordinates, TERMS) if wanted else None
+            find = self._carried if f.model.balls else lambda _: potential(columns, f.model.coordinates, TERMS)
+            self.moments[i] = find(i) if wanted else None
         return self.moments[i]
 
+    def _carried(self, i: int) -> Expr | None:
+        """s_i = m p_i + (R c)_i of a floating joint that carries all: in its axes P is m v + w x c."""
+        f, momenta = self.f, self.f.elements("linear_momentum")
+        for ball in (ball for ball in f.model.balls if len(ball["velocities"]) > TURNS):
+            *slides, x, y, z = (f.model.coordinates.index(name) for name in ball["velocities"])
+            *place, w, a, b, c = map(f.graph.symbol, ball["positions"])
+            E = turned_by((w, a, b, c), 2 / (w * w + a * a + b * b + c * c))
+            of = {k: [momenta.get((k, j), f.graph.zero) for j in range(3)] for k in (x, y, z)}
+            # e_y x c = (c_z, 0, -c_x), e_z x c = (-c_y, c_x, 0), e_x x c = (0, -c_z, c_y)
+            centre = [sum(E[j][k] * of[turn][k] for k in range(3)) for turn, j in ((z, 1), (x, 2), (y, 0))]
+            mass = f.elements("metric").get((slides[0], slides[0]), f.graph.zero)
+            found = f.graph.lift(mass * place[i] + sum(E[j][i] * x for j, x in enumerate(centre)))
+            if self.vanishes(f.along_motion([found])[0] - self.linear[i]):
+                return found
+        return None
+
     def _mass(self) -> Expr | None:
-        """g_aa of the first slide that moves everything the same way."""
+        """g_aa of the first slide that moves everything the same way, or of the first floating joint."""
         f = self.f
+        floating = [ball["velocities"][0] for ball in f.model.balls if len(ball["velocities"]) > TURNS]
         momenta, g = f.elements("linear_momentum"), f.elements("metric")
         for a, joint in enumerate(f.model.joints):
             columns = [momenta[a, i] for i in range(3) if (a, i) in momenta]
             if joint == "P" and columns and all(self.constant(x) is not None for x in columns) and (a, a) in g:
                 return self.constant(g[a, a])
-        return None
+        at = f.model.coordinates.index(floating[0]) if floating else -1
+        return self.constant(g[at, at]) if (at, at) in g else None

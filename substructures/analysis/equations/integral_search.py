@@ -47,6 +47,8 @@ FREE, SMALL = 1e-9, 1e-7
 def not_searched(f: ModelFormulas) -> str | None:
     """Why a model is not searched."""
     size = len(f.model.program.select(NEEDED))
+    if f.model.balls:
+        return "rates of ball and floating joints are no derivatives of coordinates"
     if f.multipliers or f.model.given:
         held = "the model has velocity constraints" if f.model.velocity_constraints else "the model has closures"
         return held if f.multipliers else "motions are given"

@@ -27,7 +27,9 @@ def subsystems(
     """
     blocks = _blocks(f)
     for block in blocks if len(blocks) > 1 else ():
-        rest = [name for a, name in enumerate(f.model.coordinates) if a not in block]
+        own = {f.model.coordinates[a] for a in block}
+        moving = {name for ball in f.model.balls if ball["velocities"][0] in own for name in ball["positions"]}
+        rest = [name for name in f.model.positions if name not in own | moving]
         potential = _alone(f, rest)
         if potential is None or depends_on([potential], given):
             continue
@@ -49,7 +51,7 @@ def _integral(names: tuple[str, ...], rule: EnergyRule) -> Integral:
 def _alone(f: ModelFormulas, rest: Iterable[str]) -> Expr | None:
     """V where all other coordinates are 0; None where it has no value there."""
     try:
-        return transfer([f.scalar("potential_energy")], f.graph, dict.fromkeys(rest, f.graph.zero))[0]
+        return transfer([f.scalar("potential_energy")], f.graph, f.at_zero(rest))[0]
     except (ZeroDivisionError, ValueError):
         return None
 
@@ -69,6 +71,10 @@ def _blocks(f: ModelFormulas) -> list[list[int]]:
 def _mixed(f: ModelFormulas) -> Iterator[list[int]]:
     """Coordinates that stand in one formula of the equations of motion."""
     place = {str(x.value): a for some in (f.q, f.rates) for a, x in enumerate(some)}
+    for ball in f.model.balls:
+        own = [place[name] for name in ball["velocities"]]
+        place |= dict.fromkeys(ball["positions"], own[0])
+        yield own
 
     def within(x: Expr) -> set[int]:
         return {place[str(n.value)] for n in reachable([x]) if n.op == "sym" and str(n.value) in place}

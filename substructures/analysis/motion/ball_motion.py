@@ -18,16 +18,27 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
+from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
-from substructures.analysis.motion.judges import ROUNDING, Condition, MotionStates, energy_balance, spread, unbalanced
+from substructures.analysis.motion.judges import (
+    ROUNDING,
+    AlongMotion,
+    Condition,
+    MotionStates,
+    energy_balance,
+    judge,
+    spread,
+    unbalanced,
+)
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
-from substructures.analysis.motion.resets import acting
+from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
@@ -39,11 +50,10 @@ from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
-from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached
-from substructures.quantities.numbers.quaternions import quaternions_in
+from substructures.quantities.numbers.quaternions import moved_on, quaternions_in
 from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
@@ -113,18 +123,30 @@ class BallRates:
 def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
     """The motion of a tree with ball joints from a start over a span of time.
 
-    Series: ``kinetic_energy``, ``potential_energy``, ``energy``, ``work`` [J], varying inputs, and those of the
-    problem. Checks: the balance of energy, and the norms of quaternions. What goes wrong on the way is a trajectory
-    with status ``failed``. Raises InvalidInput (pointers start with names of arguments of ``simulate``), MissingValue.
+    Series: ``kinetic_energy``, ``potential_energy``, ``energy``, ``work`` [J], momenta and other first integrals,
+    varying inputs, and those of the problem. Checks: the balance of energy, all first integrals, and the norms of
+    quaternions. What goes wrong on the way is a trajectory with status ``failed``. Raises InvalidInput (pointers start
+    with names of arguments of ``simulate``), MissingValue.
     """
     _require_known(problem, kind)
-    model, folder, start = problem.model, problem.integrator.folder, problem.span[0]
-    conditions = read_conditions(model, problem.start, problem.span, NEEDS, problem.events, problem.series)
-    f = BallRates(conditions, folder)
+    conditions = _conditions(problem)
+    if acting(problem.events):
+        return simulate_with_resets(problem, Resets(problem, conditions), lambda p: _simulate(p, _conditions(p)))
+    return _simulate(problem, conditions)
+
+
+def _conditions(problem: MotionProblem) -> Conditions:
+    return read_conditions(problem.model, problem.start, problem.span, NEEDS, problem.events, problem.series)
+
+
+def _simulate(problem: MotionProblem, conditions: Conditions) -> Trajectory:
+    """Without events that act."""
+    start = problem.span[0]
+    f = BallRates(conditions, problem.integrator.folder)
     f.inputs.enter(*problem.span)
-    x = np.append(conditions.start, 0.0)
+    x, figures = np.append(conditions.start, 0.0), dict[str, float]()
     if np.isfinite(f(start, x)).all():
-        motion = _moved(conditions, f, problem, x, problem.integrator.progress)
+        motion, figures = _moved(conditions, f, problem, x, problem.integrator.progress)
     else:
         motion = IntegratedMotion([start], [x], [start], [x], status="failed", message=SINGULAR)
     found = _judged(conditions, f, problem, motion)
@@ -132,56 +154,63 @@ def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
 
     def move(other: MotionProblem, y: Array, told: ProgressReport | None, _: bool) -> IntegratedMotion:
         """The motion once more."""
-        return _moved(quiet, f, other, y, told)
+        return _moved(quiet, f, other, y, told)[0]
 
     is_whole = bool(conditions.varied_potential())
     again = computed_again(problem, motion, state_groups(f.m, f.n), move, is_whole=is_whole)
-    return replace(found, checks=(*found.checks, *again))
+    return replace(found, checks=(*found.checks, *again), figures={**found.figures, **figures})
 
 
 def _require_known(problem: MotionProblem, kind: TreeMotion) -> None:
     """Raises InvalidArgument for what is not known of a motion with ball joints."""
     integrator = problem.integrator
     known: dict[str, tuple[bool, str]] = {
-        "method": (integrator.fixed_step is None and integrator.method in METHODS, ", ".join(METHODS)),
+        "method": (integrator.fixed_step is not None or integrator.method in METHODS, ", ".join(METHODS)),
         "friction": (kind.friction == "regularised", "regularised"),
-        "events": (not acting(problem.events), "events without 'reset'"),
     }
     for name, (is_known, instead) in known.items():
         if not is_known:
             message = f"with ball and floating joints '{name}' is one of: {instead}"
             raise InvalidArgument.at(f"/{name}", "not-supported", message)
+    if integrator.fixed_step is not None:
+        require_no_stops(problem.events)
 
 
 def _moved(
     conditions: Conditions, f: BallRates, problem: MotionProblem, x: Array, progress: ProgressReport | None
-) -> IntegratedMotion:
-    integrator, span = problem.integrator, problem.span
+) -> tuple[IntegratedMotion, dict[str, float]]:
+    """The motion and its pace."""
+    integrator, span, times = problem.integrator, problem.span, problem.times.grid()
+    told = share_of(span, progress)
+    if integrator.fixed_step is not None:
+        states = problem.model.positions, problem.model.coordinates, problem.model.balls
+        euler = semi_implicit_euler(f.n, f.m, partial(moved_on, *states))
+        motion, pace = march(f, euler, x, span, times, integrator.fixed_step, integrator.max_steps, told)
+        return motion, pace.figures
     settings = IntegratorSettings(integrator.stepper(), integrator.max_steps)
     watches = conditions.watches(lambda _, y: y[:-1], integrator.folder)
     breaks = conditions.breaks(span)
     f.inputs.enter(span[0], [*breaks, span[1]][0])
-    times, told = problem.times.grid(), share_of(span, progress)
     motion = integrate(f, x, span, times, settings, watches, breaks, told, f.inputs.enter)
     f.inputs.leave()
-    return motion
+    return motion, {}
 
 
 def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion: IntegratedMotion) -> Trajectory:
     model, m = problem.model, f.m
     t, x, results = motion.judged()
-    values: dict[str, Any] = {**conditions.values, **conditions.inputs_at(t, x[:, :-1]), "t": t}
-    values |= dict(zip(state_names(model), x[:, :-1].T, strict=True))
-    found = interpret_in_blocks(model.program, values, ["metric", "potential_energy"], len(t))
+    values: dict[str, Any] = {**conditions.values, **conditions.inputs_at(t, x[:, :-1])}
     v = x[:, m:-1]
+    along = _along(conditions, problem, MotionStates(t, x[:, :m], v, values, x[:, -1]))
     series = {
-        "kinetic_energy": np.einsum("kab,ka,kb->k", found["metric"], v, v) / 2,
-        "potential_energy": found["potential_energy"],
+        "kinetic_energy": np.einsum("kab,ka,kb->k", along.sizes["metric"], v, v) / 2,
+        "potential_energy": along.sizes["potential_energy"],
         "work": x[:, -1],
     }
     varied, limit = conditions.varied_potential(), problem.drift_limit
     energy = unbalanced(varied) if varied else energy_balance(t, series, not x[:, -1].any(), limit)
-    series["energy"] = series["kinetic_energy"] + series["potential_energy"]
+    series = along.series | series | {"energy": series["kinetic_energy"] + series["potential_energy"]}
+    others = (check for check in judge(along, limit) if check.name not in ("energy", "energy-balance"))
     norms = np.stack([np.linalg.norm(x[:, some], axis=1) for some in quaternions_in(model.positions, model.balls)])
     kept = Check.of(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), t, 1.0, limit)
     unit = partial(with_lengths, model)
@@ -192,7 +221,7 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
         unit(x[results, :m]),
         v[results],
         {name: some[results] for name, some in series.items()} | conditions.series_at(t[results], x[results, :-1]),
-        (energy, kept),
+        (energy, *others, kept),
         motion.status,
         motion.message,
         motion.steps,
@@ -205,6 +234,14 @@ def _judged(conditions: Conditions, f: BallRates, problem: MotionProblem, motion
         span,
         positions=model.positions,
     )
+
+
+def _along(conditions: Conditions, problem: MotionProblem, states: MotionStates) -> AlongMotion:
+    """All first integrals; inputs and parameters that are 0 all the time leave more constant."""
+    model = problem.model
+    acting = [name for name in problem.start.inputs if name not in conditions.zero]
+    integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
+    return AlongMotion.of(model, integrals, states)
 
 
 def with_lengths(model: Model, q: Array) -> Array:

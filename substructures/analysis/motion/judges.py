@@ -216,10 +216,19 @@ class _Scales:
         change = np.ptp(potential, axis=-1) if potential.shape[-1] else np.zeros(potential.shape[:-1])
         self.whole = {
             # m s is the sum of P_a q^a where P does not change
-            "mass_moment": self._whole(found["linear_momentum"], np.abs(states.q)),
+            "mass_moment": self._whole(found["linear_momentum"], self._moved(np.abs(states.q))),
             "energy": np.maximum(kinetic.max(axis=-1, initial=0), change),
             **{k: self._whole(found[k], speed) for k in ("linear_momentum", "angular_momentum")},
         }
+
+    def _moved(self, q: Array) -> Array:
+        """How far rates (n,) have moved the whole, of turns of ball joints at most as far as once around."""
+        places = {name: q[..., k] for k, name in enumerate(self.model.positions)}
+        for ball in self.model.balls:
+            *slides, _, _, _ = ball["velocities"]
+            far = np.sum([places[name] for name in ball["positions"][: len(slides)]], axis=0)
+            places |= dict.fromkeys(slides, far) | dict.fromkeys(ball["velocities"][-3:], np.ones(q.shape[:-1]))
+        return np.stack([places[name] for name in self.model.coordinates], axis=-1) if places else q
 
     @staticmethod
     def _whole(columns: Array, speed: Array) -> Array:

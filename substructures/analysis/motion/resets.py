@@ -26,6 +26,7 @@ from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.quantities.numbers.quaternions import quaternions_in
 
 #: so many events one after the other, each within this share of the span from the one before: they accumulate
 MANY, SOON = 10, 1e-6
@@ -74,10 +75,13 @@ class Resets:
         return next((i for i, event in enumerate(self.events) if event.reset and event.name == name), None)
 
     def after(self, event: int, t: float, x: Array) -> Array:
-        """The state (2n,) after an event at a state."""
+        """The state (2n,) after an event at a state; quaternions have the length 1."""
         found = x.copy()
         values = {**self._values(t, x), "t": t}
         found[self._places[event]] = interpret(self._program, values, [str(event)])[str(event)]
+        model = self.conditions.model
+        for some in quaternions_in(model.positions, model.balls):
+            found[some] /= np.linalg.norm(found[some])
         return found
 
     def _values(self, t: float, x: Array) -> dict[str, Any]:
@@ -86,7 +90,7 @@ class Resets:
 
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
-        n, model = self.conditions.model.dof, self.conditions.model
+        n, model = len(self.conditions.model.positions), self.conditions.model
         names = [*ENERGY, "T_0"] if model.given else list(ENERGY)
         found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, names, 1)
         metric, potential, *drives = (found[name][0] for name in names)

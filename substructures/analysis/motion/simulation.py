@@ -18,7 +18,7 @@ from substructures.analysis.motion.friction.dry_friction import DryMotion, frict
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide, with_loads
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
-from substructures.analysis.motion.integrators.fixed_step import march
+from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
@@ -166,9 +166,8 @@ def _check_method(conditions: Conditions, problem: TreeProblem) -> None:
     if problem.integrator.fixed_step is None:
         if problem.integrator.method == TAYLOR:
             require_taylor(list(conditions.curves), problem.integrator.max_step)
-    elif problem.events:
-        message = "steps of a fixed size do not stop for events: leave 'events' or 'fixed_step' out"
-        raise InvalidArgument.at("/events", "not-supported", message)
+    else:
+        require_no_stops(problem.events)
 
 
 def _moved(
@@ -186,8 +185,8 @@ def _moved(
     told = share_of(span, progress)
     figures: dict[str, float] = {}
     if problem.integrator.fixed_step is not None:
-        motion, pace = march(f, f.n, x, span, outputs, problem.integrator.fixed_step, most, told)
-        figures |= {"real_time_factor": pace.factor, "longest_step": pace.longest}
+        motion, pace = march(f, semi_implicit_euler(f.n), x, span, outputs, problem.integrator.fixed_step, most, told)
+        figures |= pace.figures
     else:
         settings = IntegratorSettings(_stepper(conditions, problem, f), most)
         watches = conditions.watches(lambda _, y: y[: 2 * f.n], folder)

@@ -31,6 +31,11 @@ def moved(m: ModelAt, balls: BallRows, rates: Sequence[Ball]) -> dict[str, Ball]
     return result
 
 
+def motion(m: ModelAt, balls: BallRows, second: Sequence[Ball]) -> dict[str, Ball]:
+    """The direction of a motion with these accelerations: the change of the state, of rates, and 1 for the time."""
+    return m.motion(second) | moved(m, balls, m.rates)
+
+
 def displacement_rates(m: ModelAt, balls: BallRows) -> list[list[Ball]]:
     """R d of unit displacements d: of ball joints -w x d, of floating ones before it -w x d - v x d_turn."""
     columns = [[arb(0)] * m.n for _ in range(m.n)]

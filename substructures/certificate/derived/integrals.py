@@ -12,6 +12,7 @@ from typing import Any
 
 from flint import arb, arb_mat
 
+from substructures.certificate.derived.displaced import BallRows, motion
 from substructures.certificate.derived.model_at import Index, ModelAt, dot, solve, total
 from substructures.certificate.derived.model_formulas import Expectation, power, symmetric_of, vector_of
 from substructures.certificate.linear import Ball, Matrix
@@ -31,18 +32,27 @@ Rows = Callable[[ModelAt], Sequence[Sequence[Ball]]]
 
 
 def constant(
-    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None = None
+    program: Stored,
+    integrals: Sequence[Mapping[str, Any]],
+    multipliers: Sequence[str],
+    rows: Rows | None = None,
+    balls: BallRows = (),
 ) -> Expectation:
     """Energies, momenta and combinations of them, and the power; ``integrals``: name, kind, rule and direction of each.
 
     ``program``: of the integrals, whose derivatives along the motion have to vanish. ``multipliers``: symbols of the
     reactions of closures, or of all ``rows``.
     """
-    return partial(_constant, program, integrals, multipliers, rows)
+    return partial(_constant, program, integrals, multipliers, rows, balls)
 
 
 def _constant(
-    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None, m: ModelAt
+    program: Stored,
+    integrals: Sequence[Mapping[str, Any]],
+    multipliers: Sequence[str],
+    rows: Rows | None,
+    balls: BallRows,
+    m: ModelAt,
 ) -> Outputs:
     result = Outputs()
     found = {"linear_momentum": m.momentum("linear"), "angular_momentum": m.momentum("angular")}
@@ -51,10 +61,10 @@ def _constant(
         if kind == "energy":
             value = m.energy()
         elif kind == "subsystem":
-            value = _energy_of(m, each["coordinates"])
+            value = _energy_of(m, each["coordinates"], balls)
         elif kind == "impulse":
             i = AXES.index(name.removeprefix("impulse."))
-            value = found["linear_momentum"][i] - _rate_of_momentum(m)[i] * m.values.get("t", arb(0))
+            value = found["linear_momentum"][i] - _rate_of_momentum(m, balls)[i] * m.values.get("t", arb(0))
         elif each["terms"]:
             value = _sum_of_terms(m, each["terms"])
         elif kind in WITH_CENTRE:
@@ -66,21 +76,25 @@ def _constant(
             pairs = ((text, momenta[m.coordinates.index(q)]) for q, text in each["direction"].items())
             value = total(weights.read(text) * p for text, p in pairs)
         else:
-            value = _component(m, found, kind, name.removeprefix(f"{kind}."))
+            value = _component(m, found, kind, name.removeprefix(f"{kind}."), balls)
         result.scalar(name, value)
-    result.scalar("power", power(m))
-    _require_constant(program, [each for each in integrals if each["rule"] == "constant"], multipliers, rows, m)
+    result.scalar("power", power(m, balls))
+    held = [each for each in integrals if each["rule"] == "constant"]
+    _require_constant(program, held, multipliers, rows, balls, m)
     return result
 
 
-def _energy_of(m: ModelAt, names: Sequence[str]) -> Ball:
+def _energy_of(m: ModelAt, names: Sequence[str], balls: BallRows) -> Ball:
     """p_a q'^a / 2 of some coordinates, and V where all others are zero. Raises VerificationFailed for a closure that
     does work on them, as it moves others, too."""
     rows = m.elements("closure.jacobian") if "closure.jacobian" in m.program.outputs else {}
     own, others = ({k for k, a in rows if (m.coordinates[a] in names) is within} for within in (True, False))
     if own & others:
         raise VerificationFailed(f"a closure joins {', '.join(names)} with other coordinates")
-    alone = m.at({name: arb(0) for name in m.coordinates if name not in names})
+    at_zero = {name: arb(0) for name in m.coordinates if name not in names}
+    resting = (ball["positions"] for ball in balls if ball["velocities"][0] not in names)
+    at_zero |= {name: arb(int(k == len(some) - 4)) for some in resting for k, name in enumerate(some)}
+    alone = m.at(at_zero)
     twice = total(p * v for name, p, v in zip(m.coordinates, m.momenta(), m.rates, strict=True) if name in names)
     return twice / 2 + alone.scalar("potential_energy")
 
@@ -99,7 +113,7 @@ def _own(program: Stored, name: str, m: ModelAt) -> Ball:
     return total(found[entry] for entry in program.outputs[name].entries)
 
 
-def _component(m: ModelAt, found: Mapping[str, list[Ball]], kind: str, label: str) -> Ball:
+def _component(m: ModelAt, found: Mapping[str, list[Ball]], kind: str, label: str, balls: BallRows) -> Ball:
     """A momentum of the whole along an axis of the world, the axis of a joint, a constant force, or across that."""
     momentum = found[kind]
     if label in AXES:
@@ -107,7 +121,7 @@ def _component(m: ModelAt, found: Mapping[str, list[Ball]], kind: str, label: st
     if label.startswith("axis-of-"):
         return dot(momentum, _axis(m, m.coordinates.index(label.removeprefix("axis-of-"))))
     # p' along the motion is the force, of which components that are zero come as such, or as small balls
-    pull = _rate_of_momentum(m)
+    pull = _rate_of_momentum(m, balls)
     first = next(i for i, x in enumerate(pull) if not x.contains(0))
     if label == "force":
         return dot(momentum, [x / pull[first] for x in pull])
@@ -127,23 +141,28 @@ def _axis(m: ModelAt, a: int) -> list[Ball]:
     raise VerificationFailed(f"no frame moves with {m.coordinates[a]}")
 
 
-def _rate_of_momentum(m: ModelAt) -> list[Ball]:
+def _rate_of_momentum(m: ModelAt, balls: BallRows) -> list[Ball]:
     """d/dt of sum_a p_a q'^a along the equations of motion."""
     second = m.accelerations()
-    moved, own = m.along(m.motion(second)).elements("linear_momentum"), m.elements("linear_momentum")
+    moved, own = m.along(motion(m, balls, second)).elements("linear_momentum"), m.elements("linear_momentum")
     pairs = list(enumerate(zip(m.rates, second, strict=True)))
     zero = arb(0)
     return [total(moved.get((a, i), zero) * v + own.get((a, i), zero) * w for a, (v, w) in pairs) for i in range(3)]
 
 
 def _require_constant(
-    program: Stored, integrals: Sequence[Mapping[str, Any]], multipliers: Sequence[str], rows: Rows | None, m: ModelAt
+    program: Stored,
+    integrals: Sequence[Mapping[str, Any]],
+    multipliers: Sequence[str],
+    rows: Rows | None,
+    balls: BallRows,
+    m: ModelAt,
 ) -> None:
     """Raise VerificationFailed for an integral that changes along the motion, whatever the reactions of closures and of
     velocity constraints are; they do no work."""
     values = {**m.values, **dict.fromkeys(multipliers, arb(1))}
     found = operations_in_balls(program, values)
-    free = tangents(program, found, m.motion(m.accelerations()))
+    free = tangents(program, found, motion(m, balls, m.accelerations()))
     held = free
     if multipliers:
         G = m.matrix("closure.jacobian") if rows is None else _held(rows(m), integrals)

@@ -239,9 +239,7 @@ def _simulated_in_rates(positions: Sequence[str], balls: BallRows, m: ModelAt) -
     result, changes = Outputs(), moved(m, balls, m.rates)
     vector_of(result, "position_rates", [changes[name] for name in positions])
     vector_of(result, "forward_dynamics", m.accelerations())
-    along = m.along(m.time() | {name: changes[name] for name in positions})
-    work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True))
-    result.scalar("power", work + along.scalar("potential_energy"))
+    result.scalar("power", power(m, balls))
     return result
 
 
@@ -260,8 +258,8 @@ def _with_power(names: Sequence[str], m: ModelAt) -> Outputs:
     return result
 
 
-def power(m: ModelAt) -> Ball:
+def power(m: ModelAt, balls: BallRows = ()) -> Ball:
     """Q_a q'^a + V' - d_t T at fixed inputs; the metric depends on the time where motions are given."""
-    along = m.along(m.time() | dict(zip(m.coordinates, m.rates, strict=True)))
+    along = m.along(m.time() | moved(m, balls, m.rates))
     work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)) + along.scalar("potential_energy")
     return work - m.kinetic_change(m.time())

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from typing import Any
 
 import numpy as np
 
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.mechanics.balls import quaternion_rates, turned_by
+from substructures.mechanics.linear3 import add, apply, cross, dot, scale, transpose
 from substructures.mechanics.state_names import BallRow
 
 #: how far the norm of a quaternion that is given may be from 1
@@ -51,21 +53,30 @@ def at_zero(positions: Sequence[str], balls: Sequence[BallRow]) -> Array:
 def moved_on(
     positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array, d: Array
 ) -> Array:
-    """Where a state q (m,) comes at constant rates, d (n,) in all: Q exp(w/2), and p + R (int_0^1 exp(s [w]x) ds) v."""
-    result, moved = (dict(zip(names, x.tolist(), strict=True)) for names, x in ((positions, q), (coordinates, d)))
-    result |= {name: result[name] + x for name, x in moved.items() if name in result}
+    """Where states q (..., m) come at constant rates, d (..., n) in all: Q exp(w/2), and p + R (int_0^1 exp(s [w]x) ds)
+    v.
+    """
+    columns, rows = ({name: i for i, name in enumerate(some)} for some in (positions, coordinates))
+    own, result = [name for name in coordinates if name in columns], q.copy()
+    result[..., [columns[name] for name in own]] += d[..., [rows[name] for name in own]]
     for ball in balls:
-        names, rates = ball["positions"], np.array([moved[name] for name in ball["velocities"]])
-        old, w, angle = [result[name] for name in names[-4:]], rates[-3:], float(np.linalg.norm(rates[-3:]))
-        sinc = float(np.sinc(angle / 2 / np.pi))
-        new = np.cos(angle / 2) * np.array(old) + np.array(quaternion_rates(old, w.tolist(), sinc / 2))
-        result |= dict(zip(names[-4:], new.tolist(), strict=True))
-        if len(names) > len(old):
-            across = np.cross(w, v := rates[:3])
-            third = (1 - float(np.sinc(angle / np.pi))) / angle**2 if angle > SMALL else 1 / 6
-            way = np.array(turned_by(old, 2.0)).T @ (v + sinc**2 / 2 * across + third * np.cross(w, across))
-            result |= {name: result[name] + x for name, x in zip(names[:3], way.tolist(), strict=True)}
-    return np.array([result[name] for name in positions])
+        at, moved = [columns[name] for name in ball["positions"]], [rows[name] for name in ball["velocities"]]
+        old, w = [q[..., k] for k in at[-4:]], (d[..., moved[-3]], d[..., moved[-2]], d[..., moved[-1]])
+        square: Any = dot(w, w)
+        angle = np.sqrt(square)
+        sinc, c = np.sinc(angle / 2 / np.pi), np.cos(angle / 2)
+        turned = quaternion_rates(old, w, sinc / 2)
+        for k, x, dx in zip(at[-4:], old, turned, strict=True):
+            result[..., k] = c * x + dx
+        if len(at) > len(old):
+            v = d[..., moved[0]], d[..., moved[1]], d[..., moved[2]]
+            across = cross(w, v)
+            third = np.where(angle > SMALL, (1 - np.sinc(angle / np.pi)) / np.fmax(square, SMALL**2), 1 / 6)
+            way = add(v, add(scale(sinc**2 / 2, across), scale(third, cross(w, across))))
+            turns = transpose(turned_by(old, 2 / sum(x * x for x in old)))
+            moved_by: Any = apply(turns, way)
+            result[..., at[:3]] += np.stack(moved_by, axis=-1)
+    return result
 
 
 def by_displacements(positions: Sequence[str], coordinates: Sequence[str], balls: Sequence[BallRow], q: Array) -> Array:

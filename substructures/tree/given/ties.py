@@ -99,7 +99,8 @@ class Tied(Protocol):
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
-    *("parameter_sensitivity", "equivalences"),
+    *("parameter_sensitivity", "equivalences", "columns of equilibria and linearisations", "columns of reach"),
+    *("optimal-parameters", "first_integrals"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from dataclasses import dataclass, replace
 from time import perf_counter
 from typing import Literal
@@ -15,6 +15,7 @@ from substructures.analysis.motion.integrators.compiled_steps import rates_of
 from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion, TimeReport
 from substructures.array import Array
 from substructures.compile.motion import CompiledRates, CompiledRun, Tableau
+from substructures.errors import InvalidArgument
 
 StepMethod = Callable[[Function, float, Array, float], Array]
 EVALUATIONS = {"semi-implicit-euler": 1, "rk4": 4}
@@ -46,6 +47,18 @@ class Pace:
 
     factor: float
     longest: float
+
+    @property
+    def figures(self) -> dict[str, float]:
+        """By the names of trajectories."""
+        return {"real_time_factor": self.factor, "longest_step": self.longest}
+
+
+def require_no_stops(events: Collection[object]) -> None:
+    """Raises InvalidArgument (``/events``) where there are any."""
+    if events:
+        message = "steps of a fixed size do not stop for events: leave 'events' or 'fixed_step' out"
+        raise InvalidArgument.at("/events", "not-supported", message)
 
 
 def rk4(f: Function, t: float, x: Array, h: float) -> Array:
@@ -88,14 +101,17 @@ def compiled_rk4(rates: CompiledRates) -> StepMethod:
     return step
 
 
-def semi_implicit_euler(n: int) -> StepMethod:
-    """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of coordinates."""
+def semi_implicit_euler(n: int, m: int | None = None, move: Callable[[Array, Array], Array] = np.add) -> StepMethod:
+    """Velocities first, then coordinates with the new velocities; one evaluation. ``n``: number of velocities, ``m`` of
+    the numbers q before them (default n); ``move``: where q comes at constant rates, (n,) in all (default: q + h q').
+    """
+    m = n if m is None else m
 
     def step(f: Function, t: float, x: Array, h: float) -> Array:
         """One step: velocities first."""
         # q'_1 = q' + h q''(t, q, q'), then q_1 = q + h q'_1
         new = x + h * f(t, x)
-        new[:n] = x[:n] + h * new[n : 2 * n]
+        new[:m] = move(x[:m], h * new[m : m + n])
         return new
 
     return step
@@ -108,7 +124,7 @@ def rk4_of(rates: CompiledRates | None) -> StepMethod:
 
 def march(
     f: Function,
-    n: int,
+    euler: StepMethod,
     x: Array,
     span: tuple[float, float],
     outputs: Array,
@@ -116,11 +132,11 @@ def march(
     max_steps: int,
     progress: TimeReport | None = None,
 ) -> tuple[IntegratedMotion, Pace]:
-    """Steps of size ``fixed.step`` over the span (the last one may be shorter).
+    """Steps of size ``fixed.step`` over the span (the last one may be shorter); ``euler``: of semi-implicit Euler.
 
     Outputs within a step are the ends of shorter steps from its start.
     """
-    step = semi_implicit_euler(n) if fixed.method != "rk4" else rk4_of(rates_of(f))
+    step = euler if fixed.method != "rk4" else rk4_of(rates_of(f))
     motion, wanted = IntegratedMotion(step_t=[span[0]], step_x=[x]), outputs.tolist()
     count = max(1, math.ceil((span[1] - span[0]) / fixed.step * (1 - 1e-12)))
     longest, t, k, begin = 0.0, span[0], 0, perf_counter()
