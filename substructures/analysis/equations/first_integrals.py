@@ -5,10 +5,9 @@ Cyclic coordinate c: Gamma_abc + Gamma_bac = 0 for all a, b and Q_c = 0, then p_
 directions c^a: c^a p_a (:mod:`.symmetries`). Momenta of the whole: the derivative of p . e or L . e along the motion
 is the zero formula, as gravity, loads and the reactions of the world have no resultant along (about) e.
 Ball joints: p_c of a rate is in the axes of the body; in place of d_c g_ab stands d_a g_cb + d_b g_ca - 2 Gamma~_cab.
-Closed loops: closures do no work and do not depend on time, so that the energy is as without them; reactions enter as
-g q'' = Q - Gamma q'q' + G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0. So do
-velocity constraints B q' + b = 0 with B for G, but for the energy where b is not 0. Zero is what the graph, whose equal
-formulas are one node, and :mod:`substructures.expr.calculus.vanish` find so.
+Closed loops: closures do no work and do not depend on time, so the energy is as without them; reactions enter as
+G^T lambda with any lambda; no closure depends on a cyclic coordinate c, G_kc = 0. So do velocity constraints
+B q' + b = 0 with B for G, but for the energy where b is not 0. Zero: :mod:`substructures.expr.calculus.vanish`.
 """
 
 from __future__ import annotations
