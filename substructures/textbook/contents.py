@@ -9,13 +9,10 @@ from typing import Any
 from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.textbook.atoms import Monomial, times
-from substructures.textbook.exponentials import Complex, harmonics_of, power, spread, tangent
-from substructures.textbook.field import to_fmpq
-from substructures.textbook.harmonics import Mode, normal, polynomial_of
+from substructures.textbook.exponentials import Laurent, harmonics_of, power, spread, tangent
+from substructures.textbook.harmonics import normal, polynomial_of
 from substructures.textbook.springs import Content
 from substructures.textbook.work import Work
-
-_ZERO = Fraction(0)
 
 
 class Ring:
@@ -45,26 +42,26 @@ class Ring:
                 head[place[i]] = n
             for powers, c in polynomial_of(normal(harmonics), sines, self.work).items():
                 key = (*head, *(n for both in powers for n in both))
-                found[key] = found.get(key, _ZERO) + c
-        return self.context.from_dict({k: to_fmpq(c) for k, c in found.items() if c})
+                found[key] = found.get(key, 0) + c
+        return self.context.from_dict({k: c for k, c in found.items() if c})
 
     def back(self, poly: Any) -> Content:
         """The harmonics of a polynomial in atoms, cosines and sines."""
-        result: dict[Monomial, dict[Mode, Complex]] = {}
+        result: dict[Monomial, Laurent] = {}
         for raw, c in poly.to_dict().items():
             exponents = [int(n) for n in raw]
             monomial = self._monomial(exponents[: self.size])
             pairs = [exponents[self.size + 2 * i : self.size + 2 * i + 2] for i in range(self.angles)]
-            spread(result.setdefault(monomial, {}), [power(a, b) for a, b in pairs], fraction(c), self.work)
+            spread(result.setdefault(monomial, {}), [power(a, b) for a, b in pairs], c, self.work)
         return {m: harmonics_of(z) for m, z in result.items()}
 
     def from_tangents(self, poly: Any, halves: Sequence[int]) -> Content:
         """The harmonics of a polynomial in atoms and tangents of half angles, over the powers ``halves`` of 1 + t^2."""
-        result: dict[Monomial, dict[Mode, Complex]] = {}
+        result: dict[Monomial, Laurent] = {}
         for raw, c in poly.to_dict().items():
             exponents = [int(n) for n in raw]
             waves = [tangent(j, e) for j, e in zip(exponents[self.size :], halves, strict=True)]
-            spread(result.setdefault(self._monomial(exponents[: self.size]), {}), waves, fraction(c), self.work)
+            spread(result.setdefault(self._monomial(exponents[: self.size]), {}), waves, c, self.work)
         found = {m: harmonics_of(z) for m, z in result.items()}
         return {m: h for m, h in found.items() if h}
 
@@ -83,8 +80,3 @@ def divided(content: Content, monomial: Monomial, number: Fraction) -> Content:
     return {
         times(m, monomial, -1): {k: (a / number, b / number) for k, (a, b) in h.items()} for m, h in content.items()
     }
-
-
-def fraction(c: Any) -> Fraction:
-    """A number of FLINT."""
-    return Fraction(int(c.p), int(c.q))

@@ -8,12 +8,15 @@ from functools import lru_cache
 from math import comb, prod
 from typing import NamedTuple
 
+from flint import fmpq
+
+from substructures.textbook.field import fraction
 from substructures.textbook.harmonics import Mode
 from substructures.textbook.work import Work
 
-#: real and imaginary part
-Complex = tuple[Fraction, Fraction]
-_ZERO = Fraction(0)
+#: real and imaginary part of every coefficient
+Laurent = dict[Mode, tuple[fmpq, fmpq]]
+_ZERO = fmpq(0)
 
 
 class Wave(NamedTuple):
@@ -24,7 +27,7 @@ class Wave(NamedTuple):
     denominator: int
 
 
-def spread(into: dict[Mode, Complex], waves: Sequence[Wave], c: Fraction, work: Work) -> None:
+def spread(into: Laurent, waves: Sequence[Wave], c: fmpq, work: Work) -> None:
     """Add c times a product of Laurent polynomials, one in exp(i q) of every angle. Raises TooLarge."""
     work.steps(prod(len(wave.coefficients) for wave in waves))
     terms: list[tuple[Mode, int]] = [((), 1)]
@@ -39,13 +42,13 @@ def spread(into: dict[Mode, Complex], waves: Sequence[Wave], c: Fraction, work: 
         into[k] = (re, im + c * x) if turns % 2 else (re + c * x, im)
 
 
-def harmonics_of(laurent: Mapping[Mode, Complex]) -> dict[Mode, Complex]:
+def harmonics_of(laurent: Laurent) -> dict[Mode, tuple[Fraction, Fraction]]:
     """c z^k + conj(c) z^-k = 2 Re(c) cos(k.q) - 2 Im(c) sin(k.q)."""
     result = {}
     for k, (re, im) in laurent.items():
         leading = next((n for n in k if n), 0)
         if leading >= 0 and (re or im):
-            result[k] = (2 * re, -2 * im) if leading else (re, _ZERO)
+            result[k] = (fraction(2 * re), fraction(-2 * im)) if leading else (fraction(re), Fraction(0))
     return result
 
 

@@ -14,7 +14,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from substructures.textbook.collect import is_fraction
-from substructures.textbook.exponentials import Complex, harmonics_of, spread, tangent
+from substructures.textbook.exponentials import Laurent, harmonics_of, spread, tangent
 from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest
 from substructures.textbook.work import Work
 
@@ -108,10 +108,10 @@ def _read(part: Any, angles: Sequence[Mode], work: Work) -> tuple[Waves | None, 
     halves = [n // 2 for n in degrees]
     if any(n % 2 for n in degrees):
         return None, halves
-    laurent: dict[Mode, Complex] = {}
+    laurent: Laurent = {}
     for exponents, c in part.to_dict().items():
         some = [tangent(int(j), e) for j, e in zip(exponents, halves, strict=True)]
-        spread(laurent, some, Fraction(int(c.p), int(c.q)), work)
+        spread(laurent, some, c, work)
     waves = shortest(normal(harmonics_of(laurent)), work)
     size = len(angles[0])
     return tuple((c, tuple((op, _sum(k, angles, size), n) for op, k, n in some)) for c, some in waves), halves

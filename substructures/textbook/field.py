@@ -164,6 +164,11 @@ def to_fmpq(value: Fraction) -> fmpq:
     return fmpq(value.numerator, value.denominator)
 
 
+def fraction(value: fmpq) -> Fraction:
+    """A number of FLINT."""
+    return Fraction(int(value.p), int(value.q))
+
+
 def unit_of(multiples: Iterable[Fraction]) -> Fraction:
     """What multiples of an angle are counted in: cos(2*q) is a polynomial in cos(q), and cos(1.8*q) none."""
     unit = common_unit(multiples)

@@ -14,6 +14,9 @@ from functools import lru_cache
 from itertools import permutations
 from math import comb, prod
 
+from flint import fmpq
+
+from substructures.textbook.field import fraction, to_fmpq
 from substructures.textbook.work import Work
 
 #: a harmonic: multiples of the angles, the first of which that is not zero is positive
@@ -22,6 +25,7 @@ Mode = tuple[int, ...]
 Harmonics = Mapping[Mode, tuple[Fraction, Fraction]]
 #: powers of (cos, sin) of every angle of a basis
 Powers = tuple[tuple[int, int], ...]
+Polynomial = dict[Powers, fmpq]
 #: a factor: "cos" or "sin", multiples of the angles, power
 Wave = tuple[str, Mode, int]
 #: a sum of number * product of waves
@@ -34,9 +38,9 @@ def shortest(harmonics: Harmonics, work: Work) -> Waves:
     if len(harmonics) == 1 and all(abs(n) <= 1 for k in harmonics for n in k):
         return plain
     basis, modes = _reduced(list(harmonics), work)
-    polynomial: dict[Powers, Fraction] = {}
+    polynomial: Polynomial = {}
     for mode, (a, b) in zip(modes, harmonics.values(), strict=True):
-        _add(polynomial, mode, a, b, work)
+        _add(polynomial, mode, to_fmpq(a), to_fmpq(b), work)
     written = [_written(form, basis) for form in _eliminated(polynomial, work)]
     return min([*written, plain], key=lambda form: (cost(form), form is plain))
 
@@ -110,7 +114,7 @@ def _multiple(k: int) -> tuple[tuple[tuple[int, int], int, int], ...]:
     return tuple(((n - m, m), comb(n, m) * sign**m, m) for m in range(n + 1))
 
 
-def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fraction, work: Work) -> None:
+def _add(polynomial: Polynomial, mode: Mode, a: fmpq, b: fmpq, work: Work) -> None:
     """Add a cos(k.q) + b sin(k.q): real and imaginary part of the product of (c_i + i s_i)^k_i."""
     # binomial coefficients of k have about k digits
     work.steps(prod(abs(k) + 1 + k * k // 64 for k in mode))
@@ -120,20 +124,20 @@ def _add(polynomial: dict[Powers, Fraction], mode: Mode, a: Fraction, b: Fractio
     for powers, c, m in terms:
         value = (a if m % 2 == 0 else b) * (c if m < 2 else -c)
         if value:
-            polynomial[powers] = polynomial.get(powers, Fraction(0)) + value
+            polynomial[powers] = polynomial.get(powers, 0) + value
 
 
-def polynomial_of(harmonics: Harmonics, sines: Sequence[int], work: Work) -> dict[Powers, Fraction]:
+def polynomial_of(harmonics: Harmonics, sines: Sequence[int], work: Work) -> Polynomial:
     """The polynomial in cosines and sines without c_i^2 for the angles ``sines``, and without s_i^2 for the others."""
-    polynomial: dict[Powers, Fraction] = {}
+    polynomial: Polynomial = {}
     for mode, (a, b) in harmonics.items():
-        _add(polynomial, mode, a, b, work)
+        _add(polynomial, mode, to_fmpq(a), to_fmpq(b), work)
     for i in range(len(next(iter(harmonics), ()))):
         polynomial = _without(polynomial, i, 0 if i in sines else 1, work)
     return {powers: c for powers, c in polynomial.items() if c}
 
 
-def _eliminated(polynomial: Mapping[Powers, Fraction], work: Work) -> Iterable[dict[Powers, Fraction]]:
+def _eliminated(polynomial: Polynomial, work: Work) -> Iterable[Polynomial]:
     """The forms without s_i^2, or without c_i^2, whichever has fewer terms; first, and last for every angle."""
     size = len(next(iter(polynomial))) if polynomial else 0
     first = dict(polynomial)
@@ -147,7 +151,7 @@ def _eliminated(polynomial: Mapping[Powers, Fraction], work: Work) -> Iterable[d
     yield _merged(first)
 
 
-def _merged(polynomial: Mapping[Powers, Fraction]) -> dict[Powers, Fraction]:
+def _merged(polynomial: Polynomial) -> Polynomial:
     """c x - c x c_i^2 = c x s_i^2, and the other way round, one by one, or else all: 2 x - x c_1^2 - x c_2^2."""
     result = dict(polynomial)
     for powers in sorted(polynomial, key=lambda p: (sum(map(sum, p)), p)):
@@ -157,10 +161,10 @@ def _merged(polynomial: Mapping[Powers, Fraction]) -> dict[Powers, Fraction]:
     return result
 
 
-def _merge(result: dict[Powers, Fraction], powers: Powers, sides: Iterable[tuple[int, int]]) -> None:
+def _merge(result: Polynomial, powers: Powers, sides: Iterable[tuple[int, int]]) -> None:
     """Merge a term with those that have a further square of c_i or s_i, if these are its negative as a whole."""
     pairs: list[tuple[Powers, Powers]] = []
-    c = result.get(powers, Fraction(0))
+    c = result.get(powers, 0)
     for i, which in sides:
         partner, merged = (_squared(powers, i, k) for k in (which, 1 - which))
         if result.get(partner, 0) * c < 0 and merged not in result:
@@ -178,10 +182,10 @@ def _squared(powers: Powers, i: int, which: int) -> Powers:
     return (*powers[:i], (both[0], both[1]), *powers[i + 1 :])
 
 
-def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int, work: Work) -> dict[Powers, Fraction]:
+def _without(polynomial: Polynomial, i: int, which: int, work: Work) -> Polynomial:
     """The polynomial without squares of c_i (``which`` 0) or s_i (1)."""
     work.steps(sum(1 + powers[i][which] // 2 for powers in polynomial))
-    result: dict[Powers, Fraction] = {}
+    result: Polynomial = {}
     for powers, c in polynomial.items():
         both = powers[i]
         n, other = both[which], both[1 - which]
@@ -189,7 +193,7 @@ def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int, work: Wo
             # x^n = x^(n mod 2) (1 - y^2)^(n div 2)
             new = (n % 2, other + 2 * m) if which == 0 else (other + 2 * m, n % 2)
             key = (*powers[:i], new, *powers[i + 1 :])
-            value = result.get(key, Fraction(0)) + c * comb(n // 2, m) * (-1) ** m
+            value = result.get(key, 0) + c * (comb(n // 2, m) * (-1) ** m)
             if value:
                 result[key] = value
             else:
@@ -197,14 +201,14 @@ def _without(polynomial: Mapping[Powers, Fraction], i: int, which: int, work: Wo
     return result
 
 
-def _written(polynomial: Mapping[Powers, Fraction], basis: Sequence[Mode]) -> Waves:
+def _written(polynomial: Polynomial, basis: Sequence[Mode]) -> Waves:
     order = sorted(range(len(basis)), key=lambda i: angle_key(basis[i]))
     terms = []
     for powers, c in polynomial.items():
         waves: list[Wave] = []
         for i in order:
             waves += [(op, basis[i], n) for op, n in zip(("sin", "cos"), reversed(powers[i]), strict=True) if n]
-        terms.append((c, tuple(waves)))
+        terms.append((fraction(c), tuple(waves)))
     return tuple(sorted(terms, key=lambda term: wave_key(term[1])))
 
 

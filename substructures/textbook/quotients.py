@@ -15,8 +15,8 @@ from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, times
 from substructures.textbook.collect import content as content_of
 from substructures.textbook.collect import is_fraction, length
-from substructures.textbook.contents import Ring, divided, fraction, monomial_of
-from substructures.textbook.field import Field, to_fmpq
+from substructures.textbook.contents import Ring, divided, monomial_of
+from substructures.textbook.field import Field, fraction, to_fmpq
 from substructures.textbook.forces import Grouped, grouped
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.layout import Layout
@@ -101,7 +101,8 @@ class Quotients:
 
     def _core(self, poly: Any) -> Any:
         """A denominator without powers of atoms and of 1 + t^2."""
-        powers = [min(int(m[i]) for m in poly.monoms()) if i < self.size else 0 for i in range(len(poly.degrees()))]
+        lowest = list(map(min, zip(*poly.monoms(), strict=True)))[: self.size]
+        powers = [*map(int, lowest), *[0] * (len(poly.degrees()) - self.size)]
         poly = poly / self.field.context.term(exp_vec=tuple(powers))
         for n in range(len(self.angles)):
             unit = 1 + self.field.context.gen(self.size + n) ** 2

@@ -56,7 +56,7 @@ def answering(server: Server) -> set[str]:
     for _ in range(10):
         with contextlib.ExitStack() as opened:  # whoever has fewer takes the next
             for _ in range(4):
-                client = opened.enter_context(httpx2.Client(timeout=60))
+                client = opened.enter_context(httpx2.Client(timeout=60, verify=False))
                 text = client.get(f"{server.address}/metrics").text
                 found |= set(re.findall(r'process_start_time_seconds\{process="(\d+)"\}', text))
         if len(found) == COUNT:
@@ -82,7 +82,9 @@ class Writer(threading.Thread):
     def is_stored(self, name: str) -> bool:
         try:
             headers = {"Idempotency-Key": name}
-            answer = httpx2.post(f"{self.server.address}/v1/trees", json={**TREE, "name": name}, headers=headers)
+            answer = httpx2.post(
+                f"{self.server.address}/v1/trees", json={**TREE, "name": name}, headers=headers, verify=False
+            )
         except httpx2.HTTPError:
             return False
         if answer.status_code == 201:
@@ -113,7 +115,7 @@ def test_writes_of_all_processes_while_they_are_killed(kind: str, tmp_path: Path
                 until(lambda count=count: sum(len(writer.acknowledged) for writer in writers) > count + 10)
                 os.kill(killed, signal.SIGKILL)
                 start = time.monotonic()
-                assert httpx2.get(f"{server.address}/readyz", timeout=60).status_code == 200
+                assert httpx2.get(f"{server.address}/readyz", timeout=60, verify=False).status_code == 200
                 assert len(server.serving()) < COUNT or time.monotonic() - start < 10
                 until(lambda killed=killed: len(server.serving()) == COUNT and killed not in server.serving())
                 until(lambda: answering(server) == {"0", "1"})

@@ -44,7 +44,7 @@ def server(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Server]:
 
 @pytest.fixture
 def http(server: Server) -> Iterator[httpx2.Client]:
-    with httpx2.Client(base_url=server.address, timeout=60) as client:
+    with httpx2.Client(base_url=server.address, timeout=60, verify=False) as client:
         assert client.post("/v1/substructures", json=PENDULUM).status_code in (200, 201)
         assert client.post(TREES, json=TREE).status_code in (200, 201)
         yield client
@@ -153,7 +153,7 @@ def asked(server: Server) -> list[threading.Thread]:
 
     def ask(path: str, body: Any) -> None:
         with contextlib.suppress(httpx2.HTTPError):
-            httpx2.post(server.address + path, json=body, timeout=60)
+            httpx2.post(server.address + path, json=body, timeout=60, verify=False)
 
     return [threading.Thread(target=ask, args=HOSTILE[what]) for what in HOSTILE for _ in range(3)]
 
@@ -169,7 +169,7 @@ def patient(tmp_path: Path) -> Server:
 
 def test_told_to_end_it_ends_whatever_is_done(patient: Server) -> None:
     """In ten seconds, with nothing left behind, while it derives, couples, compares and simulates; reads go on."""
-    with running([patient]), httpx2.Client(base_url=patient.address, timeout=60) as client:
+    with running([patient]), httpx2.Client(base_url=patient.address, timeout=60, verify=False) as client:
         assert client.post("/v1/substructures", json=PENDULUM).status_code == 201
         assert client.post(TREES, json=TREE).status_code == 201
         threads = asked(patient)
@@ -202,7 +202,7 @@ def test_what_takes_too_long_is_told_as_that(tmp_path: Path) -> None:
     one = Server(f"sqlite:///{tmp_path / 'x.db'}", tmp_path / "log", ("--workers", "1"))
     one.environment |= {"SUBSTRUCTURES_LIMIT_SYNC_SECONDS": "0.5", "SUBSTRUCTURES_LIMIT_SYNC_NODES": "10000000"}
     one.environment |= {"SUBSTRUCTURES_LIMIT_PROGRAM_NODES": "10000000"}  # not refused for its size before that
-    with running([one]), httpx2.Client(base_url=one.address, timeout=60) as client:
+    with running([one]), httpx2.Client(base_url=one.address, timeout=60, verify=False) as client:
         path, body = HOSTILE["compare"]
         late = client.post(path, json=body)
         assert (late.status_code, late.json()["code"], late.json()["limit"]) == (503, "took-too-long", 0.5), late.text
@@ -219,7 +219,7 @@ def test_each_of_several_processes_has_its_own(tmp_path: Path) -> None:
         until(lambda: len(one.computing()) >= len(one.serving()) == 2)
 
         def trees(k: int) -> int:
-            with httpx2.Client(base_url=one.address, timeout=60) as client:
+            with httpx2.Client(base_url=one.address, timeout=60, verify=False) as client:
                 client.post("/v1/substructures", json=PENDULUM)
                 found = [client.post(TREES, json={"name": f"t{k}-{i}", "instances": chain(8)}) for i in range(5)]
                 return sum(each.status_code == 201 for each in found)
