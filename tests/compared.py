@@ -64,10 +64,11 @@ def random_case(seed: int, kind: Kind, closures: Any = None, gravity: Any = GRAV
     if change is not None:
         definition = change(definition)
     given = closures(rng, [b["name"] for b in definition["bodies"]]) if closures else []
+    if not given:
+        return case_of(model_of(definition, gravity), definition, rng, given, gravity)
     one = {"name": "x", "definition": definition}
     document = {"name": "t", "gravity": list(gravity), "instances": [one], "closures": given}
-    parts = {"x": derive(Definition.read(definition))}
-    model = couple(TreeSpec.read(document), parts) if given else model_of(definition, gravity)
+    model = couple(TreeSpec.read(document), {"x": derive(Definition.read(definition))})
     return case_of(model, definition, rng, given, gravity)
 
 
