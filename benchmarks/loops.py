@@ -18,7 +18,7 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reductions import REDUCTIONS
 from substructures.analysis.from_fields import motion_arguments
-from substructures.analysis.motion.integrators.compiled_steps import tableau
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.simulate import simulate
 from substructures.compile.motion import CompiledRun
@@ -65,7 +65,7 @@ def per_call(model: Model, request: dict[str, Any], calls: int = 100_000) -> flo
     rates = s.compiled(s.independent_rows())
     if rates is None:
         return np.nan
-    run, y = CompiledRun(tableau("DOP853"), rates, (1.0, 1.0)), np.concatenate((state.q, state.qd, (0.0,)))
+    run, y = CompiledRun(TABLEAUX["DOP853"], rates, (1.0, 1.0)), np.concatenate((state.q, state.qd, (0.0,)))
     evaluations, start = 0, process_time()
     while evaluations < calls:
         run.begin(0.0, y, 1.0, 1e-6)

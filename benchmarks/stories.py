@@ -195,7 +195,7 @@ def ran(listener: Listener, part: Any, limits: Any) -> set[str]:
     version = found("StoredVersion")(part.name, part.definition.digest, part.program.digest, own)
     blobs = {version.digest: part.definition.canonical(), version.program: part.program.to_bytes()}
     library = SimpleNamespace(version=lambda _: version, tree=lambda _: None, catalogue=list, blob=blobs.get)
-    (expanded,) = kinds.expand("assemble", {"items": [TREE]}, limits, library)
+    (expanded,) = kinds.expand(kinds.submission({"kind": "assemble", "items": [TREE]}), limits, library)
     resolved = documents.read_json(documents.write_json(kinds.resolve("assemble", expanded, library)[0]))
     sent = wire.work_frame(engine.Work("1", "assemble", resolved, blobs, engine.Budget(60.0, 2**31))).to_bytes()
     with listener.story() as calls:

@@ -16,7 +16,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.integrators.compiled_steps import tableau
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.graph import Graph
@@ -67,7 +67,7 @@ class LaneMotions:
 @lru_cache(maxsize=8)
 def sums(method: str) -> tuple[Kernel, ...]:
     """y + h sum_j a_sj k_j of every stage, then of the step, then both estimates of its error, element by element."""
-    made = tableau(method)
+    made = TABLEAUX[method]
     steps = [*(made.a[s][:s] for s in range(1, made.stages)), made.b]
     errors = [row for row in (made.e, made.e3) if any(row)]
     return (*(_weighted(row, is_step=True) for row in steps), *(_weighted(row, is_step=False) for row in errors))
@@ -86,7 +86,7 @@ class _Memory:
     """Arrays of all lanes, and what is bound to them: x' of every stage and the sums between."""
 
     def __init__(self, rates: LaneRates, method: str, lanes: int, size: int) -> None:
-        made = tableau(method)
+        made = TABLEAUX[method]
         self.stages, self.exponent = made.stages, made.exponent
         self.k = np.zeros((made.stages + 1, lanes, size))
         self.y, self.new, self.step = np.zeros((3, lanes, size))

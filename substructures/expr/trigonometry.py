@@ -70,22 +70,21 @@ def _cosine_of_twelfths(graph: Graph, n: int) -> Expr:
     return [*values, quarter * (root6 - root2), graph.zero][n]
 
 
-def _reduced(x: Expr) -> tuple[Expr, dict[Expr, Fraction], int]:
-    """x without its multiples of pi/2 (formula and atoms), and their number."""
+def _reduced(x: Expr) -> tuple[Expr, LinearForm, int]:
+    """x without its multiples of pi/2, as a formula and as a linear form, and their number."""
     terms, turns = linear_form(x)
     quarters = turns * 2
     if not terms or quarters.denominator != 1 or not quarters:
-        return x, terms, 0
+        return x, (terms, turns), 0
     graph = x.graph
     rest = graph.sum(atom * graph.number(factor) for atom, factor in terms.items())
-    return rest, terms, int(quarters) % 4
+    return rest, (terms, Fraction(0)), int(quarters) % 4
 
 
 def cos_sin(x: Expr) -> tuple[Expr, Expr]:
     """(cos x, sin x), exact for multiples of pi/12; multiples of pi/2 in a sum are taken out."""
     graph = x.graph
-    rest, terms, quarters = _reduced(x)
-    turns = linear_form(rest)[1]
+    rest, (terms, turns), quarters = _reduced(x)
     if not terms:
         exact = _exact(graph, turns)
         if exact is not None:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from analysis_models import catalogue_model, shipped
 from ball_trees import random_balls, random_position
 from catalogue_entries import CHAINS
@@ -21,6 +22,7 @@ from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
 from substructures.analysis.motion.integrators.steppers import scipy_stepper, within
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Interpolation
 from substructures.analysis.motion.right_hand_side import RightHandSide
@@ -67,6 +69,26 @@ def test_the_steps_of_scipy(method: str, longest: float | None, is_driven: bool)
             np.testing.assert_allclose(states[0], states[1], rtol=1e-8, atol=1e-8)
     assert ours.t == span[1]
     assert steps > 10
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+def test_the_coefficients_of_scipy(method: str) -> None:
+    """To the bit; and the first steps that it chooses from states of all sizes."""
+    theirs: Any = getattr(scipy.integrate, method)
+    ours = TABLEAUX[method]
+    for s in range(ours.stages):
+        assert ours.a[s][:s] == tuple(theirs.A[s][:s])
+    both = (theirs.E5 if hasattr(theirs, "E5") else theirs.E, getattr(theirs, "E3", np.zeros(ours.stages + 1)))
+    for found, there in zip((ours.b, ours.c, ours.e, ours.e3), (theirs.B, theirs.C, *both), strict=True):
+        assert found == tuple(there)
+    f, x = function(catalogue_model("acrobot"), {}, (0.0, 1.0))
+    for size in (0.0, 1e-7, 1e-3, 1.0, 30.0):
+        for end, longest in ((1.0, None), (1e-9, None), (0.5, 1e-3)):
+            made = [of(method, 1e-9, 1e-11, longest)(f, 0.0, size * x, end) for of in (scipy_stepper, compiled_stepper)]
+            assert made[1].h_abs == made[0].h_abs
+            assert made[1].nfev == made[0].nfev
+    with pytest.raises(ValueError, match="finite"):
+        compiled_stepper(method, 1e-9, 1e-11)(f, 0.0, x * np.nan, 1.0)
 
 
 @pytest.mark.parametrize("name", deep(*sorted({*CHAINS} - RIGID)))

@@ -15,9 +15,12 @@ from rolling_bodies import BLADE, FLOOR, FORWARD, R, disc, sleigh
 from simulated import simulated
 
 from substructures import Model
+from substructures.analysis.equations import kernels
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import ClosedMotion, Event, FixedStep, Integrator, Outputs, simulate
 from substructures.analysis.verdict import Check
+from substructures.compile import Kernel
+from substructures.expr.program import Program
 from substructures.quantities.numbers.evaluation import evaluate
 
 TREES: dict[str, tuple[str, Plain]] = {
@@ -185,3 +188,26 @@ def test_rolling_motions(form: str) -> None:
     assert_energy_is_stated(model, motion)
     across = np.cos(motion.q[:, 2]) * motion.qd[:, 1] - np.sin(motion.q[:, 2]) * motion.qd[:, 0]
     assert np.abs(across).max() <= stated(motion, "constraints").worst + 1e-15
+
+
+def test_verdicts_of_many_motions_are_by_a_kernel(monkeypatch: pytest.MonkeyPatch) -> None:
+    """From the motion on at which interpreting has taken as long as compiling; the numbers are the same."""
+    model, made = catalogue_model("double-pendulum"), list[int]()
+    compile_it = kernels.program_kernel
+
+    def noted(source: Program) -> Kernel:
+        made.append(len(source))
+        return compile_it(source)
+
+    monkeypatch.setattr(kernels, "program_kernel", noted)
+    monkeypatch.setattr(kernels, "INTERPRETED", kernels.LINE / 8)
+    monkeypatch.setattr(kernels, "COMPILED", 0.0)
+    monkeypatch.setattr(kernels, "VALUE", 0.0)
+    kernels._spent.cache_clear()
+    motions = [simulated(model, q=[0.3, 0.2], span=[0, 1], count=11) for _ in range(12)]
+    assert len(made) == 4
+    first, last = motions[0], motions[-1]
+    assert [c.name for c in first.checks] == [c.name for c in last.checks]
+    assert last.is_right
+    for name, series in first.series.items():
+        np.testing.assert_allclose(last.series[name], series, rtol=1e-13, atol=1e-13)

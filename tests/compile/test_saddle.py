@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from substructures.analysis.motion.integrators.compiled_steps import tableau
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.array import Array
 from substructures.compile import target
 from substructures.compile.motion import CompiledRates, CompiledRun, SaddlePoint
@@ -17,7 +17,7 @@ def solved(saddle: SaddlePoint, *rows: list[int]) -> list[Array]:
     """q'' with these rows, one choice after the other."""
     n = len(saddle.forces)
     rates = CompiledRates((), np.zeros(1), np.zeros((1, 2 * n)), np.full((1, n), np.nan), None, None, saddle)
-    run, found = CompiledRun(tableau("RK23"), rates, (1.0, 1.0)), []
+    run, found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)), []
     for chosen in rows:
         saddle.rows[:] = chosen
         run.begin(0.0, np.zeros(2 * n), 0.0, 1.0)

@@ -79,7 +79,7 @@ STARTS = {
     "export t.json --target c --out t.zip": HERE | SCIPY | ANALYSES | MOTIONS | {"llvmlite"},
     "analyse t.json metric": HERE | SCIPY | MOTIONS | {"llvmlite", "substructures.analysis.stability"},
     "analyse t.json first_integrals": HERE | SCIPY | MOTIONS | {"substructures.analysis.stability"},
-    "simulate t.json m.json": HERE | ANALYSES | {"service.models.printing"},
+    "simulate t.json m.json": HERE | SCIPY | ANALYSES | {"service.models.printing"},
     "same d.json d.json": (HERE - ROBOTS) | SCIPY | ANALYSES | MOTIONS,
 }
 DOCUMENTS = {

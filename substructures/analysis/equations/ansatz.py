@@ -165,10 +165,13 @@ def _waves(f: ModelFormulas, exprs: Iterable[Expr]) -> list[Expr]:
             if term.trig and known and dict(term.angle) not in angles:
                 angles.append(dict(term.angle))
     waves = [f.graph.one]
+    tried: set[frozenset[tuple[Expr, Any]]] = {frozenset()}
     for x, y, sign in product(angles, angles, (1, -1)):
         total = {a: x.get(a, 0) + sign * y.get(a, 0) for a in (*x, *y)}
         angle = [(a, c) for a, c in total.items() if c]
-        waves += [_wave(trig, angle, f) for trig in ("cos", "sin") if angle]
+        if frozenset(angle) not in tried:
+            tried |= {frozenset(angle), frozenset((a, -c) for a, c in angle)}
+            waves += [_wave(trig, angle, f) for trig in ("cos", "sin")]
     # -sin(x) is no other function than sin(x)
     unique: dict[Expr, None] = {}
     for wave in waves:

@@ -232,12 +232,10 @@ class _Search:
     def _constant(self, expr: Expr) -> Expr | None:
         """The value of a formula that depends on parameters only, else None."""
         states = frozenset(s.name for s in self.f.symbols.values() if s.kind != "parameter")
-        if self.vanishes.smooth.varies(expr, states):
-            return None
         if not depends_on([expr], states):
             return expr
         # a jump has no derivative that tells of it
-        if corners([expr]):
+        if self.vanishes.smooth.varies(expr, states) or corners([expr]):
             return None
         # dx = 0 for all changes of the state
         seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}

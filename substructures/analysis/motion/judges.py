@@ -11,11 +11,11 @@ import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.integral import FirstIntegrals, Integral
-from substructures.analysis.equations.kernels import Known, known_model, program_kernel
+from substructures.analysis.equations.kernels import Known, evaluated, known_model, program_kernel
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.graph import Graph
-from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.tree.model import Model
@@ -56,7 +56,7 @@ class MotionStates:
         """Outputs of a program along the motions, (..., K) and their own axes."""
         values, count = self.symbols(model), self.t.size
         if self.t.ndim == 1:
-            flat = interpret_in_blocks(source, values, list(names), count)
+            flat = evaluated(source, values, names, count)
         else:
             flat = program_kernel(source.select(list(names))).evaluate(values, names)
         axes = {name: source.outputs[name].shape for name in names}

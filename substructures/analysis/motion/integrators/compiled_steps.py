@@ -3,19 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, cached_property
+from functools import cached_property
 from typing import Any, Literal, Protocol, runtime_checkable
 
 import numpy as np
-import scipy
 
 from substructures.analysis.motion.integrators.steppers import LEAST_TOLERANCE, Stepper, scipy_stepper
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.array import Array
-from substructures.compile.motion import FAILED, FINISHED, HEAD, RUNNING, CompiledRates, CompiledRun, Tableau
+from substructures.compile.motion import FAILED, FINISHED, HEAD, RUNNING, CompiledRates, CompiledRun
 
 #: steps that are tried in one call of machine code: a few milliseconds, then whoever watches the progress is told
 MOST = 256
-EXPLICIT = ("DOP853", "RK45", "RK23")
+EXPLICIT = tuple(TABLEAUX)
+NOT_FINITE = "All components of the initial state `y0` must be finite."
 TOO_SMALL = "Required step size is less than spacing between numbers."
 
 
@@ -27,17 +28,6 @@ class Compiled(Protocol):
         """As it is now; None where it is not."""
 
 
-@cache
-def tableau(method: str) -> Tableau:
-    """The coefficients of one of EXPLICIT, which are SciPy's."""
-    made: Any = getattr(scipy.integrate, method)
-    e = getattr(made, "E5", None)
-    e, e3 = (made.E, np.zeros(made.n_stages + 1)) if e is None else (e, made.E3)
-    rows = tuple(map(tuple, np.asarray(made.A).tolist()))
-    b, c, e, e3 = (tuple(np.asarray(x).tolist()) for x in (made.B, made.C, e, e3))
-    return Tableau(rows, b, c, e, e3, -1 / (made.error_estimator_order + 1))
-
-
 def rates_of(f: Any) -> CompiledRates | None:
     """The calls of kernels that a function consists of; None where it does not."""
     return f.compiled() if isinstance(f, Compiled) else None
@@ -46,16 +36,41 @@ def rates_of(f: Any) -> CompiledRates | None:
 def compiled_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
     """The same as scipy_stepper, with machine code where an explicit method has a right-hand side of kernels."""
     plain = scipy_stepper(method, rtol, atol, max_step)
+    limits, most = (max(rtol, LEAST_TOLERANCE), atol), np.inf if max_step is None else max_step
 
     def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
-        """A stepper of f from x at start to end."""
-        first, rates = plain(f, start, x, end, **first_step), rates_of(f)
+        """A stepper of f from x at start to end. Raises ValueError for a state that is not finite."""
+        rates = rates_of(f)
         if rates is None or end <= start:
-            return first
-        limits = (max(rtol, LEAST_TOLERANCE), atol), np.inf if max_step is None else max_step
-        return CompiledStepper(first, end, lambda most: CompiledRun(tableau(method), rates, *limits, most))
+            return plain(f, start, x, end, **first_step)
+        if not np.isfinite(x).all():
+            raise ValueError(NOT_FINITE)
+        made = TABLEAUX[method]
+        h = first_step.get("first_step") or _first_step(f, (start, end), x, made.exponent, limits, most)
+        evaluations = 1 if first_step else 2
+        return CompiledStepper(
+            f, method, evaluations, (start, x, end, h), lambda tried: CompiledRun(made, rates, limits, most, tried)
+        )
 
     return make if method in EXPLICIT else plain
+
+
+def _first_step(
+    f: Any, span: tuple[float, float], x: Array, exponent: float, limits: tuple[float, float], most: float
+) -> float:
+    """The size of the first step, as SciPy chooses it (Hairer, Norsett, Wanner, section II.4)."""
+
+    def size(y: Array) -> float:
+        return float(np.linalg.norm(y / scale) / len(y) ** 0.5)
+
+    start, length = span[0], abs(span[1] - span[0])
+    scale = limits[1] + np.abs(x) * limits[0]
+    slope = np.asarray(f(start, x))
+    d0, d1 = size(x), size(slope)
+    h0 = min(1e-6 if d0 < 1e-5 or d1 < 1e-5 else 0.01 * d0 / d1, length)
+    d2 = size(np.asarray(f(start + h0, x + h0 * slope)) - slope) / h0
+    h1 = max(1e-6, h0 * 1e-3) if d1 <= 1e-15 and d2 <= 1e-15 else (0.01 / max(d1, d2)) ** -exponent
+    return min(100 * h0, h1, length, most)
 
 
 class CompiledStepper:
@@ -63,12 +78,19 @@ class CompiledStepper:
     scipy.integrate.OdeSolver.
     """
 
-    def __init__(self, first: Any, end: float, run: Callable[[int], CompiledRun]) -> None:
-        """``first``: SciPy's at the start, which chooses the first step; ``run``: of so many steps in a call."""
-        self.fun, self.nfev, self._plain = first.fun, first.nfev, type(first)
+    def __init__(
+        self,
+        f: Any,
+        method: str,
+        evaluations: int,
+        first: tuple[float, Array, float, float],
+        run: Callable[[int], CompiledRun],
+    ) -> None:
+        """``evaluations`` until now; ``first``: as of ``begin``; ``run``: of so many steps in a call."""
+        self.fun, self.nfev, self._method = f, evaluations, method
         self._make, self._run = run, run(MOST)
         self.status: Literal["running", "finished", "failed"]
-        self.begin(float(first.t), first.y, end, float(first.h_abs))
+        self.begin(*first)
 
     def begin(self, t: float, y: Array, end: float, first_step: float) -> None:
         """From another state on."""
@@ -107,7 +129,7 @@ class CompiledStepper:
         """SciPy's stepper that made the last step, as its polynomial may be wanted."""
         h = self.t - self.t_old
         # any error is taken
-        solver = self._plain(self.fun, self.t_old, self.y_old, self.t, rtol=1.0, atol=1.0, first_step=h)
+        solver = scipy_stepper(self._method, 1.0, 1.0)(self.fun, self.t_old, self.y_old, self.t, first_step=h)
         solver.step()
         return solver
 

@@ -4,13 +4,13 @@ The interpolating polynomials of one-step methods are of lower order than their 
 for RK45, 3 beside 5 for Radau), and nothing controls their errors: first integrals drift ten times as far between the
 steps as at their ends. The polynomials of multistep methods are those that the method itself goes on with.
 
-SciPy loads its parts when one of their names is first used: scipy.integrate, with 0.3 s of a start, by a motion.
+SciPy loads its parts when one of their names is first used: scipy.integrate, with 0.3 s of a start, by a motion whose
+steps are not machine code.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache, partial
 from typing import Any
 
 import numpy as np
@@ -35,7 +35,13 @@ WEIGHTS = np.where(np.arange(10) % 9, 1.0, 0.5) * (-1.0) ** np.arange(10)
 def scipy_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
     """One of METHODS with its tolerances; smaller relative ones are out of reach of doubles."""
     most = np.inf if max_step is None else max_step
-    return partial(getattr(scipy.integrate, method), rtol=max(rtol, LEAST_TOLERANCE), atol=atol, max_step=most)
+
+    def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
+        """A stepper of f from x at start to end. Raises ValueError for a state that is not finite."""
+        solver = getattr(scipy.integrate, method)
+        return solver(f, start, x, end, rtol=max(rtol, LEAST_TOLERANCE), atol=atol, max_step=most, **first_step)
+
+    return make
 
 
 def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[float], Array]:
@@ -43,7 +49,7 @@ def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[fl
 
     What is returned raises ArithmeticError where the method fails.
     """
-    if isinstance(solver, _one_step()):
+    if type(solver).__name__ in ONE_STEP:
         return _Within(solver, make, solver.t if end is None else end)
     found: Callable[[float], Array] = solver.dense_output()
     return found
@@ -52,15 +58,10 @@ def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[fl
 def roughly_within(solver: Any) -> Callable[[Array], Array]:
     """States (K, N) at times (K,) within the last step by the stepper's own polynomial."""
     found = getattr(solver, "rough_output", solver.dense_output)()
-    if isinstance(found, scipy.integrate.DenseOutput):
+    if hasattr(found, "t_min"):  # SciPy's
         return lambda times: np.asarray(found(times).T)
     # Taylor's output writes into the same array again
     return lambda times: np.array([np.array(found(t)) for t in times.tolist()])
-
-
-@cache
-def _one_step() -> tuple[Any, ...]:
-    return tuple(getattr(scipy.integrate, name) for name in ONE_STEP)
 
 
 class _Within:
