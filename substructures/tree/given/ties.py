@@ -101,7 +101,7 @@ TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
     *("parameter_sensitivity", "equivalences", "columns of equilibria and linearisations", "columns of reach"),
-    *("optimal-parameters", "first_integrals", *ORBITS),
+    *("optimal-parameters", "first_integrals", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
