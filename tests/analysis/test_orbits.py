@@ -14,7 +14,7 @@ from scipy.special import ellipk
 from substructures import couple, derive
 from substructures.analysis.drawings import draw_section
 from substructures.analysis.motion.problems.problem import Integrator
-from substructures.analysis.orbits import flow as flows
+from substructures.analysis.motion.variation import Variation
 from substructures.analysis.orbits import search
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
@@ -220,14 +220,14 @@ def test_exponents_add_up_to_the_damping(duffing: Model) -> None:
 
 
 def test_a_wrong_derivative_is_seen(duffing: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = flows.Variation.__call__
+    right = Variation.__call__
 
     def wrong(self: Any, t: float, flat: Any) -> Any:
         found = right(self, t, flat)
         found[3:] *= 1.01  # of S, not of x
         return found
 
-    monkeypatch.setattr(flows.Variation, "__call__", wrong)
+    monkeypatch.setattr(Variation, "__call__", wrong)
     exponents = lyapunov_exponents(duffing, [0.5], 20, inputs={"tau.p.x": "0.4*cos(t)"})
     assert exponents.is_right is False
     (orbit,) = periodic_orbits(duffing, [1.0], Shooting(np.pi), inputs={"tau.p.x": "0.1*cos(2*t)"}).found

@@ -172,7 +172,7 @@ def test_best_parameters(tied: TestClient) -> None:
 
 
 REFUSED: list[tuple[str, dict[str, Any]]] = [
-    ("periodic-orbits", {"q": [0, 0, 0], "period": 1}),
+    ("curvatures", {"q": [0, 0, 0]}),
     ("cost-gradients", {"q": [0, 0, 0], "cost": {"running": "t"}, "horizon": 1}),
     ("regulators", {"q": [0, 0, 0]}),
     ("loop-states", {"q": [0, 0, 0]}),
@@ -239,8 +239,8 @@ def test_jobs_take_it() -> None:
                 "items": [
                     {
                         "tree": "sleigh",
-                        "analysis": "poincare-sections",
-                        "request": {"q": [0, 0, 0], "quantity": "s.x", "duration": 1},
+                        "analysis": "curvatures",
+                        "request": {"q": [0, 0, 0]},
                     }
                 ]
             },

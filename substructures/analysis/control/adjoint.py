@@ -14,9 +14,10 @@ for every z, at fixed q'' and mu. Closures phi(q) = 0 with G = dphi/dq and c = G
     g q'' + Gamma q' q' - Q - G^T rho = 0,  G q'' + c = 0         g mu + G^T nu = lambda_qd,  G mu = 0
     lambda_qd . dq''/dz = -mu . d(ID - G^T rho)/dz - nu . d(G q'' + c)/dz
 
-so that the gradient is that of motions on the closures for states that stay there. One walk in reverse mode over ID and
-l gives the derivatives by all states, controls and parameters together, for a small multiple of the operations of
-inverse dynamics.
+so that the gradient is that of motions on the closures for states that stay there. With ball joints q are the m numbers
+of a state, quaternions among them, q' = r(q, v) of these stands in H, and its derivatives in dH/dz. One walk in reverse
+mode over ID and l gives the derivatives by all states, controls and parameters together, for a small multiple of the
+operations of inverse dynamics.
 
 ===================  =========  ======================================================================
 output               shape      meaning
@@ -25,17 +26,18 @@ metric               n n        g; solves g q'' = force and g mu = lambda_qd
 force                n          Q - Gamma q' q'
 running_cost                    l
 hamiltonian                     H
-adjoint_q            n          lambda_q' = -dH/dq
+adjoint_q            m          lambda_q' = -dH/dq, m = n but for ball joints
 adjoint_qd           n          lambda_qd' = -dH/dq'
 control_gradient     m          dH/du, in the order of the controls
 parameter_gradient   r          dH/dp, in the order of the varied parameters
 terminal_cost                   phi
-terminal_q           n          dphi/dq
+terminal_q           m          dphi/dq
 terminal_qd          n          dphi/dq'
 terminal_parameters  r          dphi/dp
 ===================  =========  ======================================================================
 
-With closures also ``closure.jacobian`` G (k, n) and ``closure.acceleration`` c (k,).
+With closures also ``closure.jacobian`` G (k, n) and ``closure.acceleration`` c (k,), with ball joints
+``position_rates`` r (m,).
 
 Symbols beside those of the model: accelerations ``x.q1''``, costates ``lambda.x.q1`` (of q) and ``lambda.x.q1'`` (of
 q'), ``mu.x.q1``, of each row of closures ``rho.loop.x`` and ``nu.loop.x``, and ``lambda.0``, which is 1 except where
@@ -65,6 +67,8 @@ from substructures.tree.model import Model
 
 ID = "inverse_dynamics"
 WEIGHT = "lambda.0"
+#: r of ball joints
+CHANGES = "position_rates"
 #: G and c of closures
 HOLDING = ("closure.jacobian", "closure.acceleration")
 #: among what is varied it stands for the horizon, on which all times but the first depend
@@ -76,10 +80,13 @@ TERMINAL = ("terminal_cost", "terminal_q", "terminal_qd", "terminal_parameters")
 
 @dataclass(frozen=True, repr=False)
 class AdjointEquations:
-    """The program of the table above, and the names of what it is written in; ``rows``: of closures, closure.row."""
+    """The program of the table above, and the names of what it is written in; ``positions``: of the numbers of q, the
+    coordinates but for ball joints; ``rows``: of closures, closure.row.
+    """
 
     program: Program
     coordinates: tuple[str, ...]
+    positions: tuple[str, ...]
     controls: tuple[str, ...]
     varied: tuple[str, ...]
     rows: tuple[str, ...] = ()
@@ -95,7 +102,8 @@ class AdjointEquations:
     @property
     def motion(self) -> tuple[str, ...]:
         """The outputs that accelerations and the cost follow from."""
-        return (*MOTION, *HOLDING) if self.rows else MOTION
+        turning = (CHANGES,) if self.positions != self.coordinates else ()
+        return (*MOTION, *turning, *HOLDING) if self.rows else (*MOTION, *turning)
 
 
 def adjoint_equations(
@@ -116,13 +124,12 @@ def adjoint_equations(
     needed, metric, force = _equations(model, source, scope.graph)
     own = _Multipliers.of(model, scope)
     missing, opened, holding = _closed(model, scope, own.rho, needed)
-    n, states = model.dof, [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
-    # d(lambda_0 l - mu . (ID - G^T rho) - nu . (G q'' + c))/dz for every z of q, q', u, p in one walk
-    slope = pullback(
-        [running, *missing, *opened], [own.weight, *(-x for x in (*own.mu, *own.nu))], [*states, *controls, *varied]
-    )
-    moved = [scope.names[f"{name}{prime}"] for prime in ("'", "''") for name in model.coordinates]
-    pairs = zip(own.costates, moved, strict=True)
+    n, m, states = model.dof, len(model.positions), [*model.positions, *(f"{name}'" for name in model.coordinates)]
+    changes, turning = _changes(model, scope)
+    # d(lambda_0 l - mu . (ID - G^T rho) - nu . (G q'' + c) + lambda_q . r)/dz for every z of q, q', u, p in one walk
+    weights = [own.weight, *(-x for x in (*own.mu, *own.nu)), *own.costates[: len(turning)]]
+    slope = pullback([running, *missing, *opened, *turning], weights, [*states, *controls, *varied])
+    pairs = zip(own.costates, [*changes, *(scope.names[f"{name}''"] for name in model.coordinates)], strict=True)
     outputs = {
         "metric": metric,
         "force": force,
@@ -130,24 +137,34 @@ def adjoint_equations(
         # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
         "hamiltonian": Formulas((), {(): own.weight * running + scope.graph.sum(x * y for x, y in pairs)}),
         # -dH/dq, and -dH/dq' = -(lambda_q + slope)
-        "adjoint_q": array((n,), lambda a: -slope[a]),
-        "adjoint_qd": array((n,), lambda a: -(own.costates[a] + slope[n + a])),
-        "control_gradient": array((len(controls),), lambda i: slope[2 * n + i]),
-        "parameter_gradient": array((len(varied),), lambda i: slope[2 * n + len(controls) + i]),
+        "adjoint_q": array((m,), lambda a: -slope[a]),
+        "adjoint_qd": array((n,), lambda a: -slope[m + a] if turning else -(own.costates[a] + slope[n + a])),
+        "control_gradient": array((len(controls),), lambda i: slope[m + n + i]),
+        "parameter_gradient": array((len(varied),), lambda i: slope[m + n + len(controls) + i]),
     } | holding
-    outputs |= _terminal(terminal, [*states, *varied], n, scope.graph)
+    outputs |= {CHANGES: array((m,), turning.__getitem__)} if turning else {}
+    outputs |= _terminal(terminal, [*states, *varied], (m, n), scope.graph)
     result = _certified(program(scope.graph, outputs, scope.symbols), model, cost, (controls, varied), own)
-    return AdjointEquations(result, model.coordinates, tuple(controls), tuple(varied), own.labels)
+    return AdjointEquations(result, model.coordinates, model.positions, tuple(controls), tuple(varied), own.labels)
 
 
-def _terminal(phi: Expr, names: Sequence[str], n: int, graph: Graph) -> dict[str, Formulas]:
-    """phi, and dphi/d(q, q', p) for these ``names``."""
-    end = pullback([phi], [graph.one], names)
+def _changes(model: Model, scope: Scope) -> tuple[list[Expr], list[Expr]]:
+    """q', and with ball joints r once more, whose derivatives are part of dH/dz."""
+    if not model.balls:
+        return [scope.names[f"{name}'"] for name in model.coordinates], []
+    found = replay(model.program, scope.graph, {}, [CHANGES])[CHANGES].entries
+    changes = [scope.graph.lift(found.get((k,), 0)) for k in range(len(model.positions))]
+    return changes, changes
+
+
+def _terminal(phi: Expr, names: Sequence[str], sizes: tuple[int, int], graph: Graph) -> dict[str, Formulas]:
+    """phi, and dphi/d(q, q', p) for these ``names``; ``sizes``: of q and q'."""
+    end, (m, n) = pullback([phi], [graph.one], names), sizes
     return {
         "terminal_cost": Formulas((), {(): phi}),
-        "terminal_q": array((n,), lambda a: end[a]),
-        "terminal_qd": array((n,), lambda a: end[n + a]),
-        "terminal_parameters": array((len(names) - 2 * n,), lambda i: end[2 * n + i]),
+        "terminal_q": array((m,), lambda a: end[a]),
+        "terminal_qd": array((n,), lambda a: end[m + a]),
+        "terminal_parameters": array((len(names) - m - n,), lambda i: end[m + n + i]),
     }
 
 
@@ -159,16 +176,16 @@ def _certified(
     return certified(
         made,
         model,
-        adjoint(names[0], texts, names[1], own.labels),
+        adjoint(names[0], texts, names[1], own.labels, model.positions),
         "adjoint equations",
-        needs=(*NEEDS, HOLDING[1]) if own.labels else NEEDS,
+        needs=(*NEEDS, HOLDING[1], CHANGES),
         more=dict.fromkeys(own.names, "input"),
     )
 
 
 @dataclass(frozen=True)
 class _Multipliers:
-    """Symbols of the adjoint: costates of q and q' (2 n), mu (n), rho and nu of the rows ``labels`` of closures, and
+    """Symbols of the adjoint: costates of q and q' (m + n), mu (n), rho and nu of the rows ``labels`` of closures, and
     lambda_0.
     """
 
@@ -184,7 +201,7 @@ class _Multipliers:
     def of(cls, model: Model, scope: Scope) -> _Multipliers:
         """Declared in the scope."""
         labels = tuple(f"{closure.name}.{row}" for closure in model.closures for row in closure.rows)
-        states = [f"{name}{prime}" for prime in ("", "'") for name in model.coordinates]
+        states = [*model.positions, *(f"{name}'" for name in model.coordinates)]
         groups = (("lambda", states), ("mu", model.coordinates), ("rho", labels), ("nu", labels))
         names = [[f"{prefix}.{name}" for name in some] for prefix, some in groups]
         costates, mu, rho, nu = ([scope.declare(name, "input") for name in some] for some in names)

@@ -20,10 +20,12 @@ from substructures.analysis.control.rollout import Rollout, Slope
 from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.step_error import gradient_checks
 from substructures.analysis.given import require_known
+from substructures.analysis.motion.ball_motion import reached_in_rates, with_lengths
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import Model
 
@@ -41,8 +43,8 @@ ROUGH = (
 @dataclass(frozen=True, repr=False)
 class CostGradient:
     """J and its derivatives: dJ/du ``controls`` (nodes, m) in the order of ``names``; by the state at the start dJ/dq
-    ``q`` and dJ/dq' ``qd`` (n,); dJ/dp ``parameters`` by name. ``trajectory``: the motion with the series ``controls``,
-    ``costates`` and ``hamiltonian``.
+    ``q`` and dJ/dq' ``qd`` (n,), of ball joints by displacements and rotation vectors as rates are; dJ/dp
+    ``parameters`` by name. ``trajectory``: the motion with the series ``controls``, ``costates`` and ``hamiltonian``.
 
     ``status`` failed: the motion left the range of numbers, or the derivatives did; ``message`` says what to change,
     also where they are not accurate.
@@ -112,16 +114,19 @@ def _gradient(
     shooting = Shooting(model, problem, start, vary)
     run = shooting.run(start.x[None], controls)
     # W = 1: of the cost alone, no end state
-    slope = shooting.pullback(run, np.zeros((1, 1, 2 * model.dof)), np.ones(1))
+    slope = shooting.pullback(run, np.zeros((1, 1, shooting.size)), np.ones(1))
     judged = replace(trajectory(shooting, run, slope), checks=gradient_checks(shooting, run, slope, limit))
     motion = with_limits(model, problem.parameters, judged)
-    n, by_parameter = model.dof, dict(zip(vary, slope.parameters[0].tolist(), strict=True))
+    m, by_parameter = shooting.m, dict(zip(vary, slope.parameters[0].tolist(), strict=True))
+    by_q = slope.start[0, 0, :m]
+    if model.balls:
+        by_q = by_q @ np.linalg.pinv(by_displacements(model.positions, model.coordinates, model.balls, start.x[:m]))
     result = CostGradient(
         run.cost,
         tuple(problem.controls),
         slope.controls[0],
-        slope.start[0, 0, :n],
-        slope.start[0, 0, n:],
+        by_q,
+        slope.start[0, 0, m:],
         by_parameter,
         motion,
     )
@@ -136,10 +141,10 @@ def _gradient(
 def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:
     """The motion before every step and at the end, up to where it is finite; ``slope``: of the cost, W = 1.
 
-    Series: ``controls`` (K, m), ``costates`` (K, 2 n) (of q, then of q'), ``hamiltonian`` (K,).
+    Series: ``controls`` (K, m), ``costates`` (K, 2 n) (of all numbers of q, then of q'), ``hamiltonian`` (K,).
     """
-    n, states, lam = shooting.model.dof, run.states, slope.costates[0]
-    costates = np.concatenate([lam[:-1].swapaxes(0, 1).reshape(-1, 2 * n), lam[-1:, -1]])
+    model, m, states, lam = shooting.model, shooting.m, run.states, slope.costates[0]
+    costates = np.concatenate([lam[:-1].swapaxes(0, 1).reshape(-1, shooting.size), lam[-1:, -1]])
     series = {
         "controls": shooting.controls_at_steps(run.controls),
         "costates": costates,
@@ -148,17 +153,17 @@ def trajectory(shooting: Shooting, run: Rollout, slope: Slope) -> Trajectory:
     # t_j = t_0 + j h
     t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(states)), dtype=np.float64)
     finite = np.isfinite(states).all(axis=1)
-    if finite.all() and np.isfinite(run.cost):
-        return Trajectory(shooting.model.coordinates, t, states[:, :n], states[:, n:], series, steps=len(states) - 1)
     good = len(states) if finite.all() else int(np.argmin(finite))
-    some = {name: x[:good] for name, x in series.items()}
+    fine = bool(finite.all() and np.isfinite(run.cost))
     return Trajectory(
-        shooting.model.coordinates,
+        model.coordinates,
         t[:good],
-        states[:good, :n],
-        states[:good, n:],
-        some,
-        status="failed",
-        message=FAILED,
+        with_lengths(model, states[:good, :m]),
+        states[:good, m:],
+        {name: x[:good] for name, x in series.items()},
+        status="finished" if fine else "failed",
+        message="" if fine else FAILED,
         steps=max(good - 1, 0),
+        reached=reached_in_rates(model, t[:good], states[:good]) if model.balls else None,
+        positions=model.positions if model.balls else (),
     )

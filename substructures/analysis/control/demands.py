@@ -7,14 +7,23 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
+import numpy as np
+
 from substructures.analysis.arguments import real, whole
 from substructures.analysis.control.adjoint import HORIZON
+from substructures.analysis.control.closed_start import Demand
 from substructures.analysis.control.path_limits import Limits, limits_of
 from substructures.analysis.control.problem import ControlProblem
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
+from substructures.quantities.numbers.quaternions import (
+    at_zero,
+    by_displacements,
+    quaternions_in,
+    with_unit_quaternions,
+)
 from substructures.tree.model import Model
 
 #: segments that are taken where nothing says how many
@@ -98,17 +107,42 @@ def ranges_of(wanted: Demands) -> tuple[Array, Array]:
 
 def demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[int, float]]:
     """(index in (q, q'), value) of every demand. Raises InvalidArgument."""
-    pointer = f"/end/{field}"
+    pointer, names = f"/end/{field}", model.positions if field == "q" else model.coordinates
     if not isinstance(given, Mapping):
-        if len(given) != model.dof:
-            raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {model.dof} coordinates")
-        given = dict(zip(model.coordinates, given, strict=True))
+        if len(given) != len(names):
+            raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {len(names)} coordinates")
+        given = dict(zip(names, given, strict=True))
     for name in given:
-        if name not in model.coordinates:
-            message = f"unknown coordinate '{name[:80]}'{among(name, model.coordinates)}"
+        if name not in names:
+            message = f"unknown coordinate '{name[:80]}'{among(name, names)}"
             raise InvalidArgument.at(f"{pointer}/{escape(name)}", "unknown-coordinate", message)
-    pairs = ((a, given.get(name)) for a, name in enumerate(model.coordinates))
+    pairs = ((a, given.get(name)) for a, name in enumerate(names))
     return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
+
+
+def rows_of(model: Model, demands: Sequence[Demand]) -> tuple[Array, Array]:
+    """A (d, size) and b of A x = b for the demands on the last state x. Where all numbers of a quaternion Q_d are
+    demanded it is its attitude, Q = +-Q_d: the vector part of 2 Q_d^-1 Q is 0, as |Q| does not change.
+
+    Raises InvalidArgument (``/end/q``) for a Q_d of another length than 1.
+    """
+    wanted, unit = dict(demands), np.eye(len(model.positions) + model.dof)
+    rows, values, turning = list[Array](), list[float](), set[int]()
+    for ball, some in zip(model.balls, quaternions_in(model.positions, model.balls), strict=True):
+        if all(k in wanted for k in some):
+            turning |= {*some}
+            q = at_zero(model.positions, model.balls)
+            q[some] = [wanted[k] for k in some]
+            q = with_unit_quaternions(model.positions, model.balls, q[None], "/end/q")[0]
+            turned = by_displacements(model.positions, model.coordinates, model.balls, q)
+            for name in ball["velocities"][-3:]:
+                own = np.zeros(len(unit))
+                own[some] = turned[model.coordinates.index(name), some]
+                rows.append(own)
+                values.append(0.0)
+    others = [(k, value) for k, value in demands if k not in turning]
+    rows, values = [*(unit[k] for k, _ in others), *rows], [*(value for _, value in others), *values]
+    return np.array(rows).reshape(-1, len(unit)), np.array(values)
 
 
 def bounds_of(controls: Sequence[str], wanted: Demands) -> tuple[Array, Array]:

@@ -12,16 +12,18 @@ import numpy as np
 
 from substructures.analysis.control.adjoint import HORIZON
 from substructures.analysis.control.closed_start import independent_demands, start_state
-from substructures.analysis.control.demands import Demands, bounds_of, demanded, ranges_of, segments_of
+from substructures.analysis.control.demands import Demands, bounds_of, demanded, ranges_of, rows_of, segments_of
 from substructures.analysis.control.path_limits import PathLimits
 from substructures.analysis.control.problem import ControlProblem, per_node
 from substructures.analysis.control.rollout import Rollout, Slope
 from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.warm_start import WarmStart, warm_start
 from substructures.analysis.given import require_known
+from substructures.analysis.motion.ball_motion import with_lengths
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument
+from substructures.quantities.numbers.quaternions import quaternions_in
 from substructures.tree.model import Model
 
 #: variables and conditions: the solver's time grows with their third power
@@ -36,22 +38,24 @@ class ShootingProgram:
     """
 
     def __init__(self, model: Model, problem: ControlProblem, wanted: Demands) -> None:
-        self.model, self.problem, self.wanted, self.size = model, problem, wanted, 2 * model.dof
+        self.model, self.problem, self.wanted = model, problem, wanted
+        self.size = len(model.positions) + model.dof
         self.S = segments_of(problem, wanted)
         require_known("free_parameters", "parameter", wanted.free_parameters, model.parameters)
         self.varied = (*wanted.free_parameters, *([] if wanted.free_horizon is None else [HORIZON]))
         if not (problem.controls or self.varied):
             message = "nothing is unknown: name controls, 'free_parameters', or a 'free_horizon'"
             raise InvalidArgument.at("/controls", "too-short", message)
-        demands = [*demanded(model, wanted.end.q, "q", 0), *demanded(model, wanted.end.qd, "qd", model.dof)]
+        demands = [*demanded(model, wanted.end.q, "q", 0), *demanded(model, wanted.end.qd, "qd", len(model.positions))]
         named = {f"/free_parameters/{escape(name)}": name for name in wanted.free_parameters}
         start = start_state(model, problem, named)
         self.first, self.demands = start.x, independent_demands(start, demands)
+        self.wanted_rows, self.wanted_values = rows_of(model, self.demands)
         self.bounds = bounds_of(problem.controls, wanted)
         self.ranges = ranges_of(wanted)
         self.m = len(problem.controls)
         self.split = problem.nodes * self.m
-        self.rows = (self.S - 1) * self.size + len(self.demands)
+        self.rows = (self.S - 1) * self.size + len(self.wanted_rows)
         self.own = self.split + (self.S - 1) * self.size
         size = self.own + len(self.varied) + self.rows
         if size > MAX_VARIABLES:
@@ -61,7 +65,7 @@ class ShootingProgram:
             raise InvalidArgument.at("/intervals", "too-large", message)
         self.shooting = Shooting(model, problem, start, self.varied, self.S)
         self.limits_on_path = PathLimits(model, wanted.path, problem.controls, self.varied) if wanted.path else None
-        self.earlier = None if wanted.warm_start is None else warm_start(wanted.warm_start, model.coordinates)
+        self.earlier = None if wanted.warm_start is None else warm_start(wanted.warm_start, model)
         self._at: tuple[bytes, Rollout, Slope] | None = None
         self._require_start()
 
@@ -75,7 +79,7 @@ class ShootingProgram:
         starts = self._line(share)
         if self.earlier is not None:
             _warm(self.problem, self.earlier, controls)
-            starts = self.earlier.state(share)
+            starts = self._turned(self.earlier.state(share))
             values |= self.earlier.parameters
             values[HORIZON] = self.earlier.horizon or self.problem.horizon
         others = np.clip([values[name] for name in self.varied], *self.ranges) if self.varied else []
@@ -85,8 +89,16 @@ class ShootingProgram:
         end = self.first.copy()
         for i, value in self.demands:
             end[i] = value
+        for some in quaternions_in(self.model.positions, self.model.balls):
+            # of both that turn alike the nearer one
+            end[some] *= 1.0 if end[some] @ self.first[some] >= 0 else -1.0
         # s_k = x_0 + k/S (x_end - x_0)
-        return np.asarray(self.first + share[:, None] * (end - self.first), dtype=np.float64)
+        return self._turned(self.first + share[:, None] * (end - self.first))
+
+    def _turned(self, states: Array) -> Array:
+        """States (K, size) with quaternions of length 1."""
+        m = len(self.model.positions)
+        return np.concatenate([with_lengths(self.model, states[:, :m]), states[:, m:]], axis=1)
 
     def parts(self, z: Array) -> tuple[Array, Array]:
         """Starts (S, 2 n) and controls (nodes, m)."""
@@ -129,23 +141,23 @@ class ShootingProgram:
         run, _ = self.evaluated(z)
         starts, _ = self.parts(z)
         # end_k - s_(k+1), and end_last less what is demanded
-        demanded = [run.end[-1, i] - value for i, value in self.demands]
+        demanded = self.wanted_rows @ run.end[-1] - self.wanted_values
         gaps = (run.end[:-1] - starts[1:]).ravel()
         return np.nan_to_num(np.concatenate([gaps, demanded]), nan=BEYOND, posinf=BEYOND, neginf=-BEYOND)
 
     def jacobian(self, z: Array) -> Array:
         """Derivatives of the residual, (rows, variables)."""
         _, slope = self.evaluated(z)
-        result = np.zeros((self.rows, len(z)))
-        kept = [range(self.size)] * (self.S - 1) + [[i for i, _ in self.demands]]
-        at = 0
-        for s, indices in enumerate(kept):
-            for i in indices:
-                self._by_end(result[at], slope, s, i)
-                # -1 for s_(s+1)
-                if s < self.S - 1:
-                    result[at, self.split + s * self.size + i] = -1
-                at += 1
+        result, gaps = np.zeros((self.rows, len(z))), (self.S - 1) * self.size
+        for at in range(gaps):
+            s, i = divmod(at, self.size)
+            self._by_end(result[at], slope, s, i)
+            # -1 for s_(s+1)
+            result[at, self.split + at] = -1
+        last = np.zeros((self.size, len(z)))
+        for i in range(self.size if self.demands else 0):
+            self._by_end(last[i], slope, self.S - 1, i)
+        result[gaps:] = self.wanted_rows @ last
         return np.nan_to_num(result, nan=0.0, posinf=0.0, neginf=0.0)
 
     def _by_end(self, row: Array, slope: Slope, s: int, i: int) -> None:

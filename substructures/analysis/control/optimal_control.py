@@ -40,6 +40,7 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
+from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.tree.model import Model
 
 STEPS = "the motion is not as accurate as 'error_limit' asks for: take more 'steps' or 'intervals'"
@@ -241,15 +242,19 @@ def _motion(search: ShootingProgram, shooting: Shooting, run: Rollout, nu: Array
     ends = np.zeros((search.S, search.size))
     gaps = (search.S - 1) * search.size
     ends[:-1] = nu[:gaps].reshape(search.S - 1, search.size)
-    for k, (i, _) in enumerate(search.demands):
-        ends[-1, i] = nu[gaps + k]
+    ends[-1] = nu[gaps:] @ search.wanted_rows
     motion = trajectory(shooting, run, shooting.pullback(run, ends[None], np.ones(1)))
     motion = with_limits(shooting.model, shooting.problem.parameters, motion)
     program = search.shooting.equations.program
     if any(s.name == "t" for s in program.select(["force", "running_cost"]).symbols) or motion.status == "failed":
         return motion, None
     # dH/dt = 0 along an optimal motion where neither l nor the forces depend on t
-    H, n = motion.series["hamiltonian"], shooting.model.dof
+    H, model = motion.series["hamiltonian"], shooting.model
     # with a free horizon H is zero: lambda_q . q' is one of its terms
-    terms = (motion.series["costates"][:, :n] * motion.qd).sum(axis=1)
+    moved = motion.qd
+    if model.balls:
+        states = model.positions, model.coordinates, model.balls
+        pairs = zip(motion.q, motion.qd, strict=True)
+        moved = np.array([np.linalg.pinv(by_displacements(*states, q)) @ v for q, v in pairs])
+    terms = (motion.series["costates"][:, : shooting.m] * moved).sum(axis=1)
     return motion, float(np.ptp(H) / max(float(np.abs(H).max()), float(np.abs(terms).max()), 1e-12))

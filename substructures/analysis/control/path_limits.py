@@ -37,7 +37,7 @@ class PathLimits:
     def __init__(self, model: Model, limits: Limits, controls: Sequence[str], varied: Sequence[str]) -> None:
         self.texts = tuple(limits)
         self.low, self.high = limits_of(limits, "path")
-        names = [*model.coordinates, *(f"{name}'" for name in model.coordinates), *controls, *varied]
+        names = [*model.positions, *(f"{name}'" for name in model.coordinates), *controls, *varied]
         scope = Scope(Graph())
         declared(
             model, scope, {s.name: s for s in (*derived(model, "inverse_dynamics").symbols, *model.program.symbols)}

@@ -136,7 +136,7 @@ def per_node(problem: ControlProblem, given: Mapping[str, Any], field: str) -> A
 
 def read_costs(model: Model, cost: Cost, scope: Scope) -> tuple[Expr, Expr]:
     """l and phi in the graph of ``scope``, which knows the model's symbols. Raises InvalidInput."""
-    moving = {*model.coordinates, *(f"{name}'" for name in model.coordinates), *model.parameters, "t"}
+    moving = {*model.positions, *(f"{name}'" for name in model.coordinates), *model.parameters, "t"}
     names = {name: scope.names[name] for name in (*moving, *inputs_of(model))}
     running = scope.read(exact(cost.running, "/cost/running"), "/cost/running", names.get)
     at_end = {name: names[name] for name in moving}
@@ -151,9 +151,10 @@ def declared(model: Model, scope: Scope, symbols: Mapping[str, Symbol]) -> None:
         scope.declare(symbol.name, symbol.kind, symbol.unit)
     for name, joint in zip(model.coordinates, model.joints, strict=True):
         unit = "m" if joint == "P" else "rad"
-        scope.declare(name, "coordinate", unit)
         scope.declare(f"{name}'", "velocity", f"{unit}/s")
         scope.declare(f"{name}''", "acceleration", f"{unit}/s^2")
+    for name, unit in model.state_units["q"].items():
+        scope.declare(name, "coordinate", unit)
     scope.declare("t", "time", "s")
     for kind, unused in (("parameter", model.parameters), ("input", model.inputs)):
         for name, given in unused.items():

@@ -11,10 +11,10 @@ from substructures.array import Array
 
 @dataclass(frozen=True)
 class Rollout:
-    """All segments S after J steps each. ``stages`` (J, 4, S, 2 n): states inside the steps, ``accelerations``
-    (J, 4, S, n), ``metrics`` (J, 4, S, n, n), independent rows ``held`` of closures (J, 4, S, r, n) and the
-    ``multipliers`` of all of them (J, 4, S, k) there; ``end`` (S, 2 n); ``cost``: integral of l, plus phi at the last
-    end.
+    """All segments S after J steps each. ``stages`` (J, 4, S, 2 n), with ball joints (J, 4, S, m + n): states inside
+    the steps, ``accelerations`` (J, 4, S, n), ``metrics`` (J, 4, S, n, n), independent rows ``held`` of closures (J, 4,
+    S, r, n) and the ``multipliers`` of all of them (J, 4, S, k) there; ``end`` (S, 2 n); ``cost``: integral of l, plus
+    phi at the last end.
     """
 
     controls: Array

@@ -22,6 +22,7 @@ import numpy as np
 
 from substructures.analysis.control.adjoint import (
     ADJOINT,
+    CHANGES,
     HORIZON,
     TERMINAL,
     WEIGHT,
@@ -36,6 +37,7 @@ from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.errors import MissingValue
 from substructures.mechanics.accelerations import saddle_solve
+from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.states import read_states, symbol_values, with_input_defaults
 from substructures.tree.model import Model
 
@@ -70,18 +72,20 @@ class Shooting:
         self.h = problem.horizon / (problem.intervals * problem.steps)
         self.count = problem.intervals // segments * problem.steps
         e = self.equations
-        self.state_names = [*e.names(), *e.names(primes="'")]
-        self.costate_names = [*e.names("lambda."), *e.names("lambda.", "'")]
+        self.state_names = [*e.positions, *e.names(primes="'")]
+        self.costate_names = [f"lambda.{name}" for name in self.state_names]
+        #: of the numbers q, and of states (q, v)
+        self.m, self.size = len(e.positions), len(self.state_names)
 
     def run(self, start: Array, controls: Array) -> Rollout:
-        """Integrate from the starts of all segments (S, 2 n) under ``controls`` (nodes, m).
+        """Integrate from the starts of all segments (S, 2 n), of ball joints (S, m + n), under ``controls`` (nodes, m).
 
         Where the metric is singular or the motion leaves the range of numbers the result is not finite.
         """
         n, S, J, r = self.model.dof, self.segments, self.count, len(self.start.rows)
-        stages, accelerations, cost = np.empty((J, 4, S, 2 * n)), np.empty((J, 4, S, n)), 0.0
+        stages, accelerations, cost = np.empty((J, 4, S, self.size)), np.empty((J, 4, S, n)), 0.0
         metrics, held, multipliers = (np.empty((J, 4, S, *x)) for x in ((n, n), (r, n), (len(self.equations.rows),)))
-        x = np.array(start, dtype=np.float64).reshape(S, 2 * n)
+        x = np.array(start, dtype=np.float64).reshape(S, self.size)
         with np.errstate(all="ignore"):
             for j in range(J):
                 rate, total = np.zeros_like(x), np.zeros_like(x)
@@ -91,7 +95,7 @@ class Shooting:
                     found = self._motion(X, controls, j, i)
                     metrics[j, i], held[j, i] = found["metric"], self._rows(found)
                     accelerations[j, i], multipliers[j, i] = self._accelerated(found)
-                    rate = np.concatenate([X[:, n:], accelerations[j, i]], axis=1)
+                    rate = np.concatenate([found.get(CHANGES, X[:, self.m :]), accelerations[j, i]], axis=1)
                     total += WEIGHTS[i] * rate
                     cost += self.h * WEIGHTS[i] * float(found["running_cost"].sum())
                 x = x + self.h * total
@@ -116,14 +120,14 @@ class Shooting:
 
     def pullback(self, run: Rollout, ends: Array, costs: Array) -> Slope:
         """Derivatives of ``ends``_ws . end_s + ``costs``_w cost for (W, S, 2 n) and (W,), by one pass backwards."""
-        n, (W, S, _) = self.model.dof, ends.shape
+        W, S, _ = ends.shape
         last = self._terminal(run.end[-1:], run.controls)
         lam = np.array(ends, dtype=np.float64)
         lam[:, -1] += costs[:, None] * np.concatenate([last["terminal_q"][0], last["terminal_qd"][0]])
         parts = np.zeros((W, S, self.problem.intervals // S + 1, run.controls.shape[1]))
         shares = np.zeros((W, S, len(self.equations.varied)))
         shares[:, -1] = costs[:, None] * last["terminal_parameters"][0]
-        costates = np.empty((W, self.count + 1, S, 2 * n))
+        costates = np.empty((W, self.count + 1, S, self.size))
         costates[:, -1] = lam
         with np.errstate(all="ignore"):
             for j in reversed(range(self.count)):
@@ -149,7 +153,7 @@ class Shooting:
         # at the end there is no stage: q'' = g^-1 (Q - Gamma q' q') once more
         found = self._motion(run.end, run.controls, self.count - 1, 3)
         qdd = np.concatenate([inner, self._accelerated(found)[0][-1:]])
-        lam = np.concatenate([costates[:-1].swapaxes(0, 1).reshape(-1, 2 * n), costates[-1, -1:]])
+        lam = np.concatenate([costates[:-1].swapaxes(0, 1).reshape(-1, self.size), costates[-1, -1:]])
         last = (x[-1:] for x in self._controls(run.controls, self.count - 1, 3))
         u, t = (np.concatenate(x) for x in zip(*self._all_controls(run.controls), last, strict=True))
         columns = [(self.state_names, run.states), (e.names(primes="''"), qdd), (self.costate_names, lam)]
@@ -237,13 +241,13 @@ class Shooting:
 
     def _adjoint(self, run: Rollout, j: int, i: int, bar: Array, weight: Array) -> dict[str, Array]:
         """dH/d(state, controls, parameters) at a stage for the costates ``bar`` (W, S, 2 n), with minus for states."""
-        n, (W, S, _) = self.model.dof, bar.shape
+        W, S, _ = bar.shape
         u, t = self._controls(run.controls, j, i)
-        flat = bar.reshape(W * S, 2 * n)
+        flat = bar.reshape(W * S, self.size)
         e, rows, nu = self.equations, self.start.rows, np.zeros((W * S, len(self.equations.rows)))
         # g mu + G^T nu = lambda_qd,  G mu = 0
         g, G = (np.tile(x[j, i], (W, 1, 1)) for x in (run.metrics, run.held))
-        mu, nu[:, rows] = saddle_solve(g, G, flat[:, n:], np.zeros((W * S, len(rows))))
+        mu, nu[:, rows] = saddle_solve(g, G, flat[:, self.m :], np.zeros((W * S, len(rows))))
         columns = [
             (self.state_names, np.tile(run.stages[j, i], (W, 1))),
             (e.names(primes="''"), np.tile(run.accelerations[j, i], (W, 1))),
@@ -261,7 +265,7 @@ class Shooting:
 def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
     inputs = with_input_defaults(model, problem.inputs or {})
-    given = {"q": [0.0] * model.dof, "parameters": problem.parameters}
+    given = {"q": resting_state(model.positions, model.balls), "parameters": problem.parameters}
     known = symbol_values(model, given, read_states(model, given, None), ())
     values = {name: float(known[name]) for name in model.parameters if name in known}
     values |= {name: float(inputs.get(name, 0.0)) for name in inputs_of(model)}

@@ -59,11 +59,11 @@ def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float
     reason = _unable(shooting, run)
     if reason:
         return _left_out(("cost", "q", "qd", *names), reason)
-    n, finer = shooting.model.dof, shooting.refined()
+    m, finer = shooting.m, shooting.refined()
     two = finer.run(run.states[:1], run.controls)
-    careful = finer.pullback(two, np.zeros((1, 1, 2 * n)), np.ones(1))
+    careful = finer.pullback(two, np.zeros((1, 1, shooting.size)), np.ones(1))
     pairs = [(slope.controls, careful.controls)]
-    pairs += [(slope.start[..., part], careful.start[..., part]) for part in (slice(n), slice(n, None))]
+    pairs += [(slope.start[..., part], careful.start[..., part]) for part in (slice(m), slice(m, None))]
     pairs.append((slope.parameters, careful.parameters))
     begin = np.full(1, shooting.problem.t)
     noise = ROUNDING * max(abs(two.cost), *(float(np.abs(b).max(initial=0)) for _, b in pairs))
@@ -76,14 +76,14 @@ def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float
 
 
 def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Iterator[Check]:
-    n, problem = shooting.model.dof, shooting.problem
+    m, problem = shooting.m, shooting.problem
     end = np.full(1, problem.t + problem.horizon)
     yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit)
     one, other = run.states, two.states[::2]
     noise = ROUNDING * float(np.abs(other).max(initial=0))
     t = np.asarray(problem.t + shooting.h * np.arange(len(one)), dtype=np.float64)
-    yield _compared("q", "rad, m", t, one[:, :n], other[:, :n], limit, noise)
-    yield _compared("qd", "rad/s, m/s", t, one[:, n:], other[:, n:], limit, noise)
+    yield _compared("q", "rad, m", t, one[:, :m], other[:, :m], limit, noise)
+    yield _compared("qd", "rad/s, m/s", t, one[:, m:], other[:, m:], limit, noise)
 
 
 def _closed(shooting: Shooting, run: Rollout, limit: float) -> Iterator[Check]:

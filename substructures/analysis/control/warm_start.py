@@ -16,6 +16,7 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
+from substructures.tree.model import Model
 
 NEEDED = ("names", "trajectory")
 OF_MOTION = ("coordinates", "t", "q", "qd", "series")
@@ -49,22 +50,23 @@ class WarmStart:
         return np.stack(columns, axis=1) if columns else np.zeros((len(times), 0))
 
 
-def warm_start(given: Any, coordinates: Sequence[str]) -> WarmStart:
+def warm_start(given: Any, model: Model) -> WarmStart:
     """An earlier result, as the value or as its JSON with series. Raises InvalidArgument (``/warm_start/...``)."""
     earlier = _members(given, NEEDED, "/warm_start")
     motion = _members(earlier["trajectory"], OF_MOTION, "/warm_start/trajectory")
     series = _members(motion["series"], ("controls",), "/warm_start/trajectory/series")
-    if list(motion["coordinates"]) != list(coordinates):
+    if list(motion["coordinates"]) != list(model.coordinates):
         message = f"the earlier motion has the coordinates {', '.join(map(str, motion['coordinates']))[:200]}"
         raise InvalidArgument.at(
             "/warm_start/trajectory/coordinates", "wrong-coordinates", f"{message}; needed are those of this model"
         )
-    n, names = len(coordinates), tuple(map(str, earlier["names"]))
+    names = tuple(map(str, earlier["names"]))
     t = _array(motion["t"], "/warm_start/trajectory/t", None)
     count = len(t)
     if count < 2 or not (np.diff(t) > 0).all():
         raise InvalidArgument.at("/warm_start/trajectory/t", "not-rising", "at least two rising times are needed")
-    q, qd = (_array(motion[key], f"/warm_start/trajectory/{key}", (count, n)) for key in ("q", "qd"))
+    sizes = {"q": len(model.positions), "qd": model.dof}
+    q, qd = (_array(motion[key], f"/warm_start/trajectory/{key}", (count, n)) for key, n in sizes.items())
     u = _array(series["controls"], "/warm_start/trajectory/series/controls", (count, len(names)))
     found = earlier.get("parameters") or {}
     horizon = earlier.get("horizon")

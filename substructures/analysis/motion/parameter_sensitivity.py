@@ -129,11 +129,13 @@ def sensitivities(
         times=OutputTimes(span, outputs),
         integrator=integrator,
     )
-    return _varied(problem, _variation(problem, by, outputs.of_start, kind), by, integrator.progress)
+    return _varied(problem, variation_of(problem, by, outputs.of_start, kind), by, integrator.progress)
 
 
-def _variation(problem: MotionProblem, by: Sequence[str], of_start: bool, kind: ConstrainedMotion | None) -> Variation:
-    """What is integrated. Raises InvalidInput, MissingValue."""
+def variation_of(
+    problem: MotionProblem, by: Sequence[str], of_start: bool, kind: ConstrainedMotion | None
+) -> Variation:
+    """The variational equations of a motion by parameters, and by its start. Raises InvalidInput, MissingValue."""
     model, integrator, kind = problem.model, problem.integrator, usual_kind(problem.model, kind)
     require_moving(model, "sensitivities")
     conditions = read_conditions(model, problem.start, problem.span, DYNAMICS)

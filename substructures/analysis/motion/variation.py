@@ -98,7 +98,7 @@ class Variation:
         else:
             names, source = [*model.coordinates, *equations.velocities], varied_constrained(equations, parameters)
             self.first = np.concatenate([conditions.q, v])
-        self.source, self.size = source, len(names)
+        self.source, self.names, self.size = source, names, len(names)
         self.starts = self._starts() if of_start else np.zeros((0, self.size))
         self.columns = len(parameters) + len(self.starts)
         batch = max(self.columns, 1)

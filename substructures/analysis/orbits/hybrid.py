@@ -19,7 +19,7 @@ from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.resets import Resets
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.array import Array
@@ -47,6 +47,9 @@ class HybridFlow(Flow):
                 message = f"the event '{event.name}' does nothing: give its 'reset', or leave it out"
                 raise InvalidArgument.at(f"/events/{i}/reset", "missing", message)
         super().__init__(replace(problem, events=()))
+        if self.equations is not None:
+            message = "events act on trees without closures and velocity constraints: leave 'reset' out"
+            raise InvalidArgument.at("/events/0/reset", "not-supported", message)
         self.tree, self.resets = problem, Resets(problem, self.conditions)
         self._slopes = _slopes(problem)
         self.is_forced = self.is_forced or any(symbol.kind == "time" for symbol in self._slopes.symbols)
@@ -55,7 +58,7 @@ class HybridFlow(Flow):
         """A start on the same motion at which no event is about to happen."""
         if self.is_forced or all(abs(self._gap(i, x)) > NEAR for i in range(len(self.tree.events))):
             return x
-        states, _ = self.move(x, np.eye(2 * self.n), (0.0, AHEAD * period), np.array([AHEAD * period]))
+        states, _ = self.move(x, np.eye(self.chart.width), (0.0, AHEAD * period), np.array([AHEAD * period]))
         found: Array = states[-1]
         return found
 
@@ -66,14 +69,13 @@ class HybridFlow(Flow):
         return {**self.conditions.values, **dict(zip(state_names(self.model), x.tolist(), strict=True)), "t": t}
 
     def motion(self, x: Array, period: float, count: int) -> tuple[Trajectory, Array]:
-        """The motion over a period at so many times, with its checks, and the monodromy matrix (2n, 2n)."""
+        """The motion over a period at so many times, with its checks, and the monodromy matrix (width, width)."""
         run = self._run(x, (0.0, period), OutputGrid(count=count))
-        slopes = self.move(x, np.eye(2 * self.n), (0.0, period), np.array([0.0, period]))[1]
+        slopes = self.move(x, np.eye(self.chart.width), (0.0, period), np.array([0.0, period]))[1]
         return run, slopes[-1]
 
     def _run(self, x: Array, span: tuple[float, float], grid: OutputGrid) -> Trajectory:
-        start = replace(self.tree.start, q=x[: self.n].tolist(), qd=x[self.n :].tolist())
-        run = simulate_tree(replace(self.tree, start=start, times=OutputTimes(span, grid)))
+        run = self.run(x, OutputTimes(span, grid), self.tree.events)
         if run.status != "finished":
             raise EndsEarlyError(run.message or "an event stops it")
         return run
@@ -106,20 +108,20 @@ class HybridFlow(Flow):
         return np.array(states), np.array(slopes)
 
     def saltation(self, event: Crossing) -> Array:
-        """S (2n, 2n) of an event that has happened. Raises EndsEarlyError where it is only grazed."""
+        """S (width, width) of an event that has happened. Raises EndsEarlyError where it is only grazed."""
         i = next(k for k, each in enumerate(self.tree.events) if each.name == event.name)
         x, y = np.concatenate([event.q, event.qd]), np.concatenate(event.after or ())
         found = interpret(self._slopes, self._at(event.t, x), [f"event.{i}", f"reset.{i}"])
-        e, rows = found[f"event.{i}"], found[f"reset.{i}"].reshape(-1, 2 * self.n + 1)
-        before, after = self.rate(event.t, x), self.rate(event.t, y)
-        R = np.eye(2 * self.n, 2 * self.n + 1)
+        e, rows = found[f"event.{i}"], found[f"reset.{i}"].reshape(-1, self.chart.size + 1)
+        before, after = self.full_rate(event.t, x), self.full_rate(event.t, y)
+        R = np.eye(self.chart.size, self.chart.size + 1)
         R[[state_names(self.model).index(name) for name in self.tree.events[i].reset]] = rows
         speed = float(e[:-1] @ before + e[-1])
         if abs(speed) <= GRAZED * (1 + float(np.abs(e[:-1]) @ np.abs(before))):
             raise EndsEarlyError(f"the event '{event.name}' is only grazed at t = {event.t:.9g} s")
         jump = after - R[:, :-1] @ before - R[:, -1]
-        found_S: Array = R[:, :-1] + np.outer(jump, e[:-1]) / speed
-        return found_S
+        found_S = R[:, :-1] + np.outer(jump, e[:-1]) / speed
+        return np.asarray(self.chart.along(y) @ found_S @ self.chart.ways(x).T)
 
     def volume(self, motion: Trajectory) -> float:
         """det M = product of exp of the integrals of the divergence, and of det S: by Gauss's rule in each piece."""
@@ -127,7 +129,7 @@ class HybridFlow(Flow):
         x, result = np.concatenate([motion.q[0], motion.qd[0]]), 1.0
         for a, b, at, event in self._pieces(x, (float(motion.t[0]), float(motion.t[-1]))):
             t = (a + b) / 2 + (b - a) / 2 * nodes
-            states, _ = super().move(at, np.eye(2 * self.n), (a, b), t)
+            states, _ = super().move(at, np.eye(self.chart.width), (a, b), t)
             result *= float(np.exp((b - a) / 2 * weights @ self.divergence(t, states)))
             result *= 1.0 if event is None else float(np.linalg.det(self.saltation(event)))
         return result

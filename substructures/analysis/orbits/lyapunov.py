@@ -16,8 +16,9 @@ import numpy as np
 
 from substructures.analysis.arguments import positive, whole
 from substructures.analysis.motion.problems.output_times import OutputTimes
-from substructures.analysis.motion.problems.problem import Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
@@ -37,9 +38,9 @@ Character = Literal["chaotic", "regular", "unknown"]
 
 @dataclass(frozen=True)
 class LyapunovExponents:
-    """``exponents`` (2n,) [1/s], the largest first, with their ``deviations``: standard errors of the means over parts
-    of the time. ``history`` (K, 2n): the means up to the times ``t`` (K,) [s]. ``threshold``: what a regular motion of
-    this length may show, log(T)/T of a linear growth, some times.
+    """``exponents`` [1/s], 2n or as many as a state has freedoms, the largest first, with their ``deviations``:
+    standard errors of the means over parts of the time. ``history`` (K, 2n): the means up to the times ``t`` (K,) [s].
+    ``threshold``: what a regular motion of this length may show, log(T)/T of a linear growth, some times.
 
     ``character``: chaotic, where the largest exponent is beyond all doubt; regular, where none is beyond the threshold;
     otherwise unknown, and a longer time says more. ``status`` is ``failed`` where a motion does not come to its end.
@@ -74,7 +75,7 @@ def lyapunov_exponents(
     intervals: int = PARTS * INTERVALS,
     integrator: Integrator = DEFAULT,
 ) -> LyapunovExponents:
-    """The exponents of a motion of a tree without closures from ``q``, ``qd`` over a ``duration`` [s], after a
+    """The exponents of a motion of a tree from ``q``, ``qd`` over a ``duration`` [s], after a
     ``transient`` [s] that does not count; ``intervals``: between factorisations, of each part of the time as many.
 
     ``inputs``: numbers, tables or expressions in t alone. Raises InvalidInput (pointers start with names of arguments)
@@ -84,24 +85,24 @@ def lyapunov_exponents(
     count = max(PARTS, whole(intervals, "intervals", PARTS, 1_000_000) // PARTS * PARTS)
     start = Start(q, qd, parameters or {}, inputs or {})
     end = transient + duration
-    problem = MotionProblem(model=model, start=start, times=OutputTimes((0.0, end)), integrator=integrator)
-    flow = Flow(problem)
+    problem = TreeProblem(model=model, start=start, times=OutputTimes((0.0, end)), integrator=integrator)
+    flow = Flow(problem, "lyapunov-exponents")
     try:
         grown, volumes = _grown(flow, transient, duration, count, integrator)
     except EndsEarlyError as error:
-        none, rows = np.zeros(0), np.zeros((0, 2 * flow.n))
+        none, rows = np.zeros(0), np.zeros((0, flow.chart.width))
         return LyapunovExponents(none, none, none, rows, 0.0, "unknown", "", "failed", str(error), ())
     return _told(grown, volumes, duration)
 
 
 def _grown(flow: Flow, transient: float, duration: float, count: int, integrator: Integrator) -> tuple[Array, Array]:
-    """log R_ii (K, 2n) of each interval, and the integral of the divergence (K,)."""
-    x, Q = flow.start, np.eye(2 * flow.n)
+    """log R_ii (K, width) of each interval, and the integral of the divergence (K,)."""
+    x, Q = flow.start, np.eye(flow.chart.width)
     if transient > 0:
         states, slopes = flow.move(x, Q, (0.0, transient), np.array([0.0, transient]))
         x, Q = states[-1], np.linalg.qr(slopes[-1])[0]
     ends = transient + duration * np.arange(count + 1) / count
-    grown, volumes = np.zeros((count, 2 * flow.n)), np.zeros(count)
+    grown, volumes = np.zeros((count, flow.chart.width)), np.zeros(count)
     for k, (begin, end) in enumerate(pairwise(ends.tolist())):
         inner = begin + (end - begin) * (NODES + 1) / 2
         states, slopes = flow.move(x, Q, (begin, end), np.concatenate([inner, [end]]))

@@ -24,8 +24,10 @@ from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stabili
 from substructures.analysis.orbits.returns import Section
 from substructures.analysis.orbits.search import Search
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument, among
-from substructures.tree.model import Model
+from substructures.errors import Fault, InvalidArgument, InvalidDocument, among
+from substructures.quantities.numbers.quaternions import at_zero
+from substructures.tree.given.ties import require_chains
+from substructures.tree.model import Model, require_open
 
 DEFAULT = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-13)
 
@@ -45,7 +47,7 @@ def periodic_orbits(
     events: Sequence[Event] = (),
     integrator: Integrator = DEFAULT,
 ) -> Family:
-    """Orbits of a tree without closures near ``q``, ``qd``: one, or one for each of the ``values`` of ``vary``, a
+    """Orbits of a tree near ``q``, ``qd``: one, or one for each of the ``values`` of ``vary``, a
     parameter or a component of the state that is held there; or those that are met from the first to the last value of
     a parameter ``between`` two, through folds, in ``steps`` of arclength at least, with their bifurcations.
 
@@ -61,6 +63,7 @@ def periodic_orbits(
     _check(model, shooting, vary, values if between is None else between, names)
     if vary is not None and between is not None:
         whole(steps, "steps", 2, 1000)
+        _require_flat(model)
         return orbit_family(problem, shooting, vary, _range(model, vary, values, between), steps)
     if vary is None:
         return Family(model.coordinates, None, (Search(problem, shooting).run(),))
@@ -78,6 +81,16 @@ def _range(model: Model, vary: str, values: Sequence[float], between: tuple[floa
         message = f"families are followed over parameters{among(vary, list(model.parameters))}; a state takes 'values'"
         raise InvalidArgument.at("/vary", "unknown-parameter", message)
     return first, last
+
+
+def _require_flat(model: Model) -> None:
+    """Raises InvalidDocument where states are on a surface, or have quaternions."""
+    instead = "give 'values' in place of 'between'"
+    require_chains(model.balls, instead, "/between")
+    require_open(model.closures, instead)
+    if model.velocity_constraints:
+        message = f"families of a tree with velocity constraints are not followed by arclength: {instead}"
+        raise InvalidDocument.at("/between", "has-velocity-constraints", message)
 
 
 def _family(problem: TreeProblem, shooting: Shooting, vary: str, values: Sequence[float]) -> Iterator[Orbit]:
@@ -119,10 +132,11 @@ def _check(model: Model, shooting: Shooting, vary: str | None, values: Sequence[
 
 
 def _with(model: Model, start: Start, place: int, value: float) -> Start:
-    n = model.dof
-    zero = np.zeros(n)
-    q, qd = (np.array(x if isinstance(x, np.ndarray) else zero, dtype=np.float64) for x in (start.q, start.qd))
-    (q if place < n else qd)[place % n] = value
+    m = len(model.positions)
+    zero = (at_zero(model.positions, model.balls), np.zeros(model.dof))
+    given = zip((start.q, start.qd), zero, strict=True)
+    q, qd = (np.array(x if isinstance(x, np.ndarray) else none, dtype=np.float64) for x, none in given)
+    (q if place < m else qd)[place if place < m else place - m] = value
     return replace(start, q=q, qd=qd)
 
 

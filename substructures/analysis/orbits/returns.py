@@ -5,7 +5,7 @@ H. Poincare, Les methodes nouvelles de la mecanique celeste III, 1899, chapter 2
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Literal
 
 import numpy as np
@@ -15,8 +15,8 @@ from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
-from substructures.analysis.orbits.flow import EndsEarlyError
+from substructures.analysis.motion.simulation import TreeProblem
+from substructures.analysis.orbits.flow import EndsEarlyError, Flow
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument
@@ -62,34 +62,34 @@ class Section:
 class Returns:
     """Of the motions of a problem without inputs that depend on the time. Raises InvalidInput, MissingValue."""
 
-    def __init__(self, problem: TreeProblem, section: Section) -> None:
-        self.problem, self.section = problem, section
+    def __init__(self, flow: Flow, problem: TreeProblem, section: Section) -> None:
+        self.flow, self.problem, self.section = flow, problem, section
         self._program = _slopes(problem, section)
 
     def first(self, x: Array) -> tuple[Array, float]:
-        """The state (2n,) in which the motion from x (2n,) first crosses the section, behind an event that acts there,
+        """The state in which the motion from x (size,) first crosses the section, behind an event that acts there,
         and the time [s] until it has come back. Raises EndsEarlyError.
         """
-        section, n = self.section, len(x) // 2
+        section = self.section
         # before the others: where one of them acts at the same time, it is met, too
         event = Event(NAME, section.quantity, section.level, section.direction, count=section.count + 1)
         times = OutputTimes((0.0, (section.count + 1) * section.duration), OutputGrid(count=2))
-        start = replace(self.problem.start, q=x[:n].tolist(), qd=x[n:].tolist())
-        problem = replace(self.problem, start=start, times=times, events=(event, *self.problem.events))
-        motion = simulate_tree(problem)
+        motion = self.flow.run(x, times, (event, *self.problem.events))
         met = [crossing for crossing in motion.events if crossing.name == NAME]
         if len(met) <= section.count:
             why = motion.message or f"choose another start, or a longer duration than {section.duration:g} s"
             raise EndsEarlyError(f"it meets the section {len(met)} times where {section.count + 1} are needed: {why}")
         begun = met[0]
         acts = [each.after for each in motion.events if each.after and abs(each.t - begun.t) <= SAME * begun.t]
-        return np.concatenate(acts[-1] if acts else (begun.q, begun.qd)), met[-1].t - begun.t
+        q, qd = acts[-1] if acts else (begun.q, begun.qd)
+        return self.flow.states(q[None], qd[None])[0], met[-1].t - begun.t
 
     def row(self, x: Array, values: dict[str, float]) -> tuple[Array, float]:
-        """The derivatives (2n,) of the quantity by the state x (2n,), and what it is short of its level."""
-        given = values | dict(zip(state_names(self.problem.model), x.tolist(), strict=True))
+        """The derivatives (size,) of the quantity by the state x (size,), and what it is short of its level."""
+        full = np.concatenate(self.flow.split(x))
+        given = values | dict(zip(state_names(self.problem.model), full.tolist(), strict=True))
         found = interpret(self._program, given, ["slopes", "gap"])
-        return found["slopes"], -float(found["gap"][0])
+        return self.flow.by_state(x, found["slopes"]), -float(found["gap"][0])
 
     def checks(self, x: Array, period: float, values: dict[str, float] | None) -> list[Check]:
         """The time of return, and with the ``values`` of parameters whether the orbit begins on the section."""

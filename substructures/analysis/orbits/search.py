@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import Any, Literal
 
 import numpy as np
+import scipy
 
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.simulation import TreeProblem
@@ -40,13 +41,15 @@ class Search:
     def __init__(self, problem: TreeProblem, shooting: Shooting) -> None:
         self.problem, self.shooting = problem, shooting
         self.flow = HybridFlow(problem) if problem.events else Flow(problem)
-        n, names = self.flow.n, state_names(problem.model)
+        self.chart = self.flow.chart
+        names = state_names(problem.model)
         self.held = [names.index(name) for name in shooting.hold]
+        self.kept = self._numbers(self.flow.start)[self.held]
         self.is_fixed = shooting.is_fixed or self.flow.is_forced
-        self.turned = np.zeros(2 * n)
+        self.turned = np.zeros(self.chart.size)
         for name, turns in (shooting.turns or {}).items():
-            self.turned[problem.model.coordinates.index(name)] = 2 * np.pi * turns
-        self.returns = None if shooting.section is None else Returns(problem, shooting.section)
+            self.turned[problem.model.positions.index(name)] = 2 * np.pi * turns
+        self.returns = None if shooting.section is None else Returns(self.flow, problem, shooting.section)
         if self.returns and self.flow.is_forced:
             message = "what acts depends on the time, so that the period is known: give 'period' in place of 'section'"
             raise InvalidArgument.at("/section", "not-supported", message)
@@ -82,7 +85,7 @@ class Search:
             best = min(best, size)
             largest = max(np.abs(step[:-1]).max() / (1 + np.abs(x).max()), abs(step[-1]) / period)
             step *= min(1.0, LONGEST / largest) if largest > 0 else 1.0
-            x, period = x + step[:-1], period + float(step[-1])
+            x, period = self.chart.moved(x, step[:-1]), period + float(step[-1])
             if period < SHORTEST * guess:
                 why = f"the search comes to a period of {period:.3g} s, where there is nothing but rest"
                 return self.orbit(x, period, why, k)
@@ -98,37 +101,56 @@ class Search:
 
     def _step(self, x: Array, period: float) -> tuple[Array, float]:
         """Newton's step of (x, T), and how far the motion is from where it began, relative to its size."""
-        n, flow = self.flow.n, self.flow
-        states, slopes = flow.move(x, np.eye(2 * n), (0.0, period), np.array([0.0, period]))
+        width, flow = self.chart.width, self.flow
+        states, slopes = flow.move(x, np.eye(width), (0.0, period), np.array([0.0, period]))
         end, monodromy = states[-1], slopes[-1]
-        gap = end - x - self.turned
-        rows = np.column_stack([monodromy - np.eye(2 * n), flow.rate(period, end)])
-        right = -gap
+        gap = self._gap(x, end)
+        size = float(np.abs(gap).max() / (1 + np.abs(x).max()))
+        rows = np.column_stack([monodromy - np.eye(width), flow.rate(period, end)])
+        right = -self.chart.along(x) @ gap
         if not self.is_fixed and not self.held:  # no step along the motion
             along, short = flow.rate(0.0, x), 0.0
             if self.returns and self.is_met:
-                along, short = self.returns.row(x, flow.conditions.values)
+                slopes_of, short = self.returns.row(x, flow.conditions.values)
+                along = self.chart.ways(x) @ slopes_of
             rows, right = np.vstack([rows, np.append(along, 0.0)]), np.append(right, short)
-        kept = {*self.held, *([2 * n] if self.is_fixed else [])}
-        free = [k for k in range(2 * n + 1) if k not in kept]
-        step = np.zeros(2 * n + 1)
-        step[free] = np.linalg.lstsq(rows[:, free], right, rcond=1e-9)[0]
-        return step, float(np.abs(gap).max() / (1 + np.abs(x).max()))
+        fixed, wanted = self._fixed(x)
+        if not len(fixed):
+            return np.linalg.lstsq(rows, right, rcond=1e-9)[0], size
+        back, ways = np.linalg.pinv(fixed) @ wanted, scipy.linalg.null_space(fixed)
+        return back + ways @ np.linalg.lstsq(rows @ ways, right - rows @ back, rcond=1e-9)[0], size
+
+    def _fixed(self, x: Array) -> tuple[Array, Array]:
+        """Rows of what stays as it is, of (x, T), and what they have to make up for."""
+        unit, chart = np.eye(len(self._numbers(x))), self.chart
+        rows = [np.append(chart.ways(x) @ self.flow.by_state(x, unit[k]), 0.0) for k in self.held]
+        back = self.kept - self._numbers(x)[self.held]
+        if self.is_fixed:
+            rows, back = [*rows, np.eye(chart.width + 1)[-1]], np.append(back, 0.0)
+        return np.array(rows).reshape(-1, chart.width + 1), back
+
+    def _numbers(self, x: Array) -> Array:
+        """q and q'."""
+        return np.concatenate(self.flow.split(x))
+
+    def _gap(self, x: Array, end: Array) -> Array:
+        """What is between the start and the end (size,)."""
+        return self.chart.difference(x, end - self.turned)
 
     def orbit(self, x: Array, period: float, message: str, iterations: int) -> Orbit:
         """What is known of it; with a message why it is none."""
-        n = self.flow.n
+        q, qd = self.flow.split(x)
         try:
             if np.isnan(period):
                 raise EndsEarlyError(message)
             motion, monodromy = self.flow.motion(x, period, TIMES)
         except EndsEarlyError as error:
             message, names = message or str(error), self.problem.model.coordinates
-            motion = Trajectory(names, np.zeros(1), x[None, :n], x[None, n:], status="failed", message=message)
-            monodromy = np.full((2 * n, 2 * n), np.nan)
+            motion = Trajectory(names, np.zeros(1), q[None], qd[None], status="failed", message=message)
+            monodromy = np.full((self.chart.width, self.chart.width), np.nan)
         if motion.status != "finished":
             message = message or motion.message
-        multipliers = np.full(2 * n, np.nan, dtype=complex)
+        multipliers = np.full(self.chart.width, np.nan, dtype=complex)
         if np.isfinite(monodromy).all():
             multipliers = np.linalg.eigvals(monodromy).astype(complex)
         multipliers = multipliers[np.argsort(-np.abs(multipliers), kind="stable")]
@@ -140,13 +162,13 @@ class Search:
             told = stability(multipliers, not self.flow.is_forced)
             checks = (*checks, *self._checks(x, period, motion, monodromy))
         status: Literal["finished", "failed"] = "failed" if message else "finished"
-        found = x[:n], x[n:], period, multipliers, exponents, *told, status, message, iterations
+        found = q, qd, period, multipliers, exponents, *told, status, message, iterations
         return Orbit(*found, checks, replace(motion, checks=()))
 
     def _checks(self, x: Array, period: float, motion: Trajectory, monodromy: Array) -> list[Check]:
         """The return, the multipliers' product, and the derivatives of the return map against differences."""
-        last, states = np.array([period]), np.column_stack([motion.q, motion.qd])
-        gap = np.array([np.abs(states[-1] - x - self.turned).max()])
+        last, states = np.array([period]), self.flow.states(motion.q, motion.qd)
+        gap = np.array([np.abs(self._gap(x, states[-1])).max()])
         about: About = ("return", "zero", "after a period the state is the first one", "")
         found = [Check.of(about, gap, last, 1 + float(np.abs(x).max()), RETURN)]
         expected = self.flow.volume(motion)
@@ -171,7 +193,7 @@ class Search:
     def _by_quadrature(self, motion: Trajectory) -> float | None:
         """The period of one coordinate at a constant energy, another way; None of others, and where it is open."""
         is_kept = any((check.name, check.rule) == ("energy", "constant") for check in motion.checks)
-        if self.flow.n != 1 or self.flow.is_forced or self.problem.events or not is_kept:
+        if self.flow.n != 1 or self.flow.equations or self.flow.is_forced or self.problem.events or not is_kept:
             return None
         inputs = self.flow.conditions.inputs_at(motion.t[:1], np.column_stack([motion.q, motion.qd])[:1])
         values = {**self.flow.conditions.values, **{name: float(x[0]) for name, x in inputs.items()}, "t": 0.0}
@@ -179,9 +201,10 @@ class Search:
 
     def _differences(self, x: Array, period: float) -> Array:
         """dx(T)/dx by central differences."""
-        one, ends = np.eye(len(x)), np.array([0.0, period])
+        one, ends, chart = np.eye(self.chart.width), np.array([0.0, period]), self.chart
         columns = []
-        for k, h in enumerate(DIFFERENCE * np.maximum(1e-2, np.abs(x))):
-            above, below = (self.flow.move(x + s * h * one[k], one, (0.0, period), ends)[0][-1] for s in (1, -1))
-            columns.append((above - below) / (2 * h))
+        for k, h in enumerate(DIFFERENCE * np.maximum(1e-2, np.abs(chart.along(x) @ x))):
+            starts = (chart.moved(x, s * h * one[k]) for s in (1, -1))
+            above, below = (self.flow.move(start, one, (0.0, period), ends)[0][-1] for start in starts)
+            columns.append(chart.along(below) @ chart.difference(below, above) / (2 * h))
         return np.array(columns).T

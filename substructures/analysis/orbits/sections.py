@@ -13,12 +13,14 @@ from typing import Literal
 import numpy as np
 
 from substructures.analysis.arguments import NumberOrExpression, positive, whole
+from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
-from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
+from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.analysis.orbits.flow import moved, require_steady_ties
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
 
@@ -46,8 +48,8 @@ def poincare_section(
     parameters: Mapping[str, float] | None = None,
     integrator: Integrator | None = None,
 ) -> PoincareSection:
-    """The states ``q``, ``qd`` (K, n) at the times ``t`` (K,) [s] in which a motion of a tree without closures crosses
-    the surface ``quantity`` = ``level``, the first ``count`` in up to a ``duration`` [s].
+    """The states ``q``, ``qd`` (K, n) at the times ``t`` (K,) [s] in which a motion of a tree crosses the surface
+    ``quantity`` = ``level``, the first ``count`` in up to a ``duration`` [s].
 
     ``quantity``: an expression in coordinates, velocities, parameters and t (of a forced motion ``sin(w*t)`` is met
     once a period), its unit; ``direction``: which crossings count. The checks are those of the whole motion: its first
@@ -62,7 +64,9 @@ def poincare_section(
     times, choice = OutputTimes(span, OutputGrid(count=2)), integrator or Integrator()
     problem = TreeProblem(model=model, start=start, times=times, integrator=choice, events=(event,))
     try:
-        motion = simulate_tree(problem)
+        require_moving(model, "poincare-sections")
+        require_steady_ties(model, "poincare-sections")
+        motion = moved(problem)
     except InvalidInput as error:
         raise error.moved(lambda place: place.removeprefix(PLACE)) from None
     return _met(motion, count, span[1])
@@ -70,12 +74,12 @@ def poincare_section(
 
 def _met(motion: Trajectory, count: int, duration: float) -> PoincareSection:
     """The states of its events, as they were looked for."""
-    met, n = motion.events, len(motion.coordinates)
+    met, n, m = motion.events, len(motion.coordinates), motion.q.shape[1]
     found = {field.name: getattr(motion, field.name) for field in fields(motion)}
     if motion.status != "failed" and not motion.cancelled:
         message = "" if len(met) == count else f"the section is met {len(met)} times in {duration:g} s"
         found |= {"status": "finished", "message": message}
     found["t"] = np.array([one.t for one in met], dtype=np.float64)
-    found["q"] = np.array([one.q for one in met], dtype=np.float64).reshape(-1, n)
+    found["q"] = np.array([one.q for one in met], dtype=np.float64).reshape(-1, m)
     found["qd"] = np.array([one.qd for one in met], dtype=np.float64).reshape(-1, n)
     return PoincareSection(**found | {"series": {}, "events": ()})

@@ -8,27 +8,42 @@ from typing import Any
 
 from flint import arb
 
-from substructures.certificate.derived.model_at import ModelAt, times, total
+from substructures.certificate.derived.model_at import ModelAt, dot, times, total
 from substructures.certificate.derived.model_formulas import Expectation, symmetric_of, vector_of
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.texts import slope
 
+#: changes of the numbers of a state with ball joints
+CHANGES = "position_rates"
+
 
 def adjoint(
-    controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str], rows: Sequence[str]
+    controls: Sequence[str],
+    costs: Mapping[str, Any],
+    varied_by: Sequence[str],
+    rows: Sequence[str],
+    positions: Sequence[str],
 ) -> Expectation:
-    """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``; ``rows``: of closures."""
-    return partial(_adjoint, controls, costs, varied_by, rows)
+    """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``; ``rows``: of closures; ``positions``:
+    the numbers of q, coordinates but for ball joints.
+    """
+    return partial(_adjoint, controls, costs, varied_by, rows, positions)
 
 
 def _adjoint(
-    controls: Sequence[str], costs: Mapping[str, Any], varied_by: Sequence[str], rows: Sequence[str], m: ModelAt
+    controls: Sequence[str],
+    costs: Mapping[str, Any],
+    varied_by: Sequence[str],
+    rows: Sequence[str],
+    positions: Sequence[str],
+    m: ModelAt,
 ) -> Outputs:
     result, rates = Outputs(), [f"{name}'" for name in m.coordinates]
     running, terminal = costs["running"], costs["terminal"]
-    costates = [m.values[f"lambda.{name}"] for name in (*m.coordinates, *rates)]
+    costates = [m.values[f"lambda.{name}"] for name in (*positions, *rates)]
+    turning = tuple(positions) != tuple(m.coordinates)
     mu, weight = [m.values[f"mu.{name}"] for name in m.coordinates], m.values["lambda.0"]
     read = Numbers(m.values).read
 
@@ -36,26 +51,40 @@ def _adjoint(
         """d(lambda_0 l - mu . ID)/dz, and what closures add."""
         needed = m.changed({name: arb(1)}, m.second)
         own = weight * slope(running, m.values, name) - total(x * y for x, y in zip(mu, needed, strict=True))
+        own += dot(costates[: len(positions)], _changes(m.by(name), len(positions))) if turning else arb(0)
         return own + _opening(m.by(name), m, rows, mu) if rows else own
 
     if rows:
-        G, c = m.matrix("closure.jacobian"), m.elements("closure.acceleration")
-        result.matrix("closure.jacobian", (len(rows), m.n), (), G)
-        vector_of(result, "closure.acceleration", [c.get((k,), arb(0)) for k in range(len(rows))])
-
+        _closures(result, rows, m)
     symmetric_of(result, "metric", m.matrix("metric"))
     vector_of(result, "force", [-x for x in m.needed([arb(0)] * m.n)])
     result.scalar("running_cost", read(running))
-    pairs = zip(costates, [*m.rates, *m.second], strict=True)
+    changes = _changes(m, len(positions)) if turning else m.rates
+    if turning:
+        vector_of(result, CHANGES, changes)
+    pairs = zip(costates, [*changes, *m.second], strict=True)
     result.scalar("hamiltonian", weight * read(running) + total(x * y for x, y in pairs))
-    vector_of(result, "adjoint_q", [-rate(name) for name in m.coordinates])
-    vector_of(result, "adjoint_qd", [-(costates[a] + rate(name)) for a, name in enumerate(rates)])
+    vector_of(result, "adjoint_q", [-rate(name) for name in positions])
+    vector_of(result, "adjoint_qd", [-((0 if turning else costates[a]) + rate(x)) for a, x in enumerate(rates)])
     vector_of(result, "control_gradient", [rate(name) for name in controls])
     vector_of(result, "parameter_gradient", [rate(name) for name in varied_by])
     result.scalar("terminal_cost", read(terminal))
-    for name, by in (("q", m.coordinates), ("qd", rates), ("parameters", varied_by)):
+    for name, by in (("q", positions), ("qd", rates), ("parameters", varied_by)):
         vector_of(result, f"terminal_{name}", [slope(terminal, m.values, z) for z in by])
     return result
+
+
+def _changes(m: ModelAt, size: int) -> list[Ball]:
+    """q' of the numbers of a state with ball joints."""
+    found = m.elements(CHANGES)
+    return [found.get((k,), arb(0)) for k in range(size)]
+
+
+def _closures(result: Outputs, rows: Sequence[str], m: ModelAt) -> None:
+    """G and c."""
+    c = m.elements("closure.acceleration")
+    result.matrix("closure.jacobian", (len(rows), m.n), (), m.matrix("closure.jacobian"))
+    vector_of(result, "closure.acceleration", [c.get((k,), arb(0)) for k in range(len(rows))])
 
 
 def _opening(by: ModelAt, m: ModelAt, rows: Sequence[str], mu: Sequence[Ball]) -> Ball:

@@ -95,19 +95,20 @@ class Tied(Protocol):
         """As in the document, or as plain data."""
 
 
+ORBITS = ("periodic-orbits", "poincare-sections", "lyapunov-exponents")
 #: what takes ball and floating joints, whose rates are no derivatives of coordinates
 TAKES_BALLS = (
     *("simulations", "TreeMotion", "forward_dynamics", "reactions", "linearisations", "perturbation", "state_space"),
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
     *("parameter_sensitivity", "equivalences", "columns of equilibria and linearisations", "columns of reach"),
-    *("optimal-parameters", "first_integrals"),
+    *("optimal-parameters", "first_integrals", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
-    *("velocity_dynamics", "frequency-responses"),
+    *("velocity_dynamics", "frequency-responses", *ORBITS),
 )
 TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -17,13 +17,25 @@ from substructures.quantities.measured import numeric
 CLOSED, STEPS = 1e-9, 30
 
 
-def closed_positions(equations: QuasiVelocities, values: Mapping[str, Any], q: Array) -> Array:
-    """Positions (M, n) moved onto the closures by Newton's steps of least length; ``values``: of all other symbols,
-    numbers or (M,). Raises InvalidArgument (``/q``, ``open-closure``) where they stay open.
+def closure_rows(equations: QuasiVelocities) -> list[int]:
+    """Which of the constraints are rows of closures."""
+    names = _rows_of_closures(equations)
+    return [k for k, name in enumerate(equations.constraints) if name in names]
+
+
+def _rows_of_closures(equations: QuasiVelocities) -> set[str]:
+    return {f"{closure.name}.{row}" for closure in equations.model.closures for row in closure.rows}
+
+
+def closed_positions(
+    equations: QuasiVelocities, values: Mapping[str, Any], q: Array, kept: Sequence[int] = ()
+) -> Array:
+    """Positions (M, n) moved onto the closures by Newton's steps of least length, in which the coordinates ``kept``
+    stay; ``values``: of all other symbols, numbers or (M,). Raises InvalidArgument (``/q``, ``open-closure``) where
+    they stay open.
     """
-    names = {f"{closure.name}.{row}" for closure in equations.model.closures for row in closure.rows}
+    names, rows = _rows_of_closures(equations), closure_rows(equations)
     gaps = [k for k, name in enumerate(equations.gaps) if name in names]
-    rows = [k for k, name in enumerate(equations.constraints) if name in names]
     if not gaps:
         return q
     q = q.copy()
@@ -33,7 +45,9 @@ def closed_positions(equations: QuasiVelocities, values: Mapping[str, Any], q: A
         if np.abs(opened).max(initial=0) < CLOSED * 1e-3 or not np.isfinite(opened).all():
             break
         # gaps also of rows that follow from others, whose motion these have
-        q -= (np.linalg.pinv(found["constraints"][:, rows], rcond=1e-9) @ _held(opened, gaps, rows, equations))[:, :, 0]
+        moving = found["constraints"][:, rows].copy()
+        moving[:, :, list(kept)] = 0
+        q -= (np.linalg.pinv(moving, rcond=1e-9) @ _held(opened, gaps, rows, equations))[:, :, 0]
     worst = np.abs(opened).max(axis=1, initial=0)
     if (wrong := ~(worst < CLOSED)).any():
         k = int(np.argmax(wrong))
