@@ -76,6 +76,7 @@ def test_rest_that_is_shaken_awakes_with_twice_the_period() -> None:
     given: Any = {"inputs": {"p.s": "0.2*cos(2*t)"}, "vary": "p.d", "between": (0.2, 0.05), "steps": 5}
     found = periodic_orbits(model, [0.0], Shooting(np.pi), **given)
     assert found.is_right
+    np.testing.assert_allclose([orbit.value for orbit in found.found], np.linspace(0.2, 0.05, 6), rtol=1e-12)
     (doubled,) = found.bifurcations
     assert (doubled.kind, doubled.at.value) == ("period-doubling", pytest.approx(0.1, rel=1e-3))
 

@@ -81,10 +81,11 @@ class Continuation:
                 self.message = LOST
                 return
             new, step = found
-            is_last = not 0 <= new[-1] <= 1
+            turned = self.tangent(new, t)
+            is_last = not 0 <= new[-1] + ROUNDED * turned[-1] <= 1
             if is_last:
                 new = self._at_the_end(u, t, new)
-            turned = self.tangent(new, t)
+                turned = self.tangent(new, t)
             after = self._integers(new, turned)
             changes = self._changes(u, t, here, float(t @ (new - u)), after)
             if step > 4 * self.step * SHORT and not all(change.is_placed for change in changes):
@@ -168,7 +169,7 @@ class Continuation:
 
     def _at_the_end(self, u: Array, t: Array, beyond: Array) -> Array:
         """The point at the end of the range of s, which is between two."""
-        end = float(beyond[-1] > 1)
+        end = float(beyond[-1] > 0.5)
         low, high, inside = 0.0, float(t @ (beyond - u)), u
         for _ in range(PLACED):
             middle = (low + high) / 2
