@@ -17,6 +17,7 @@ from substructures.compile import target
 from substructures.compile.engine import Scratch, address, assembled, shared_runtime
 from substructures.compile.machine import BoundCall
 from substructures.compile.stepping import FAILED, FINISHED, HEAD, NUMBERS, RUN, RUNNING, WORDS, Tableau, stepping
+from substructures.compile.tables import TimeTables
 
 __all__ = ["FAILED", "FINISHED", "HEAD", "RUNNING", "CompiledRates", "CompiledRun", "Tableau"]
 
@@ -52,7 +53,7 @@ class CompiledRates:
     """x' = (q', q'', power) as calls of kernels, one after the other, that share memory: they read ``t`` (1,) and ``x``
     (1, 2n), and write ``written`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
     ``saddle``: q'' is its solution, in place of what kernels write. Where q' is no part of x it is ``written``, too:
-    those as many as x has are all but the power.
+    those as many as x has are all but the power. ``tables``: of the time, which the calls read.
     """
 
     calls: tuple[BoundCall, ...]
@@ -62,6 +63,7 @@ class CompiledRates:
     power: Array | None
     folder: Path | None = None
     saddle: SaddlePoint | None = None
+    tables: TimeTables | None = None
 
     @property
     def size(self) -> int:
@@ -106,6 +108,7 @@ class CompiledRun:
         own += [target.math_library()["pow"], address(self._memory), row[0], row[2], row[1], address(self._steps)]
         saddle = None if rates.saddle is None else rates.saddle.words(width)
         own.append(0 if saddle is None else address(saddle[0]))
+        own += [0, 0] if rates.tables is None else [address(rates.tables.words), len(rates.tables.words)]
         self._alive = rates, calls, runtime, saddle
         self._run = _Words(*own, 0)
         self._loaded, self._advance = _loaded(tableau, width, rates.folder)

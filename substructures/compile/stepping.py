@@ -13,11 +13,12 @@ from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.emission import attributes, literal
 from substructures.compile.runtime import CONTEXT
 from substructures.compile.saddle import saddle_point
+from substructures.compile.tables import tables_at
 
 #: words of a run: addresses, sizes, and how many steps are tried at most
 RUN = (
     *("drive", "calls", "n_calls", "time", "state", "written", "power", "n_copied", "n_written", "size", "rows"),
-    *("pow", "numbers", "y", "stages", "new", "steps", "saddle", "most"),
+    *("pow", "numbers", "y", "stages", "new", "steps", "saddle", "tables", "n_tables", "most"),
 )
 #: squares of the two errors, summed up
 SUMS = ("first", "second")
@@ -55,11 +56,14 @@ class Tableau:
 def stepping(tableau: Tableau, width: int) -> str:
     """The module: advance, which tries ``most`` steps of a run (words RUN) and writes those that are accepted."""
     declared = "declare double @llvm.fabs.f64(double)\ndeclare double @llvm.sqrt.f64(double)\n"
-    return declared + saddle_point(width) + _rates(width) + _Advance(tableau, width).text() + attributes(width)
+    called = saddle_point(width) + tables_at(width) + _rates(width)
+    return declared + called + _Advance(tableau, width).text() + attributes(width)
 
 
 def _rates(width: int) -> str:
-    """x' of (t, x): numbers of x behind these, what the calls of a run and its saddle point write, and the power."""
+    """x' of (t, x): numbers of x behind these, what the calls of a run and its saddle point write, and the power.
+    Tables of the time come first.
+    """
     w = AssemblyWriter(width)
     c = w.words("%run", RUN)
     at = {name: w.pointer(c[name]) for name in ("drive", "calls", "time", "state", "written", "power")}
@@ -67,6 +71,7 @@ def _rates(width: int) -> str:
     width_of_x = w.arithmetic("add", c["n_copied"], c["n_written"])
     with w.loop("0", width_of_x) as i:
         _copy(w, w.offset("%x", i, "double"), w.offset(at["state"], i, "double"))
+    w.put(f"call void @tables_at(ptr {w.pointer(c['tables'])}, i64 {c['n_tables']}, double %t)")
     with w.loop("0", c["n_calls"]) as k:
         context = w.pointer(w.do(f"load i64, ptr {w.offset(at['calls'], k, 'i64')}, align 8"))
         place = w.offset(context, CONTEXT.index("counter"), "i64")

@@ -45,13 +45,14 @@ def function(model: Model, inputs: dict[str, Any], span: tuple[float, float]) ->
 
 @pytest.mark.parametrize("method", EXPLICIT)
 @pytest.mark.parametrize("longest", [None, 0.01])
-@pytest.mark.parametrize("is_driven", [False, True])
-def test_the_steps_of_scipy(method: str, longest: float | None, is_driven: bool) -> None:
-    model = catalogue_model("acrobot")
-    inputs = {model.input_names[0]: DRIVEN.format(qd=f"{model.coordinates[1]}'")} if is_driven else {}
-    span = (-0.25, 0.75)
-    f, x = function(model, inputs, span)
-    assert f.has_power == is_driven
+@pytest.mark.parametrize("driven", ["", "formula", "cubic", "quintic"])
+def test_the_steps_of_scipy(method: str, longest: float | None, driven: Any) -> None:
+    model, span = catalogue_model("acrobot"), (-0.25, 0.75)
+    given: Any = DRIVEN.format(qd=f"{model.coordinates[1]}'")
+    if driven in ("cubic", "quintic"):
+        given = Table([-0.3, 0.0, 0.1, 0.5, 0.8], [0, 1, -1, 0.5, 0], driven)
+    f, x = function(model, {model.input_names[0]: given} if driven else {}, span)
+    assert f.has_power == bool(driven)
     settings = method, 1e-7, 1e-9, longest
     plain, ours = scipy_stepper(*settings)(f, span[0], x, span[1]), compiled_stepper(*settings)(f, span[0], x, span[1])
     assert isinstance(ours, CompiledStepper)
@@ -187,15 +188,21 @@ def test_tables_are_taken_piece_by_piece() -> None:
     assert np.abs(states[1] - states[0]).max() > 1e-4
     f.leave()
     assert f.compiled() is None
-    assert not np.isfinite(step(f, 0.5, x, 1e-3)).all()
+    # a step that was made before goes on with the piece at its time
+    for t in (0.3, 1.3):
+        np.testing.assert_allclose(step(f, t, x, 1e-3), rk4(f, t, x, 1e-3), rtol=1e-12, atol=1e-15)
 
 
 def test_what_is_more_than_kernels_is_left_to_scipy() -> None:
     model = catalogue_model("acrobot")
-    f, x = function(model, {model.input_names[0]: Table([0, 0.5, 1], [0, 1, 0], "cubic")}, (0, 1))
-    f.enter(0.0, 1.0)
+    f, x = function(model, {model.input_names[0]: Table([0, 0.5, 1], [0, 1, 0], "linear")}, (0, 1))
+    make = compiled_stepper("DOP853", 1e-8, 1e-8)
     assert f.compiled() is None
-    assert not isinstance(compiled_stepper("DOP853", 1e-8, 1e-8)(f, 0.0, x, 1.0), CompiledStepper)
+    assert not isinstance(make(f, 0.0, x, 1.0), CompiledStepper)
+    f.enter(0.0, 0.5)
+    assert isinstance(make(f, 0.0, x, 0.5), CompiledStepper)
+    assert not isinstance(make(lambda t, y: f(t, y), 0.0, x, 0.5), CompiledStepper)
+    assert not isinstance(make(f, 0.5, x, 0.0), CompiledStepper)
 
 
 def test_a_motion_that_cannot_go_on() -> None:

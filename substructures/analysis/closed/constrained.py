@@ -204,7 +204,8 @@ class Constrained:
             return None
         out = self._out
         saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], rows)
-        return CompiledRates(calls, self._t, self._x, np.zeros((1, self.n)), out[POWER], self._folder, saddle)
+        written = np.zeros((1, self.n))
+        return CompiledRates(calls, self._t, self._x, written, out[POWER], self._folder, saddle, self.inputs.tables)
 
     @property
     def velocity_residual(self) -> Array:

@@ -117,7 +117,7 @@ class BallRates:
         calls = tuple(run for run in runs if isinstance(run, BoundCall))
         if not calls or len(calls) < len(runs):
             return None
-        return CompiledRates(calls, self._t, self._x, self._rates, self._power, self._folder)
+        return CompiledRates(calls, self._t, self._x, self._rates, self._power, self._folder, tables=self.inputs.tables)
 
 
 def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:

@@ -131,8 +131,9 @@ class RightHandSide:
         calls = tuple(run for run in runs if isinstance(run, BoundCall))
         if given is None or len(calls) < len(runs):
             return None
-        second, _, power = self._out
-        return CompiledRates(calls, self._t, self._x, second, power if self.has_power else None, self._folder)
+        tables = None if self.inputs is None else self.inputs.tables
+        power = self._out[2] if self.has_power else None
+        return CompiledRates(calls, self._t, self._x, self._out[0], power, self._folder, tables=tables)
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power); the arrays are overwritten by the next call."""

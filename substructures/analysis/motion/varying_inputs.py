@@ -1,13 +1,10 @@
-"""Inputs that vary along a motion, in arrays that a compiled kernel reads.
-
-A table that has one polynomial between two breaks, as those that hold or are linear, is computed by a kernel, too: then
-whole steps can be machine code.
+"""Inputs that vary along a motion, in arrays that a compiled kernel reads: formulas by a kernel, tables by code of
+their own, so that whole steps can be machine code.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -16,9 +13,7 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.corners import Laws
 from substructures.array import Array
-from substructures.expr.graph import Graph
-from substructures.expr.operations import Symbol
-from substructures.expr.program import Program, array, program
+from substructures.compile.tables import TimeTables
 
 
 class VaryingInputs:
@@ -39,22 +34,16 @@ class VaryingInputs:
             kernel = program_kernel(conditions.expressions, folder)
             source = conditions.expressions.select(["inputs"])
             self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, columns),)
-        self._pieces: Array = np.zeros(0)
-        self._table_run: Callable[[], None] | None = None
-        if self._curves and all(curve.is_cut for curve in self._curves.values()):
-            degree = max(len(piece) for curve in self._curves.values() for piece in curve.pieces) - 1
-            self._pieces = np.full((len(self._curves), degree + 2), np.nan)
-            polynomials = _polynomials(*self._pieces.shape)
-            values = {f"c {k} {j}": self._pieces[k, j : j + 1] for k, j in np.ndindex(self._pieces.shape)} | {"t": t}
-            self._table_run = program_kernel(polynomials, folder).bind({"table": self._table}, values)
+        curves = [(np.array(c.times), np.array(c.pieces, dtype=np.float64)) for c in self._curves.values()]
+        #: in machine code
+        self.tables = TimeTables(self._table, curves) if curves else None
+        self._has_breaks, self._is_entered = any(curve.breaks for curve in self._curves.values()), False
 
     def runs(self) -> list[Callable[[], None]] | None:
-        """What computes all inputs, by kernels or otherwise, until a break; None where no such calls do, and of tables
+        """What computes all inputs but tables, by kernels or otherwise, until a break; None where tables have breaks,
         before :meth:`enter`.
         """
-        if self._curves and (self._table_run is None or np.isnan(self._pieces).any()):
-            return None
-        return [*([] if self._table_run is None else [self._table_run]), *(laws.run for laws in self.laws)]
+        return None if self._has_breaks and not self._is_entered else [laws.run for laws in self.laws]
 
     def fill(self) -> None:
         """Evaluate at the present state and time."""
@@ -68,31 +57,16 @@ class VaryingInputs:
         """Times are between two breaks of the tables until the next call."""
         for curve in self._curves.values():
             curve.enter(start, end)
-        if self._table_run is not None:
-            for row, curve in zip(self._pieces, self._curves.values(), strict=True):
-                begin, piece = curve.piece((start + end) / 2)
-                row[:] = [begin, *[0.0] * (len(row) - 1 - len(piece)), *piece]
+        self._take(is_entered=True)
 
     def leave(self) -> None:
         """Any time again."""
         for curve in self._curves.values():
             curve.leave()
-        self._pieces.fill(np.nan)
+        self._take(is_entered=False)
 
-
-@cache
-def _polynomials(count: int, length: int) -> Program:
-    """Output ``table`` (count,): polynomials of t from ``c k 0`` on, coefficients ``c k j``, highest power first."""
-    graph = Graph()
-    t = graph.symbol("t")
-    symbols = {"t": Symbol("t", "time", "s")}
-    found = []
-    for k in range(count):
-        names = [f"c {k} {j}" for j in range(length)]
-        begin, first, *rest = map(graph.symbol, names)
-        symbols |= {name: Symbol(name, "parameter") for name in names}
-        value = first
-        for c in rest:
-            value = value * (t - begin) + c
-        found.append(value)
-    return program(graph, {"table": array((count,), lambda k: found[k])}, symbols)
+    def _take(self, is_entered: bool) -> None:
+        self._is_entered = is_entered
+        if self.tables is not None:
+            for k, curve in enumerate(self._curves.values()):
+                self.tables.take(k, *curve.taken)

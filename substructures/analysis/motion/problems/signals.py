@@ -69,8 +69,6 @@ class Curve:
         self.times, self.pieces = curve.x.tolist(), curve.c.T.tolist()
         self.breaks = [] if table.interpolation in ("cubic", "quintic") else self.times[1:-1]
         self._piece: int | None = None
-        #: whether between two breaks there is one polynomial
-        self.is_cut = bool(self.breaks) or len(self.pieces) == 1
 
     def enter(self, start: float, end: float) -> None:
         """Until the next call times lie between two breaks: at both the value is the limit from inside."""
@@ -80,22 +78,23 @@ class Curve:
         """Any time again."""
         self._piece = None
 
+    @property
+    def taken(self) -> tuple[int, int]:
+        """The first of the pieces that may be asked for, and how many these are."""
+        return (0, len(self.pieces)) if self._piece is None else (self._piece, 1)
+
     def _at(self, t: float) -> int:
         return min(max(bisect_right(self.times, t) - 1, 0), len(self.pieces) - 1)
 
     def __call__(self, t: float) -> float:
         """The value at t, in the table's range."""
-        begin, piece = self.piece(t)
+        k = self._at(t) if self._piece is None else self._piece
+        begin, piece = self.times[k], self.pieces[k]
         # Horner: s(t) = (... (c_0 x + c_1) x + ...) x + c_d with x = t - t_k
         x, value = t - begin, 0.0
         for c in piece:
             value = value * x + c
         return value
-
-    def piece(self, t: float) -> tuple[float, list[float]]:
-        """The polynomial at t, highest power first, in the time from its beginning on."""
-        k = self._at(t) if self._piece is None else self._piece
-        return self.times[k], self.pieces[k]
 
 
 def polynomials(table: Table, default: Interpolation) -> Any:
