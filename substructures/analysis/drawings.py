@@ -55,12 +55,15 @@ def draw_trajectory(motion: Trajectory, joints: str) -> str:
 
 
 def draw_section(section: PoincareSection, joints: str) -> str:
-    """SVG: the crossings in the plane of each coordinate and its velocity."""
-    panels = []
+    """SVG: the crossings in the plane of each coordinate and its velocity, of rates of ball joints over the time."""
+    panels, columns = [], section.positions or section.coordinates
     for a, name in enumerate(section.coordinates):
-        unit = "rad" if joints[a] == "R" else "m"
-        dots = Line(f"{len(section.t)} crossings", _held(section.q[:, a]), _held(section.qd[:, a]), dots=True)
-        panels.append(Panel(name, f"{name} in {unit}", f"{name}' in {unit}/s", (dots,)))
+        unit, across = "rad" if joints[a] == "R" else "m", section.t
+        told = "t in s"
+        if name in columns:
+            across, told = section.q[:, columns.index(name)], f"{name} in {unit}"
+        dots = Line(f"{len(section.t)} crossings", _held(across), _held(section.qd[:, a]), dots=True)
+        panels.append(Panel(name, told, f"{name}' in {unit}/s", (dots,)))
     return plot(f"section, {_title(section)}", panels)
 
 

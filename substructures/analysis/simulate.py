@@ -131,7 +131,7 @@ def simulate(
     elif isinstance(kind, ClosedMotion):
         motion = simulate_closed(ClosedProblem(**given, kind=kind))
     else:
-        motion = _tree_motion(given, kind if isinstance(kind, TreeMotion) else TreeMotion(), outputs)
+        motion = _tree_motion(given, kind if isinstance(kind, TreeMotion) else TreeMotion())
     found = with_limits(model, parameters, motion)
     if outputs.reactions is not None:
         found = with_reactions(model, outputs.reactions, found, given["start"])
@@ -142,13 +142,13 @@ def simulate(
     return found
 
 
-def _tree_motion(given: Mapping[str, Any], kind: TreeMotion, outputs: Outputs) -> Trajectory:
+def _tree_motion(given: Mapping[str, Any], kind: TreeMotion) -> Trajectory:
     """Of a tree without closures."""
     balls = given["model"].balls
     if not balls:
         return simulate_tree(TreeProblem(**given, kind=kind))
-    if outputs.reactions is not None or outputs.powers is not None or kind.contacts:
-        require_chains(balls, "leave 'reactions', 'powers' and 'contacts' out")
+    if kind.contacts:
+        require_chains(balls, "leave 'contacts' out")
     return simulate_balls(MotionProblem(**given), kind)
 
 

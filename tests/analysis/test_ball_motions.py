@@ -20,6 +20,7 @@ from substructures import (
     Model,
     Outputs,
     TreeMotion,
+    TreeSpec,
     couple,
     derive,
     evaluate,
@@ -31,6 +32,8 @@ from substructures.certificate.derived.model_formulas import simulated_in_rates
 from substructures.errors import InvalidInput, VerificationFailed
 from substructures.expr.program import Program
 from substructures.quantities.certificate import certified
+from substructures.quantities.powers import powers
+from substructures.quantities.reactions import reactions
 
 Plain = dict[str, Any]
 
@@ -155,6 +158,34 @@ def test_lagranges_top_precesses_steadily() -> None:
     expected = [turn(2, O * t) @ turn(0, theta) @ [0, 0, l] for t in motion.t]
     np.testing.assert_allclose(tip, expected, atol=1e-8)
     np.testing.assert_allclose(motion.qd[:, 2], w3, rtol=1e-12)
+
+
+def test_what_holds_a_top_and_what_works_on_it() -> None:
+    """Its point is held with m g upwards and m O^2 l sin(th) towards the vertical; with a damper at its tip the powers
+    of gravity, of joints and of loads are all that changes its kinetic energy.
+    """
+    m, l, g, A, C, th, O = 2.0, 0.3, 9.81, 0.5, 0.2, 0.6, 1.5  # noqa: E741 -- the length of the arm
+    moments = (A - m * l * l, A - m * l * l, C)
+    damper = {"type": "spring", "from": {"body": "base", "at": [1, 0, 0]}, "to": {"body": "top", "at": [0, 0, "0.3"]},
+              "stiffness": 3, "damping": "0.4", "length": "0.2"}  # fmt: skip
+    for loads in ([], [damper]):
+        definition = {"name": "d", "loads": loads,
+                      "bodies": [body("top", "base", {"type": "ball"}, moments, 2, (0, 0, "0.3"))]}  # fmt: skip
+        tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "d"}]}
+        spec, parts = TreeSpec.read(tree), {"x": derive(definition)}
+        model = couple(spec, parts)
+        w3 = (A * O**2 * np.cos(th) + m * g * l) / (C * O)
+        wanted = Outputs(count=6, reactions=reactions(spec, parts), powers=powers(spec, parts))
+        motion = simulate(
+            model, quaternion(turn(0, th)), (0, 1), qd=[0, O * np.sin(th), w3], outputs=wanted,
+            inputs={"tau.x.w_top_x": "0.3*cos(2*t)"} if loads else None,
+        )  # fmt: skip
+        assert motion.is_right is True
+        assert "power" in {check.name for check in motion.checks}
+        if not loads:
+            force = motion.series["reaction_force_world"][:, 0]
+            towards = [turn(2, O * t) @ [0, m * O**2 * l * np.sin(th), m * g] for t in motion.t]
+            np.testing.assert_allclose(force, towards, atol=1e-7)
 
 
 def satellite() -> Model:

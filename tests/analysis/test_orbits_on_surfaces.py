@@ -14,6 +14,7 @@ from scipy.spatial.transform import Rotation
 from scipy.special import ellipk
 
 from substructures import Event, Model, couple, derive, steady_motions
+from substructures.analysis.drawings import draw_section
 from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 from substructures.analysis.orbits.sections import poincare_section
@@ -78,6 +79,9 @@ def test_a_free_top_crosses_where_its_rates_turn() -> None:
     assert found.is_right
     np.testing.assert_allclose(found.t, 2 * np.pi * np.arange(1, 4) / 0.6, rtol=1e-9)
     assert found.q.shape == (3, 4)
+    drawn = draw_section(found, model.joints)
+    assert drawn.count("t in s") == 3
+    assert "p.w_b_x' in rad/s" in drawn
     exponents = lyapunov_exponents(model, quaternion(0.1, 0.2, 0.3), 8, qd=[0.3, 0, 1.2], intervals=20)
     assert exponents.is_right
     assert exponents.exponents.shape == (6,)

@@ -173,7 +173,6 @@ def test_best_parameters(tied: TestClient) -> None:
 
 REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("curvatures", {"q": [0, 0, 0]}),
-    ("cost-gradients", {"q": [0, 0, 0], "cost": {"running": "t"}, "horizon": 1}),
     ("regulators", {"q": [0, 0, 0]}),
     ("loop-states", {"q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["forward_dynamics"], "q": [0, 0, 0]}),

@@ -4,6 +4,7 @@
 module             what is there
 =================  ===================================================================================================
 problem            ``ControlProblem`` and ``Cost``: what is controlled, what it costs, and for how long
+holding            rows of closures or of velocity constraints that hold motions
 adjoint            ``adjoint_equations``: the costates' equations as formulas
 shooting           motions under controls and derivatives of their cost, exact for the computed motion
 step_error         what the size of the steps makes of cost, motion and gradient, by a second run

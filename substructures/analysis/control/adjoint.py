@@ -36,7 +36,8 @@ terminal_qd          n          dphi/dq'
 terminal_parameters  r          dphi/dp
 ===================  =========  ======================================================================
 
-With closures also ``closure.jacobian`` G (k, n) and ``closure.acceleration`` c (k,), with ball joints
+With closures also ``closure.jacobian`` G (k, n) and ``closure.acceleration`` c (k,), with velocity constraints B for
+G and B' q' for c, as for any motion that they are true of at its start; with ball joints
 ``position_rates`` r (m,).
 
 Symbols beside those of the model: accelerations ``x.q1''``, costates ``lambda.x.q1`` (of q) and ``lambda.x.q1'`` (of
@@ -50,9 +51,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.analysis.arguments import exact
+from substructures.analysis.control.holding import HOLDING, Ties, ties_of
 from substructures.analysis.control.problem import Cost, declared, read_costs
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import require_known
+from substructures.analysis.motion.conditions import state_names
 from substructures.certificate.derived.adjoint import adjoint
 from substructures.expr.differentiate import pullback
 from substructures.expr.graph import Expr, Graph
@@ -64,13 +67,12 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.formulas import derived
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
+from substructures.tree.model_outputs import KINEMATICS
 
 ID = "inverse_dynamics"
 WEIGHT = "lambda.0"
 #: r of ball joints
 CHANGES = "position_rates"
-#: G and c of closures
-HOLDING = ("closure.jacobian", "closure.acceleration")
 #: among what is varied it stands for the horizon, on which all times but the first depend
 HORIZON = "t"
 MOTION = ("metric", "force", "running_cost")
@@ -116,35 +118,35 @@ def adjoint_equations(
     """
     require_known("controls", "input", controls, inputs_of(model))
     require_known("varied", "parameter", varied, {*model.parameters, HORIZON})
-    require_undriven(model.driven if model.closures else (), "take simulations")
-    scope = Scope(Graph())
-    source = derived(model, ID)
+    tied = ties_of(model)
+    require_undriven(model.driven if tied.labels else (), "take simulations")
+    scope, source = Scope(Graph()), derived(model, ID)
     declared(model, scope, {s.name: s for s in (*source.symbols, *model.program.symbols)})
     running, terminal = read_costs(model, cost, scope)
     needed, metric, force = _equations(model, source, scope.graph)
-    own = _Multipliers.of(model, scope)
-    missing, opened, holding = _closed(model, scope, own.rho, needed)
-    n, m, states = model.dof, len(model.positions), [*model.positions, *(f"{name}'" for name in model.coordinates)]
-    changes, turning = _changes(model, scope)
+    own = _Multipliers.of(model, tied, scope)
+    second = [scope.names[f"{name}''"] for name in model.coordinates]
+    missing, opened, holding = _closed(tied.program, scope, own.rho, needed, second)
+    (changes, turning), states, n, m = _changes(model, scope), state_names(model), model.dof, len(model.positions)
     # d(lambda_0 l - mu . (ID - G^T rho) - nu . (G q'' + c) + lambda_q . r)/dz for every z of q, q', u, p in one walk
     weights = [own.weight, *(-x for x in (*own.mu, *own.nu)), *own.costates[: len(turning)]]
     slope = pullback([running, *missing, *opened, *turning], weights, [*states, *controls, *varied])
-    pairs = zip(own.costates, [*changes, *(scope.names[f"{name}''"] for name in model.coordinates)], strict=True)
+    moved = scope.graph.sum(x * y for x, y in zip(own.costates, [*changes, *second], strict=True))
     outputs = {
         "metric": metric,
         "force": force,
         "running_cost": Formulas((), {(): running}),
         # H = lambda_0 l + lambda_q . q' + lambda_qd . q''
-        "hamiltonian": Formulas((), {(): own.weight * running + scope.graph.sum(x * y for x, y in pairs)}),
+        "hamiltonian": Formulas((), {(): own.weight * running + moved}),
         # -dH/dq, and -dH/dq' = -(lambda_q + slope)
         "adjoint_q": array((m,), lambda a: -slope[a]),
         "adjoint_qd": array((n,), lambda a: -slope[m + a] if turning else -(own.costates[a] + slope[n + a])),
         "control_gradient": array((len(controls),), lambda i: slope[m + n + i]),
         "parameter_gradient": array((len(varied),), lambda i: slope[m + n + len(controls) + i]),
     } | holding
-    outputs |= {CHANGES: array((m,), turning.__getitem__)} if turning else {}
     outputs |= _terminal(terminal, [*states, *varied], (m, n), scope.graph)
-    result = _certified(program(scope.graph, outputs, scope.symbols), model, cost, (controls, varied), own)
+    outputs |= {CHANGES: array((m,), turning.__getitem__)} if turning else {}
+    result = _certified(program(scope.graph, outputs, scope.symbols), model, cost, (controls, varied), (own, tied))
     return AdjointEquations(result, model.coordinates, model.positions, tuple(controls), tuple(varied), own.labels)
 
 
@@ -169,16 +171,21 @@ def _terminal(phi: Expr, names: Sequence[str], sizes: tuple[int, int], graph: Gr
 
 
 def _certified(
-    made: Program, model: Model, cost: Cost, names: tuple[Sequence[str], Sequence[str]], own: _Multipliers
+    made: Program,
+    model: Model,
+    cost: Cost,
+    names: tuple[Sequence[str], Sequence[str]],
+    holding: tuple[_Multipliers, Ties],
 ) -> Program:
     """The program, once it was compared; ``names``: of controls, and of what is varied."""
+    own, tied = holding
     texts = {name: exact(getattr(cost, name), f"/cost/{name}") for name in ("running", "terminal")}
     return certified(
         made,
         model,
-        adjoint(names[0], texts, names[1], own.labels, model.positions),
+        adjoint(names[0], texts, names[1], own.labels, model.positions, tied.expected(made)),
         "adjoint equations",
-        needs=(*NEEDS, HOLDING[1], CHANGES),
+        needs=(*NEEDS, HOLDING[1], CHANGES, *KINEMATICS),
         more=dict.fromkeys(own.names, "input"),
     )
 
@@ -198,9 +205,9 @@ class _Multipliers:
     names: tuple[str, ...]
 
     @classmethod
-    def of(cls, model: Model, scope: Scope) -> _Multipliers:
+    def of(cls, model: Model, tied: Ties, scope: Scope) -> _Multipliers:
         """Declared in the scope."""
-        labels = tuple(f"{closure.name}.{row}" for closure in model.closures for row in closure.rows)
+        labels = tied.labels
         states = [*model.positions, *(f"{name}'" for name in model.coordinates)]
         groups = (("lambda", states), ("mu", model.coordinates), ("rho", labels), ("nu", labels))
         names = [[f"{prefix}.{name}" for name in some] for prefix, some in groups]
@@ -220,16 +227,15 @@ def _equations(model: Model, source: Program, graph: Graph) -> tuple[list[Expr],
 
 
 def _closed(
-    model: Model, scope: Scope, rho: Sequence[Expr], needed: list[Expr]
+    source: Program, scope: Scope, rho: Sequence[Expr], needed: list[Expr], second: Sequence[Expr]
 ) -> tuple[list[Expr], list[Expr], dict[str, Formulas]]:
-    """ID - G^T rho (n,) from ID, G q'' + c (k,), and G and c; ID alone without closures."""
-    if not model.closures:
+    """ID - G^T rho (n,) from ID, G q'' + c (k,), and G and c of ``source``; ID alone without rows. ``second``: q''."""
+    if not rho:
         return needed, [], {}
     graph, k = scope.graph, len(rho)
-    found = replay(model.program, graph, {}, HOLDING)
+    found = replay(source, graph, {}, HOLDING)
     G, c = (found[name].entries for name in HOLDING)
-    second = [scope.names[f"{name}''"] for name in model.coordinates]
-    held = [graph.sum(G[i, a] * rho[i] for i in range(k) if (i, a) in G) for a in range(model.dof)]
+    held = [graph.sum(G[i, a] * rho[i] for i in range(k) if (i, a) in G) for a in range(len(needed))]
     moved = (graph.sum(G[i, a] * x for a, x in enumerate(second) if (i, a) in G) for i in range(k))
     missing = [x - y for x, y in zip(needed, held, strict=True)]
     return missing, [x + c.get((i,), graph.zero) for i, x in enumerate(moved)], {name: found[name] for name in HOLDING}

@@ -21,6 +21,7 @@ from substructures.array import Array
 HOW = "a second run with steps half as long finds the same: its difference is the error"
 WITHIN = "by how much it leaves its limits, between the nodes, too: more 'intervals' make it less"
 CLOSED = "the closures stay closed, which is not enforced: how far they open is an error of the steps"
+HELD = "the velocity constraints are met, which is not enforced: how far they are violated is an error of the steps"
 LARGE = "a second run with steps half as long would need too much memory: take fewer 'steps' or 'intervals'"
 #: of numbers that are zero but for it, beside the others
 ROUNDING = 1e-12
@@ -88,7 +89,13 @@ def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Ite
 
 def _closed(shooting: Shooting, run: Rollout, limit: float) -> Iterator[Check]:
     """Closures stay closed by their accelerations alone: what the steps open is their error."""
-    s, n = shooting.start.closed, shooting.model.dof
+    s, n, held = shooting.start.closed, shooting.model.dof, shooting.start.held
+    if held is not None:
+        t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(run.states)), dtype=np.float64)
+        B, speeds = held(run.states[:, :n]), run.states[:, n:]
+        slipping = np.abs(np.einsum("tka,ta->tk", B, speeds)).max(axis=1)
+        size = float(np.einsum("tka,ta->tk", np.abs(B), np.abs(speeds)).max(initial=0)) or 1.0
+        yield Check.of(("constraints", "zero", HELD, "m/s, rad/s"), slipping, t, size, limit)
     if s is None:
         return
     t = np.asarray(shooting.problem.t + shooting.h * np.arange(len(run.states)), dtype=np.float64)

@@ -65,12 +65,14 @@ def with_powers(
 
 
 def kinetic_energy_rate(model: Model) -> Program:
-    """dT/dt as a function of q, q', q'' and parameters: the output RATE [W]."""
+    """dT/dt as a function of q, q', q'' and parameters, where the metric is that of rates v also by Q': the output RATE
+    [W].
+    """
     r = Workspace(model)
     T = replay(kept(model, "kinetic_energy"), r.graph, {})["kinetic_energy"].entries.get((), r.graph.zero)
     seeds: dict[str, Expr] = r.time if model.driven else {}
-    for a, name in enumerate(model.coordinates):
-        seeds |= {name: r.velocity_symbol(a), f"{name}'": r.acceleration_symbol(a)}
+    seeds |= r.moved([r.velocity_symbol(a) for a in range(model.dof)])
+    seeds |= {f"{name}'": r.acceleration_symbol(a) for a, name in enumerate(model.coordinates)}
     return r.program({RATE: Formulas((), {(): directional([r.graph.lift(T)], seeds)[0]})})
 
 

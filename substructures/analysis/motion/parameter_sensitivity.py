@@ -263,16 +263,14 @@ def _groups(f: Variation, by: Sequence[str]) -> dict[str, tuple[slice, str, slic
 
 
 def _integrals(problem: MotionProblem, f: Variation, motion: IntegratedMotion) -> tuple[Check, ...]:
-    """The first integrals of the motion itself; its derivatives have none that are known; of ball joints norms."""
+    """The first integrals of the motion itself, of ball joints also norms; its derivatives have none that are known."""
     model, conditions, n = problem.model, f.conditions, f.n
-    if model.balls:
-        t, rows, _ = motion.judged()
-        norms = conditions_in_rates(model, MotionStates(t, rows[:, :n], rows[:, n : f.size], {}, None), False)
-        return tuple(Check.of(x.about, x.violation, t, 1.0, problem.drift_limit) for x in norms)
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     t, rows, _ = motion.judged()
     x = f.full(t, rows.reshape(len(t), f.columns + 1, f.size))[:, 0]
     values: dict[str, float | Array] = {**conditions.values, **conditions.inputs_at(t, x)}
     states = MotionStates(t, x[:, :n], x[:, n:], values, None)
-    return judge(AlongMotion.of(model, integrals, states), problem.drift_limit)
+    found = judge(AlongMotion.of(model, integrals, states), problem.drift_limit)
+    norms = conditions_in_rates(model, states, False) if model.balls else ()
+    return (*found, *(Check.of(each.about, each.violation, t, 1.0, problem.drift_limit) for each in norms))

@@ -6,17 +6,22 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from flint import arb
+from flint import arb, arb_mat
 
+from substructures.certificate.derived.integrals import Rows
 from substructures.certificate.derived.model_at import ModelAt, dot, times, total
 from substructures.certificate.derived.model_formulas import Expectation, symmetric_of, vector_of
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.stored import Stored
 from substructures.certificate.texts import slope
 
+#: rows B, b at a state, and the program with B and B' q'
+Held = tuple[Rows, Stored]
 #: changes of the numbers of a state with ball joints
 CHANGES = "position_rates"
+COSTS = ("running", "terminal")
 
 
 def adjoint(
@@ -25,11 +30,13 @@ def adjoint(
     varied_by: Sequence[str],
     rows: Sequence[str],
     positions: Sequence[str],
+    held: Held | None = None,
 ) -> Expectation:
     """The adjoint equations; ``costs``: texts of ``running`` and ``terminal``; ``rows``: of closures; ``positions``:
-    the numbers of q, coordinates but for ball joints.
+    the numbers of q, coordinates but for ball joints. ``held``: (B, b) of velocity constraints in place of closures,
+    and the program that has B and B' q', whose changes are those of what is compared.
     """
-    return partial(_adjoint, controls, costs, varied_by, rows, positions)
+    return partial(_adjoint, controls, costs, varied_by, rows, positions, held)
 
 
 def _adjoint(
@@ -38,10 +45,10 @@ def _adjoint(
     varied_by: Sequence[str],
     rows: Sequence[str],
     positions: Sequence[str],
+    held: Held | None,
     m: ModelAt,
 ) -> Outputs:
-    result, rates = Outputs(), [f"{name}'" for name in m.coordinates]
-    running, terminal = costs["running"], costs["terminal"]
+    result, rates, (running, terminal) = Outputs(), [f"{q}'" for q in m.coordinates], map(costs.get, COSTS)
     costates = [m.values[f"lambda.{name}"] for name in (*positions, *rates)]
     turning = tuple(positions) != tuple(m.coordinates)
     mu, weight = [m.values[f"mu.{name}"] for name in m.coordinates], m.values["lambda.0"]
@@ -52,16 +59,15 @@ def _adjoint(
         needed = m.changed({name: arb(1)}, m.second)
         own = weight * slope(running, m.values, name) - total(x * y for x, y in zip(mu, needed, strict=True))
         own += dot(costates[: len(positions)], _changes(m.by(name), len(positions))) if turning else arb(0)
-        return own + _opening(m.by(name), m, rows, mu) if rows else own
+        return own + _opening(ties.by(name), m, rows, mu) if rows else own
 
+    ties = m if held is None else ModelAt(held[1], m.coordinates, m.values)
     if rows:
-        _closures(result, rows, m)
+        _closures(result, rows, m, held)
     symmetric_of(result, "metric", m.matrix("metric"))
     vector_of(result, "force", [-x for x in m.needed([arb(0)] * m.n)])
     result.scalar("running_cost", read(running))
-    changes = _changes(m, len(positions)) if turning else m.rates
-    if turning:
-        vector_of(result, CHANGES, changes)
+    changes = _moved(result, m, len(positions)) if turning else m.rates
     pairs = zip(costates, [*changes, *m.second], strict=True)
     result.scalar("hamiltonian", weight * read(running) + total(x * y for x, y in pairs))
     vector_of(result, "adjoint_q", [-rate(name) for name in positions])
@@ -74,17 +80,31 @@ def _adjoint(
     return result
 
 
+def _moved(result: Outputs, m: ModelAt, size: int) -> list[Ball]:
+    """q' of a state with ball joints, which are an output, too."""
+    found = _changes(m, size)
+    vector_of(result, CHANGES, found)
+    return found
+
+
 def _changes(m: ModelAt, size: int) -> list[Ball]:
     """q' of the numbers of a state with ball joints."""
     found = m.elements(CHANGES)
     return [found.get((k,), arb(0)) for k in range(size)]
 
 
-def _closures(result: Outputs, rows: Sequence[str], m: ModelAt) -> None:
+def _closures(result: Outputs, rows: Sequence[str], m: ModelAt, held: Held | None) -> None:
     """G and c."""
-    c = m.elements("closure.acceleration")
-    result.matrix("closure.jacobian", (len(rows), m.n), (), m.matrix("closure.jacobian"))
-    vector_of(result, "closure.acceleration", [c.get((k,), arb(0)) for k in range(len(rows))])
+    size = (len(rows), m.n)
+    if held is None:
+        G, c = m.matrix("closure.jacobian"), m.elements("closure.acceleration")
+        rests = [c.get((k,), arb(0)) for k in range(size[0])]
+    else:
+        G = arb_mat(*size, [x for row in held[0](m) for x in row[:-1]])
+        moving = m.time() | dict(zip(m.coordinates, m.rates, strict=True))
+        rests = times(ModelAt(held[1], m.coordinates, m.values).along(moving).matrix("closure.jacobian"), m.rates)
+    result.matrix("closure.jacobian", size, (), G)
+    vector_of(result, "closure.acceleration", rests)
 
 
 def _opening(by: ModelAt, m: ModelAt, rows: Sequence[str], mu: Sequence[Ball]) -> Ball:

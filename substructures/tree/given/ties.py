@@ -108,7 +108,7 @@ TAKES_BALLS = (
 TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
-    *("velocity_dynamics", "frequency-responses", *ORBITS),
+    *("velocity_dynamics", "frequency-responses", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
 )
 TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them

@@ -66,13 +66,13 @@ def has_not_begun(model: Model, motion: Trajectory) -> bool:
 
 
 def state_values(model: Model, motion: Trajectory) -> dict[str, Array]:
-    """Time, coordinates and velocities (K,) by their symbols."""
-    found = {"t": motion.t} | {name: motion.q[:, a] for a, name in enumerate(model.coordinates)}
+    """Time, coordinates, or positions of ball joints, and velocities (K,) by their symbols."""
+    found = {"t": motion.t} | {name: motion.q[:, a] for a, name in enumerate(model.positions)}
     return found | {f"{name}'": motion.qd[:, a] for a, name in enumerate(model.coordinates)}
 
 
 def accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any], more: Array | float = 0.0) -> Array:
-    """q'' (K, n) of the motion; ``more``: forces beside Q."""
+    """q'' (K, n) of the motion, or changes of rates; ``more``: forces beside Q."""
     if "qdd" in motion.series:
         return motion.series["qdd"]
     known = {symbol.name: 0.0 for symbol in model.program.symbols if symbol.kind == "input"} | dict(values)
