@@ -19,12 +19,16 @@ Array = Any
 
 
 def five_bar() -> Model:
-    tree = {"name": "t", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "five-bar"}]}
+    tree = {
+        "name": "t",
+        "gravity": [0, -9.81, 0],
+        "instances": [{"name": "x", "substructure": "five-bar", "level": "full"}],
+    }
     return couple(TreeSpec.read(tree), {"x": shipped_part("five-bar")})
 
 
 def alone(name: str, gravity: list[Any]) -> Model:
-    tree = {"name": "t", "gravity": gravity, "instances": [{"name": "x", "substructure": name}]}
+    tree = {"name": "t", "gravity": gravity, "instances": [{"name": "x", "substructure": name, "level": "full"}]}
     return couple(TreeSpec.read(tree), {"x": shipped_part(name)})
 
 
@@ -193,18 +197,22 @@ def constrained_acceleration(mujoco: Any, m: Any, q: Array, qd: Array, tau: Arra
 
 
 def test_the_adaptive_gripper_on_an_arm_moves_as_in_mujoco() -> None:
-    """Positions, closed by us, are closed there; all accelerations agree to 1e-8 of the largest one."""
+    """Positions, closed by us, are closed there; all accelerations agree to 1e-8 of the largest one, and so do those of
+    the independent coordinates alone.
+    """
     mujoco = pytest.importorskip("mujoco")
-    tree = {
+    tree: dict[str, Any] = {
         "name": "cell",
         "gravity": [0.3, -2, -9.81],
         "instances": [
             {"name": "arm", "substructure": "arm"},
-            {"name": "hand", "substructure": "robotiq-2f85", "at": "arm.flange"},
+            {"name": "hand", "substructure": "robotiq-2f85", "level": "full", "at": "arm.flange"},
         ],
     }
     parts = {"arm": derive(Definition.read(ARM)), "hand": shipped_part("robotiq-2f85")}
     model, m = couple(TreeSpec.read(tree), parts), in_mujoco(mujoco)
+    del tree["instances"][1]["level"]
+    light = couple(TreeSpec.read(tree), parts)
     names = [mujoco.mj_id2name(m, mujoco.mjtObj.mjOBJ_JOINT, i) for i in range(m.njnt)]
     ours = [f"{'arm' if n in 'ab' else 'hand'}.{n.replace('left_driver', 'right_driver')}" for n in names]
     place = [model.coordinates.index(name) for name in ours]
@@ -228,6 +236,14 @@ def test_the_adaptive_gripper_on_an_arm_moves_as_in_mujoco() -> None:
         wanted, is_open = constrained_acceleration(mujoco, m, state.q[place], state.qd[place], torque)
         assert np.abs(is_open).max() < 1e-12
         np.testing.assert_allclose(found[place], wanted, rtol=0, atol=1e-8 * np.abs(wanted).max())
+        own = [model.coordinates.index(name) for name in light.coordinates]
+        torque = np.array([tau[name] if name in light.coordinates else 0.0 for name in ours])
+        torque[names.index("left_driver")] = 0
+        wanted, _ = constrained_acceleration(mujoco, m, state.q[place], state.qd[place], torque)
+        pushed = {f"tau.{name}": tau[name] for name in light.coordinates}
+        less = evaluate(light, "forward_dynamics", state.q[own], state.qd[own], inputs=pushed)["forward_dynamics"]
+        for name, x in zip(light.coordinates, less, strict=True):
+            assert x == pytest.approx(wanted[ours.index(name)], abs=1e-8 * np.abs(wanted).max())
 
 
 def test_the_inertia_tensors_of_the_gripper_are_as_published() -> None:

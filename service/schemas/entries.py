@@ -68,6 +68,7 @@ class ChangedInstance(Shape):
     at: str | None = Field(None, pattern=MOUNT)
     placement: Placement | None = None
     parameters: dict[Name, Number] | None = Field(None, max_length=5000)
+    level: Literal["full", "reduced"] | None = None
 
 
 class VisibilityRequest(Shape):

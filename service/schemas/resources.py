@@ -211,6 +211,9 @@ class TreeView(Shape):
     balls: list[dict[str, list[str]]] = Field(
         [], description="names of the positions and velocities of joints with quaternions; left out if none"
     )
+    reduced: list[dict[str, Any]] = Field(
+        [], description="instances whose loops are in the formulas: their coordinates and closures; left out if none"
+    )
     numbers: dict[str, str] = Field(
         {}, description="what symbols of the program stand for in this tree, exact: bound parameters, places"
     )

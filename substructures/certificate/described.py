@@ -20,28 +20,32 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     """What the axes of the outputs are: coordinates, kinds of joints, frames, rows of closures; which have limits, and
     whose motion or momentum is given; velocity constraints.
     """
-    kinds = coordinates_in(tree, definitions)
+    kinds = free_coordinates(tree, definitions)
     given = {name: [q for q in kinds if q in tree.get(name, ())] for name in GIVEN}
     free = [q for q in kinds if not any(q in some for some in given.values())]
     frames: list[str] = []
     bound: set[str] = set()
     for instance in hosts_first(tree):
         name, definition = instance["name"], definitions[instance["name"]]
-        # of joints that move with a coordinate without moving it, none
-        bound |= {
-            f"{name}.{mover(definition, q)}"
-            for joint, step, q in _joints_of(definition)
-            if limits_of(joint, step) and not _is_still(definition, q)
-        }
+        bound |= set(_bound(name, definition))
         ports = definition.get("ports", ())
         frames += [f"{name}.{frame}" for frame in ("base", *(x["name"] for x in (*in_order(definition), *ports)))]
-    closures = [_rows_of(closure) for closure, _ in closures_of(tree, definitions)]
+    level = tree.get("reduced", ())
+    closures = [_rows_of(closure) for closure, owner in closures_of(tree, definitions) if owner not in level]
     joints, limited = "".join(kinds[q] for q in free), [q for q in free if q in bound]
     found = {"coordinates": free, "joints": joints, "frames": frames, "closures": closures, "limited": limited}
     reduction = reduced(tree, definitions)
     more = {"reduction": reduction if any(reduction.values()) else {}, **ties_in(tree)}
+    more["reduced"] = [_level(name, definitions[name]) for name in level]
     more["balls"] = list(_balls_in(tree, definitions))
     return found | {name: x for name, x in (given | more).items() if x}
+
+
+def _bound(instance: str, definition: Plain) -> Iterable[str]:
+    """Coordinates that limits of joints bound; of joints that move with one without moving it, none."""
+    for joint, step, q in _joints_of(definition):
+        if limits_of(joint, step) and not _is_still(definition, q):
+            yield f"{instance}.{mover(definition, q)}"
 
 
 def _balls_in(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[dict[str, list[str]]]:
@@ -83,26 +87,52 @@ def coordinates_in(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, s
     }
 
 
+def is_dependent(tree: Plain, definitions: Mapping[str, Plain], name: str) -> bool:
+    """Whether a coordinate is a function of others: of an instance of ``tree["reduced"]``, not independent."""
+    instance, _, own = name.partition(".")
+    return instance in tree.get("reduced", ()) and own not in definitions[instance].get("independent", ())
+
+
+def free_coordinates(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str]:
+    """Those that do not depend on others, driven and ignored ones among them, with the kinds of their joints."""
+    every = coordinates_in(tree, definitions)
+    return {name: kind for name, kind in every.items() if not is_dependent(tree, definitions, name)}
+
+
+def _level(name: str, definition: Plain) -> dict[str, Any]:
+    """What is said of a reduced instance."""
+    own = [c for _, _, c in _joints_of(definition) if mover(definition, c) == c]
+    known = definition.get("independent", ())
+    return {
+        "instance": name,
+        "independent": [f"{name}.{c}" for c in own if c in known],
+        "dependent": [f"{name}.{c}" for c in own if c not in known],
+        "closures": [f"{name}.{closure['name']}" for closure in definition["closures"]],
+    }
+
+
 def reduced(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     """Independent coordinates of the tree, where its closed parts name all of theirs, their starts and ranges."""
-    order = [(i["name"], definitions[i["name"]]) for i in hosts_first(tree)]
-    closed = [definition for _, definition in order if definition.get("closures")]
-    independent: list[str] = []
-    start: dict[str, str] = {}
-    ranges: dict[str, list[str]] = {}
-    for name, d in order:
-        own = [
-            c
-            for _, _, c in _joints_of(d)
-            if mover(d, c) == c and (not d.get("closures") or c in d.get("independent", ()))
-        ]
-        independent += [f"{name}.{c}" for c in own]
-        start |= {f"{name}.{c}": str(x) for c, x in d.get("start", {}).items()}
-        ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in d.get("ranges", {}).items()}
     if tree.get("driven") or tree.get("ignored"):
         return {"independent": [], "start": {}, "ranges": {}}
-    is_said = closed and all(d.get("independent") for d in closed) and not tree.get("closures")
-    return {"independent": independent if is_said else [], "start": start, "ranges": ranges}
+    names = [i["name"] for i in hosts_first(tree)]
+    closed = [name for name in names if definitions[name].get("closures") and name not in tree.get("reduced", ())]
+    every = free_coordinates(tree, definitions)
+    start: dict[str, str] = {}
+    ranges: dict[str, list[str]] = {}
+    for name in names:
+        start |= {f"{name}.{c}": str(x) for c, x in definitions[name].get("start", {}).items()}
+        ranges |= {f"{name}.{c}": [str(x) for x in ends] for c, ends in definitions[name].get("ranges", {}).items()}
+    start = {q: x for q, x in start.items() if q in every}
+    is_said = closed and all(definitions[name].get("independent") for name in closed) and not tree.get("closures")
+    independent = [q for q in every if _moves_by_itself(closed, definitions, q)] if is_said else []
+    return {"independent": independent, "start": start, "ranges": ranges}
+
+
+def _moves_by_itself(closed: Sequence[str], definitions: Mapping[str, Plain], name: str) -> bool:
+    """Whether a coordinate is independent; ``closed``: instances with closures."""
+    instance, _, own = name.partition(".")
+    return instance not in closed or own in definitions[instance].get("independent", ())
 
 
 def closures_of(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[tuple[Plain, str]]:

@@ -85,7 +85,8 @@ def draws(kinds: Mapping[str, str], defaults: Mapping[str, Any], count: int) -> 
 
     Everything is of the order of one, every other state with some negative parameters; then all of these are positive;
     then :data:`WITHOUT_DEFAULTS` sets are over, and parameters have their ``defaults`` (balls), or are positive; then
-    coordinates, velocities and inputs are small, too. ``count``: of a set (:func:`states_needed`).
+    coordinates, velocities and inputs are small, too; coordinates that have a default are about it then. ``count``: of
+    a set (:func:`states_needed`).
     """
     source = random.Random(0)  # noqa: S311 -- the same states for everybody
     yield _signed(source, kinds, {}, 1, count, True)
@@ -113,5 +114,5 @@ def _signed(
                 state[name] = defaults.get(name, -size if is_negative else size)
             else:
                 # every sign in one of two states
-                state[name] = sign * (-1) ** k * size / smaller
+                state[name] = sign * (-1) ** k * size / smaller + defaults.get(name, 0)
     return states

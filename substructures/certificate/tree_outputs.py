@@ -18,10 +18,18 @@ from substructures.certificate.bodies import (
 )
 from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.closures import closure_outputs
-from substructures.certificate.described import closures_in, coordinates_in, hosts_first
+from substructures.certificate.described import closures_in, coordinates_in, free_coordinates, hosts_first
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
 from substructures.certificate.given.driven import driven_outputs, driven_symbols, of_free, with_driven
 from substructures.certificate.given.ignored import ignored_outputs, ignored_symbols, with_ignored
+from substructures.certificate.given.loops import Reduced
+from substructures.certificate.given.reduced import (
+    all_free,
+    driven_level,
+    reduced_at,
+    reduced_outputs,
+    reduced_symbols,
+)
 from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
 from substructures.certificate.loads import Forces, forces
@@ -50,7 +58,7 @@ def tree_symbols(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, str
                 kinds |= {f"{q}'": "velocity", f"{q}''": "acceleration", f"tau.{q}": "input"}
                 kinds |= {} if is_ball(body) else {q: "coordinate"}
             kinds |= {f"{name}.{p}": "coordinate" for p in positions_of(body)}
-    return ignored_symbols(tree, driven_symbols(tree, kinds))
+    return ignored_symbols(tree, driven_symbols(tree, reduced_symbols(tree, definitions, kinds)))
 
 
 def tree_outputs(
@@ -59,16 +67,36 @@ def tree_outputs(
     """All outputs of the model; ``values``: of all symbols; ``stored``: see
     :func:`substructures.certificate.part_outputs.part_outputs`."""
     if tree.get("ignored"):
-        every, outputs = list(coordinates_in(tree, definitions)), partial(_outputs, tree, definitions, stored)
+        every, outputs = list(free_coordinates(tree, definitions)), partial(_at_level, tree, definitions, stored)
         return ignored_outputs(tree, every, values, outputs)
-    return _outputs(tree, definitions, stored, values)
+    return _at_level(tree, definitions, stored, values)
+
+
+def _at_level(
+    tree: Plain, definitions: Mapping[str, Plain], stored: Mapping[str, Output], values: Mapping[str, Ball]
+) -> Outputs:
+    """The outputs of the coordinates that neither depend on others nor are driven."""
+    if not tree.get("reduced"):
+        return _outputs(tree, definitions, stored, values)
+    found = level_at(tree, definitions, with_driven(tree, values))
+    outputs = reduced_outputs(tree, definitions, found, _outputs(all_free(tree), definitions, stored, found.values))
+    driven, free = tree.get("driven", ()), list(free_coordinates(tree, definitions))
+    more = driven_level(outputs, free, found.values, driven) if driven else {}
+    outputs.update(more)
+    return of_free(outputs, free, driven)
 
 
 def with_given(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Mapping[str, Ball]:
-    """The values of all symbols, those of driven and of ignored coordinates among them; ``values``: of the others."""
+    """The values of all symbols but those that depend on others; ``values``: without driven and ignored ones."""
     if not tree.get("ignored"):
         return with_driven(tree, values)
-    return with_ignored(tree, list(coordinates_in(tree, definitions)), values, partial(_outputs, tree, definitions, {}))
+    every, outputs = list(free_coordinates(tree, definitions)), partial(_at_level, tree, definitions, {})
+    return with_ignored(tree, every, values, outputs)
+
+
+def level_at(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Reduced:
+    """The values of all symbols, those of coordinates that depend on others among them; ``values``: of the others."""
+    return reduced_at(tree, definitions, values, built)
 
 
 def _outputs(

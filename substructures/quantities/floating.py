@@ -39,7 +39,7 @@ from substructures.part.topology import MOST_CHRISTOFFEL, entries_of
 from substructures.quantities.of_parts import OfParts, formed
 from substructures.tree.assembly import Assembly, assemble, joint_parents
 from substructures.tree.coupling import couple_parts
-from substructures.tree.document import Instance, TreeSpec, require_ungiven
+from substructures.tree.document import Instance, TreeSpec, require_full, require_ungiven
 from substructures.tree.given.ties import require_chains
 from substructures.tree.model_outputs import model_outputs
 
@@ -76,6 +76,7 @@ def _outputs(
     spec: TreeSpec, parts: Mapping[str, Part], christoffel: bool, assembly: Assembly
 ) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     require_ungiven(spec, "give what moves as a part of its own")
+    require_full(assembly.reduced, "ask again")
     require_chains(assembly.balls, "ask for 'metric' and 'christoffel'")
     host = _free_name(spec)
     hosted = assemble(_hosted(spec, host), {**parts, host: _host_part()})

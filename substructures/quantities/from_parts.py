@@ -29,7 +29,7 @@ from substructures.quantities.numbers.array_scalars import Lanes, Supports, is_a
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import asked, couple_parts
-from substructures.tree.document import TreeSpec, require_ungiven
+from substructures.tree.document import TreeSpec, require_full, require_ungiven
 from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
 from substructures.tree.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
@@ -101,6 +101,7 @@ class NumericTree:
     def __init__(self, spec: TreeSpec, parts: Mapping[str, Part], engine: PartEvaluator = interpret_entries) -> None:
         require_ungiven(spec, "ask for formulas, or for numbers of what the tree has formulas of")
         self.assembly, self.engine = assemble(spec, parts), engine
+        require_full(self.assembly.reduced, "ask again")
         pairs = zip(self.assembly.instances, self.assembly.mounted, strict=True)
         self.coordinates = tuple(f"{instance.name}.{name}" for instance, m in pairs for name in m.part.coordinates)
         self._constants = self._constant_program()

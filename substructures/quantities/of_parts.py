@@ -43,7 +43,7 @@ class OfParts:
 def _at_momenta(assembly: Assembly, outputs: Mapping[str, Formulas]) -> Mapping[str, Formulas]:
     """Outputs without axes of coordinates at the velocities and accelerations that given momenta make."""
     coupled = couple_parts(over_formulas(assembly.scope.graph), assembly.mounted, assembly.gravity, christoffel=False)
-    whole = loaded_outputs(assembly, coupled, OF_EQUATIONS)
+    whole = put_in(assembly, loaded_outputs(assembly, coupled, OF_EQUATIONS))
     return at_momenta(assembly, list(all_coordinates(assembly)), outputs, whole)
 
 
@@ -78,5 +78,6 @@ def formed(
         raise TooLarge(f"the {what} (in operations)", len(result), max_nodes)
     multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
     definitions = {name: part.definition for name, part in parts.items()}
-    result = certify_rows(what, spec, definitions, result, rows, expected, multipliers)
+    level = [instance.name for instance in assembly.instances if instance.name in assembly.reduced]
+    result = certify_rows(what, spec, definitions, result, rows, expected, multipliers, level)
     return result, tuple(rows), assembly.parameters

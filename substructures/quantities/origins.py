@@ -14,7 +14,7 @@ from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.assembly import assemble, joint_parents, tree_name
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.driven import all_coordinates
+from substructures.tree.given.driven import every_coordinate
 
 
 @dataclass(frozen=True)
@@ -52,9 +52,13 @@ def movers_of_tree(spec: TreeSpec, parts: Mapping[str, Part]) -> Movers:
     for m in assembly.mounted:
         of += [first + i for i in m.part.topology.moved_by]
         first += m.part.dof
-    found, names = _movers([parent for parent, _ in parents], carriers, of), all_coordinates(assembly)
-    given = {**spec.driven, **spec.ignored}
-    free = [moved for name, moved in zip(names, found.moved, strict=True) if name not in given]
+    found, names = _movers([parent for parent, _ in parents], carriers, of), every_coordinate(assembly)
+    known = assembly.dependent
+    given, moved = {**spec.driven, **spec.ignored, **known.values}, dict(zip(names, found.moved, strict=True))
+    for z in known.values:
+        # what a dependent coordinate moves is moved by those that it depends on
+        moved |= {y: moved[y] | moved[z] for y in known.N[z]}
+    free = [some for name, some in moved.items() if name not in given]
     return replace(found, moved=tuple(free))
 
 

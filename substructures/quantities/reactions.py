@@ -33,7 +33,7 @@ from substructures.quantities.regressor import DYNAMIC, bare
 from substructures.tree.applied_wrenches import applied_wrenches
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import OWN, couple_parts
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import TreeSpec, require_full
 from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
@@ -107,6 +107,7 @@ def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
 
 def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     """OUTPUTS, and the names of their rows."""
+    require_full(assembly.reduced, "ask again: they are found with the multipliers of its closures")
     run = over_formulas(assembly.scope.graph)
     placed = couple_parts(bare(run, _LEFT_OUT), assembly.mounted, assembly.gravity, christoffel=False).placed
     rates, accelerations = rate_symbols(assembly)

@@ -71,7 +71,7 @@ class RegressorModel:
     is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
     joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
     tree; their forces, which Y pi has to balance with the actuators, are not part of it; ``driven``: coordinates whose
-    motion is given, which have no rows. ``regrouping``: output
+    motion is given, which have no rows; ``reduced``: instances whose loops are in the formulas. ``regrouping``: output
     ``relations`` (r, 10 links + k): coefficients, functions of the free parameters, with which columns of Y add up to
     zero, whatever moves; the last k columns are those of massless carriers (:mod:`.regrouping`).
     """
@@ -86,6 +86,7 @@ class RegressorModel:
     closures: tuple[ClosureRows, ...] = ()
     driven: tuple[str, ...] = ()
     balls: tuple[BallRow, ...] = field(default=(), hash=False)
+    reduced: tuple[str, ...] = ()
 
     @property
     def labels(self) -> Mapping[str, Any]:
@@ -157,6 +158,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         tuple(cut.rows for cut in assembly.cuts),
         driven_names(assembly),
         ball_rows(assembly.balls, [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]),
+        tuple(sorted(assembly.reduced)),
     )
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from substructures.errors import InvalidDocument, among
 from substructures.expr.graph import Expr, Graph
@@ -22,6 +23,7 @@ from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
+from substructures.tree.given.loops.closed_form import Dependent, dependent
 from substructures.tree.given.ties import require_chains
 from substructures.tree.mounted_part import WORLD, MountedPart, balls_of, friction_of_movers, limits_of_movers
 
@@ -41,6 +43,16 @@ class Assembly:
     friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 of coordinates, by joint
     friction_load: dict[int, tuple[Expr, Expr]]  #: by joint: of the force beside the axis, and along it
     reading: Reading  #: for what is read when the parts have their places
+    reduced: frozenset[str]  #: the instances whose dependent coordinates are functions of the independent ones
+
+    @cached_property
+    def dependent(self) -> Dependent:
+        """The dependent coordinates of all reduced instances."""
+        found = Dependent(self.scope.graph, ())
+        for instance, m in zip(self.instances, self.mounted, strict=True):
+            if instance.name in self.reduced:
+                found = found.beside(self.reading.dependent(instance.name, m.part))
+        return found
 
     @property
     def balls(self) -> tuple[BallJoint, ...]:
@@ -78,7 +90,8 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    reading = Reading(spec, parts, scope, place, bound, frozenset(parameters))
+    reduced = _reduced(spec, parts, scope)
+    reading = Reading(spec, parts, scope, place, bound, frozenset(parameters), reduced)
     mounted: list[MountedPart] = []
     first = 0
     for i in order:
@@ -94,14 +107,34 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading
+    places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading, reduced
     return _known_with_balls(spec, Assembly(scope, instances, *places))
+
+
+def _reduced(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> frozenset[str]:
+    """The instances that take the reduced level: whose parts name independent coordinates, with a closed form."""
+    found = set[str]()
+    for i, instance in enumerate(spec.instances):
+        definition = parts[instance.name].definition
+        if instance.level == "full" or not (definition.independent or instance.level):
+            continue
+        why = dependent(parts[instance.name]) if definition.independent else "it names no independent coordinates"
+        if not isinstance(why, str):
+            found.add(instance.name)
+        elif instance.level:
+            message = f"'{definition.name}' has no reduced level: {why}; take 'full'"
+            scope.fault(f"/instances/{i}/level", "not-reduced", message)
+        else:
+            message = f"'{instance.name}' has all coordinates of its loops: {why}"
+            scope.notices.append({"pointer": f"/instances/{i}", "code": "full-level", "message": message})
+    scope.finish()
+    return frozenset(found)
 
 
 def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:
     """The assembly. Raises InvalidDocument (``has-balls``) for what does not go with ball and floating joints."""
     given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
-    for name, some in (given | {"closures": assembly.cuts}).items():
+    for name, some in (given | {"closures": assembly.cuts or assembly.reduced}).items():
         if some:
             require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
     return assembly
@@ -249,6 +282,18 @@ class Reading:
     place: Mapping[str, int]
     bound: _Bindings
     known: frozenset[str]
+    reduced: frozenset[str]
+
+    def dependent(self, instance: str, part: Part) -> Dependent:
+        """The dependent coordinates of a reduced instance in the graph of the tree."""
+        own = dependent(part)
+        assert isinstance(own, Dependent)  # noqa: S101 -- it is among those that are reduced
+        names = {q: f"{instance}.{q}" for q in part.coordinates}
+        bindings = {q: self.scope.graph.symbol(name) for q, name in names.items()}
+        for name in part.parameters:
+            bound = self.bound.lookup(f"{instance}.{name}")
+            bindings[name] = self.scope.graph.symbol(f"{instance}.{name}") if bound is None else bound
+        return own.moved(self.scope.graph, names, bindings)
 
     def parameter(self, name: str) -> Expr | None:
         """A parameter by its name in the tree, with its binding put in; None of what is none."""
@@ -367,7 +412,7 @@ class Reading:
             yield self.cut(closure, f"/closures/{i}")
         index = {instance.name: i for i, instance in enumerate(self.spec.instances)}
         for name in self.place:
-            for own in self.parts[name].definition.closures:
+            for own in () if name in self.reduced else self.parts[name].definition.closures:
                 yield self.cut(own, f"/instances/{index[name]}", f"{name}.")
 
     def cut(self, closure: PartClosure, pointer: str, prefix: str = "") -> Cut:

@@ -35,11 +35,12 @@ closure.alignment         m      m_j . e_j of the axes that a row makes parallel
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.documents.fields import in_si
+from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas
 from substructures.mechanics.kinematics import Columns, Pose, Twist, from_body
@@ -250,21 +251,36 @@ def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[in
     return r.d[i], IDENTITY[i], {a: t.U[i] for a, t in r.twists.items()}, r.dv[i]
 
 
-def reduction_of(instances: Sequence[Instance], mounted: Sequence[MountedPart], is_closed: bool) -> Reduction:
-    """Of the instances of a tree, hosts first; ``is_closed``: by closures of its own.
+def reduction_of(
+    instances: Sequence[Instance], mounted: Sequence[MountedPart], is_closed: bool, reduced: Collection[str]
+) -> Reduction:
+    """Of the instances of a tree, hosts first; ``is_closed``: by closures of its own; ``reduced``: those whose formulas
+    are of independent coordinates alone.
 
     Independent are the coordinates that closed parts name, and all those of open ones.
     """
     order = [(i.name, m.part) for i, m in zip(instances, mounted, strict=True)]
-    closed = [part.definition for _, part in order if part.definition.closures]
+    closed = [part.definition for name, part in order if part.definition.closures and name not in reduced]
     independent: list[str] = []
     start: dict[str, str] = {}
     ranges: dict[str, tuple[str, str]] = {}
     for name, part in order:
         own = part.definition.independent if part.definition.closures else part.coordinates
         independent += [f"{name}.{c}" for c in part.coordinates if c in own]
-        start |= {f"{name}.{c}": str(in_si(x)) for c, x in part.definition.start.items()}
+        given = part.definition.start.items()
+        start |= {f"{name}.{c}": str(in_si(x)) for c, x in given if c in own or name not in reduced}
         for c, (low, high) in part.definition.ranges.items():
             ranges[f"{name}.{c}"] = str(in_si(low)), str(in_si(high))
     is_said = closed and all(definition.independent for definition in closed) and not is_closed
     return Reduction(tuple(independent) if is_said else (), start, ranges)
+
+
+def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
+    """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
+    if closures:
+        names = ", ".join(f"'{rows.name}'" for rows in closures)
+        message = (
+            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
+            f"{instead}, or leave the closures out"
+        )
+        raise InvalidDocument.at("", "has-closures", message)

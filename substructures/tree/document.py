@@ -68,6 +68,10 @@ class Instance(DocumentPart):
     parameters: dict[Name, Number] = Field(
         {}, max_length=5000, description="numbers, or expressions in other parameters"
     )
+    level: Literal["full", "reduced"] | None = Field(
+        None,
+        description="coordinates: all, or those that its definition names `independent` (its own choice if it can)",
+    )
 
     @property
     def digest(self) -> str:
@@ -221,6 +225,16 @@ def require_unignored(ignored: Collection[str]) -> None:
         names = ", ".join(f"'{name}'" for name in ignored)
         given = f"the momentum of {names} is given ('ignored'), which is not taken into account here"
         raise InvalidDocument.at("", "has-ignored", f"{given}: take the tree without 'ignored'")
+
+
+def require_full(reduced: Collection[str], instead: str) -> None:
+    """Raises InvalidDocument (``has-reduced``) for what takes all coordinates of parts with loops; ``instead``: what to
+    ask then.
+    """
+    if reduced:
+        names = ", ".join(f"'{name}'" for name in reduced)
+        message = f"the loops of {names} are in the formulas (reduced level), which is not taken into account here"
+        raise InvalidDocument.at("", "has-reduced", f'{message}: give these instances "level": "full" and {instead}')
 
 
 def require_ungiven(given: Given, instead: str) -> None:

@@ -34,7 +34,7 @@ from substructures.part.part import Part
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.driven import all_coordinates, put_in
+from substructures.tree.given.driven import every_coordinate, put_in
 from substructures.tree.given.ignored import at_zero
 from substructures.tree.glossary_motions import Glossary, inverse_terms, matrix, vector, velocity_terms
 from substructures.tree.grouping import Admitted, every, numbers
@@ -70,8 +70,8 @@ def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, mod
     found |= inverse_terms(placed, chain, rates, accelerations)
     if model is not None:
         own = (rates[m.first + c] for m in assembly.mounted for c in m.part.topology.movers)
-        given = {**spec.driven, **spec.ignored}
-        free = [x for name, x in zip(all_coordinates(assembly), own, strict=True) if name not in given]
+        given = {**spec.driven, **spec.ignored, **assembly.dependent.values}
+        free = [x for name, x in zip(every_coordinate(assembly), own, strict=True) if name not in given]
         found |= _stored(assembly.scope.graph, model, free)
     of_loads = {} if model is None else {symbol.name: symbol for symbol in model.symbols}
     outputs = at_zero(assembly, put_in(assembly, _written(found)))

@@ -9,7 +9,7 @@ from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import InvalidDocument, VerificationFailed, listed
+from substructures.errors import VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
@@ -23,7 +23,14 @@ from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.closures import ClosureRows, Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.driven import all_coordinates, driven_inputs, driven_names, put_in
+from substructures.tree.given.driven import (
+    all_coordinates,
+    driven_inputs,
+    driven_names,
+    every_coordinate,
+    levels,
+    put_in,
+)
 from substructures.tree.given.ignored import ignore, ignored_names
 from substructures.tree.grouping import Admitted, every, numbers_and
 from substructures.tree.load_potentials import found_potential
@@ -35,7 +42,7 @@ from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
 EFFORTS = {"R": "N m", "P": "N"}
-LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls")
+LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls", "reduced")
 
 
 @dataclass(frozen=True)
@@ -45,7 +52,8 @@ class Model:
     loads): all that are declared and not bound, used or not; ``limited``: the coordinates that have limits;
     ``plausibility``: of values, unknown of a model out of a store; ``driven``: coordinates whose motion is given,
     ``ignored``: whose momentum is; ``velocity_constraints``, ``contacts``: of its motions, as plain data; the formulas
-    are those without; ``balls``: joints whose rates are no derivatives of coordinates; ``numbers``: in SI, still to be
+    are those without; ``balls``: joints whose rates are no derivatives of coordinates;
+    ``reduced``: instances whose loops are in the formulas, with their coordinates; ``numbers``: in SI, still to be
     put in for symbols of the program (:meth:`with_numbers`)."""
 
     program: Program
@@ -65,6 +73,7 @@ class Model:
     ignored: tuple[str, ...] = ()
     contacts: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
     balls: tuple[Mapping[str, Sequence[str]], ...] = field(default=(), hash=False)
+    reduced: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -149,17 +158,6 @@ class Model:
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
         return cls(program, *names, *described, closures, summary.get("inputs", {}), **more).with_numbers()
-
-
-def require_open(closures: Sequence[ClosureRows], instead: str) -> None:
-    """Raises InvalidDocument (``has-closures``) where closed loops would be ignored; ``instead``: what takes them."""
-    if closures:
-        names = ", ".join(f"'{rows.name}'" for rows in closures)
-        message = (
-            f"the closures {names} make the coordinates depend on each other, which is not taken into account here: "
-            f"{instead}, or leave the closures out"
-        )
-        raise InvalidDocument.at("", "has-closures", message)
 
 
 def couple(
@@ -252,7 +250,7 @@ def couple_formulas(
     assembly = assemble(spec, parts)
     entries = entries_of(joint_parents(assembly.mounted))
     entries.require("the tree")
-    wanted = None if assembly.cuts or spec.driven or spec.ignored else names
+    wanted = None if assembly.cuts or assembly.reduced or spec.driven or spec.ignored else names
     result = limited(_formulas(assembly, christoffel and not entries.is_large, every, wanted), max_nodes)
     return _model(assembly, result, Plausibility(spec, {name: part.definition for name, part in parts.items()}))
 
@@ -268,22 +266,24 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
     spec = assembly.reading.spec
-    told = reduction_of(assembly.instances, assembly.mounted, bool(spec.closures))
+    told = reduction_of(assembly.instances, assembly.mounted, bool(spec.closures), assembly.reduced)
     tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told
     more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied, "contacts": touching}
-    more["balls"] = ball_rows(assembly.balls, moving)
+    more |= {"balls": ball_rows(assembly.balls, moving), "reduced": tuple(levels(assembly))}
     return Model(result, *axes, assembly.parameters, {}, rows, inputs, limited, plausibility, **more)
 
 
 def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted: frozenset[str] | None) -> Program:
     """Outputs of a tree, all or those that are ``wanted``; ``admitted``: inertias that are grouped."""
-    graph, names = assembly.scope.graph, tuple(all_coordinates(assembly))
+    graph, names = assembly.scope.graph, tuple(every_coordinate(assembly))
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-        outputs = ignore(assembly, names, put_in(assembly, loaded_outputs(assembly, coupled, wanted)))
+        outputs = ignore(
+            assembly, tuple(all_coordinates(assembly)), put_in(assembly, loaded_outputs(assembly, coupled, wanted))
+        )
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
         return hoisted(program(graph, outputs, assembly.scope.symbols))
     except ZeroDivisionError:

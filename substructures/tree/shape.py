@@ -30,6 +30,7 @@ from substructures.part.definition import Parameter, Placement
 from substructures.part.part import Part
 from substructures.part.shape import without_descriptions
 from substructures.tree.document import Instance, TreeSpec
+from substructures.tree.given.loops.closed_form import dependent
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128
@@ -221,7 +222,7 @@ def shape_digest(
         }
     instances = [
         {name: x for name, x in each.items() if name not in ("substructure", "definition")}
-        | {"part": parts[each["name"]].shape}
+        | {"part": parts[each["name"]].shape, **_level(each, parts[each["name"]])}
         for each in plain.get("instances", ())
     ]
     left = {name: x for name, x in plain.items() if name != "name"} | {"instances": instances}
@@ -234,6 +235,14 @@ def shape_digest(
         for each in told[0]["instances"]:
             del each["name"]
     return hashlib.sha256(write_json(told)).hexdigest()
+
+
+def _level(instance: Mapping[str, Any], part: Part) -> dict[str, Any]:
+    """Of an instance that takes the reduced level, with the branches of its definition."""
+    if instance.get("level") == "full" or not part.definition.independent:
+        return {}
+    found = dependent(part)
+    return {} if isinstance(found, str) else {"level": "reduced", "branches": found.branches}
 
 
 def _numbered(plain: Any, names: Sequence[str]) -> Any:

@@ -39,7 +39,8 @@ LINKAGE: Plain = {
 
 def linkage() -> Model:
     return tree_model(
-        {"gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "linkage"}]}, {"linkage": LINKAGE}
+        {"gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "linkage", "level": "full"}]},
+        {"linkage": LINKAGE},
     )
 
 
@@ -54,8 +55,14 @@ def on_an_arm() -> Model:
     arm = {"name": "arm", "bodies": [stick], "ports": [{"name": "tip", "body": "stick", "position": [0, 0.1, 0.4]}]}
     instances = [
         {"name": "arm", "substructure": "arm"},
-        {"name": "left", "substructure": "linkage", "at": "arm.tip", "placement": {"rpy": [0.4, 0.3, 0]}},
-        {"name": "right", "substructure": "linkage", "at": "left.rocker", "parameters": {"l1": 0.12}},
+        {
+            "name": "left",
+            "substructure": "linkage",
+            "level": "full",
+            "at": "arm.tip",
+            "placement": {"rpy": [0.4, 0.3, 0]},
+        },
+        {"name": "right", "substructure": "linkage", "level": "full", "at": "left.rocker", "parameters": {"l1": 0.12}},
     ]
     return tree_model({"gravity": [1, -9.81, 2], "instances": instances}, {"arm": arm, "linkage": damped})
 
@@ -183,7 +190,11 @@ def test_the_squeezer_starts_as_published() -> None:
 
 def test_the_five_bar_arm_has_the_textbook_equations() -> None:
     """Two inertias that no position changes, no velocity forces (Spong, Hutchinson and Vidyasagar, 2006)."""
-    tree = {"name": "t", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "five-bar"}]}
+    tree = {
+        "name": "t",
+        "gravity": [0, -9.81, 0],
+        "instances": [{"name": "x", "substructure": "five-bar", "level": "full"}],
+    }
     model = couple(TreeSpec.read(tree), {"x": shipped_part("five-bar")})
     p = {name: float(x["value"]) for name, x in catalogue.load("five-bar")["parameters"].items()}
     d11 = p["m1"] * p["c1"] ** 2 + p["m3"] * p["c3"] ** 2 + p["m4"] * p["l1"] ** 2 + p["I1"] + p["I3"]
@@ -239,7 +250,7 @@ def test_what_is_asked_wrongly(asked: Plain, place: str, code: str) -> None:
 def test_what_the_definitions_do_not_say() -> None:
     """Without closures there is nothing to reduce; with some that no part names coordinates for, the request has to."""
     arm = couple(
-        TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "five-bar"}]}),
+        TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "five-bar", "level": "full"}]}),
         {"x": derive({**catalogue.load("five-bar"), "independent": [], "start": {}})},
     )
     for model, code in ((arm, "missing"), (closed_entry("four-bar", []), "not-of-tree")):
@@ -273,7 +284,11 @@ def test_faults_of_definitions_have_their_place(change: Plain, place: str, code:
 def test_what_a_model_says_of_them_is_certified() -> None:
     """Also as it comes out of a store."""
     model, parts = linkage(), {"x": derived_once(LINKAGE)}
-    tree = {"name": "loop", "gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "linkage"}]}
+    tree = {
+        "name": "loop",
+        "gravity": [0, -9.81, 0],
+        "instances": [{"name": "x", "substructure": "linkage", "level": "full"}],
+    }
     definitions = {name: part.definition for name, part in parts.items()}
     summary = json.loads(json.dumps(model.described()))
     assert certify_tree(TreeSpec.read(tree), definitions, summary, model.program)["direct_form"]
@@ -285,12 +300,15 @@ def test_what_a_model_says_of_them_is_certified() -> None:
 
 def test_a_published_tree_says_it_too() -> None:
     parts = {"a": derived_once(LINKAGE), "p": shipped_part("simple-pendulum")}
-    instances = [{"name": "p", "substructure": "p", "at": "a.rocker"}, {"name": "a", "substructure": "linkage"}]
+    instances = [
+        {"name": "p", "substructure": "p", "at": "a.rocker"},
+        {"name": "a", "substructure": "linkage", "level": "full"},
+    ]
     tree = {"name": "t", "gravity": [0, -9.81, 0], "instances": instances}
     spec = TreeSpec.read(tree)
     part = published_part(published(spec, parts, Publication({"name": "whole"})), parts)
     assert part.definition.independent == ("a_crank", "p_q1")
-    mounted = {**tree, "instances": [{"name": "w", "substructure": "whole"}]}
+    mounted = {**tree, "instances": [{"name": "w", "substructure": "whole", "level": "full"}]}
     whole = couple(TreeSpec.read(mounted), {"w": part})
     found = reduced_equations(whole, {"w.a_crank": 2.0, "w.p_q1": 0.3})
     other = reduced_equations(couple(spec, parts), {"a.crank": 2.0, "p.q1": 0.3})

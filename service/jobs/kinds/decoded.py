@@ -64,7 +64,7 @@ def _pinned_model(text: str) -> Written:
     }
     kept = (
         *("coordinates", "joints", "frames", "closures", "reduction"),
-        *("inputs", "limited", "driven", "ignored", "velocity_constraints", "contacts", "balls", "numbers"),
+        *("inputs", "limited", "driven", "ignored", "velocity_constraints", "contacts", "balls", "reduced", "numbers"),
     )
     told: dict[str, Any] = {"warnings": summary["certificate"].get("warnings", [])}
     if lost := not_judged(summary["certificate"]):

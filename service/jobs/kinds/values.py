@@ -18,7 +18,7 @@ from substructures.tree.closures import ClosureRows
 from substructures.tree.model import Model
 
 #: what of a summary says how a model moves
-TIED = ("velocity_constraints", "contacts", "balls")
+TIED = ("velocity_constraints", "contacts", "balls", "reduced")
 
 
 def without_formulas(summary: Mapping[str, Any]) -> Model:

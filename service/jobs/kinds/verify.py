@@ -33,7 +33,7 @@ ALL = "*"
 #: what is stored of a tree beside its program, but for the certificate
 SUMMARY = (
     *("coordinates", "joints", "frames", "closures", "reduction", "limited", "driven", "ignored"),
-    *("velocity_constraints", "contacts", "balls", "parameters", "inputs", "operations", "numbers"),
+    *("velocity_constraints", "contacts", "balls", "reduced", "parameters", "inputs", "operations", "numbers"),
 )
 
 

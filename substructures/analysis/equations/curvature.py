@@ -36,8 +36,9 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.evaluation import Evaluator, interpreted
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.numbers.workspace import Workspace
+from substructures.tree.closures import require_open
 from substructures.tree.document import require_ungiven
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 OUTPUTS = ("riemann", "ricci", "scalar_curvature", "inverse_metric", "christoffel_second")
 ADVICE = "the metric is singular in this state, or its inverse is too large: check masses and coordinates"

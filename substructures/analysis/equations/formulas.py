@@ -16,8 +16,9 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Symbol
 from substructures.mechanics.balls import displacement_rates
 from substructures.quantities.numbers.workspace import Workspace
+from substructures.tree.closures import require_open
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 #: what takes closures
 MOTIONS = "use loop states, simulations or velocity equations with constraints of the type 'closure'"

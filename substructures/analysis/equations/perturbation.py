@@ -34,8 +34,9 @@ from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
 from substructures.quantities.numbers.workspace import ID, vector
+from substructures.tree.closures import require_open
 from substructures.tree.document import require_undriven
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 #: operations without a derivative at a zero of their argument
 JUMPS = ("abs", "sign")

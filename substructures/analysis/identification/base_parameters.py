@@ -48,8 +48,8 @@ from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel
-from substructures.tree.document import require_undriven
-from substructures.tree.model import require_open
+from substructures.tree.closures import require_open
+from substructures.tree.document import require_full, require_undriven
 
 DRIVES = ("armature", "viscous", "coulomb", "offset")
 #: unit of a drive's parameter, for revolute and prismatic joints
@@ -145,6 +145,7 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     (size, limit). Source: M. Gautier and W. Khalil, 1990 (see above).
     """
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
+    require_full(Y.reduced, "identify on closures")
     require_undriven(Y.driven, "take the tree without 'driven', or the regressor")
     for i, name in enumerate(drives):
         if name not in DRIVES:

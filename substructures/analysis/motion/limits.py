@@ -8,6 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.quantities.numbers.levels import loop_warnings, ranges_left
 from substructures.quantities.numbers.limits import joint_limits, reached
 from substructures.tree.model import Model
 
@@ -21,4 +22,7 @@ def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Tr
     lowest, highest = motion.reached or reached(motion.t, motion.q, motion.qd)
     judge = model.plausibility
     apart = [] if judge is None else judge.apart(model.positions, motion.q)
+    if model.reduced:
+        is_wrong = motion.status == "failed" or motion.is_right is False
+        apart = [*apart, *ranges_left(model, lowest, highest), *(loop_warnings(model) if is_wrong else ())]
     return replace(motion, limits=limits.plain(), warnings=(*limits.warnings(lowest, highest), *apart))

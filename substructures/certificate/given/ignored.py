@@ -60,7 +60,7 @@ def ignored_outputs(
     result = Outputs({name: _reduced(name, each, pushed, rest) for name, each in found.items()})
     for name, axis in MOTIONS.items():
         shape = found[name].shape
-        result.array(f"{name}_0", shape[:axis] + shape[axis + 1 :]).update(_along(_whole(found[name]), axis, w))
+        result.array(f"{name}_0", shape[:axis] + shape[axis + 1 :]).update(along(whole(found[name]), axis, w))
     _routhian(result, found, (g, w, p), pushed, rates)
     speeds = (m.values[f"{coordinates[c]}'"] for c in cyclic)
     result.array("ignored_rates", (len(cyclic),)).update({(k,): v for k, v in enumerate(speeds)})
@@ -113,7 +113,7 @@ def _moving(
     still = {**values, **dict.fromkeys(_symbols(names), arb(0))}
     bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
     numbers = Numbers(Bindings(values, bound))
-    p, g = [numbers.read(given[name]) for name in names], _whole(outputs(still)["metric"])
+    p, g = [numbers.read(given[name]) for name in names], whole(outputs(still)["metric"])
     w, pushed = _velocities(g, cyclic, rest, p)
     rates = [values[f"{coordinates[a]}'"] for a in rest]
     speeds = [w[c] + total(column[c] * v for column, v in zip(pushed, rates, strict=True)) for c in cyclic]
@@ -156,9 +156,9 @@ def _routhian(
     for name, x in (("T_2", _form(g, free, free) / 2), ("T_1", dot(linear, rates)), ("T_0", last)):
         result.scalar(name, x)
     if "christoffel" in found:
-        gamma = _along(_whole(found["christoffel"]), 2, w)
-        result.array("Gamma_ab0", (len(pushed),) * 2).update(_contracted(_contracted(gamma, 0, pushed), 1, pushed))
-        result.array("Gamma_a00", (len(pushed),)).update(_contracted(_along(gamma, 1, w), 0, pushed))
+        gamma = along(whole(found["christoffel"]), 2, w)
+        result.array("Gamma_ab0", (len(pushed),) * 2).update(contracted(contracted(gamma, 0, pushed), 1, pushed))
+        result.array("Gamma_a00", (len(pushed),)).update(contracted(along(gamma, 1, w), 0, pushed))
 
 
 def _require_cyclic(here: Outputs, away: Outputs, cyclic: Sequence[int], coordinates: Sequence[str]) -> None:
@@ -175,7 +175,7 @@ def _require_cyclic(here: Outputs, away: Outputs, cyclic: Sequence[int], coordin
                 raise VerificationFailed(f"{name} depends on {names}, which is ignored")
 
 
-def _whole(values: Values) -> dict[Index, Ball]:
+def whole(values: Values) -> dict[Index, Ball]:
     """All elements."""
     return {image: x * sign for i, x in values.entries.items() for image, sign in images_of(i, values.symmetry)}
 
@@ -195,9 +195,9 @@ def _reduced(name: str, values: Values, pushed: Sequence[Column], rest: Sequence
     if values.along or name in OWN:
         left = tuple(values.along[a] for a in rest) if values.along else ()
         return replace(_chosen(values, place), shape=shape, along=left)
-    entries = _whole(values)
+    entries = whole(values)
     for axis in axes:
-        entries = _contracted(entries, axis, pushed)
+        entries = contracted(entries, axis, pushed)
     symmetry = "connection" if name == "christoffel" else values.symmetry
     if len(axes) > 1:
         entries = {i: x for i, x in entries.items() if i[-2] <= i[-1]}
@@ -213,16 +213,16 @@ def _chosen(values: Values, place: Mapping[int, int]) -> Values:
     return replace(values, entries=entries, others=others)
 
 
-def _contracted(entries: Mapping[Index, Ball], axis: int, pushed: Sequence[Column]) -> dict[Index, Ball]:
+def contracted(entries: Mapping[Index, Ball], axis: int, pushed: Sequence[Column]) -> dict[Index, Ball]:
     """P_ia x_..i.."""
     result: dict[Index, Ball] = {}
     for a, column in enumerate(pushed):
-        for index, x in _along(entries, axis, column).items():
+        for index, x in along(entries, axis, column).items():
             result[(*index[:axis], a, *index[axis:])] = x
     return result
 
 
-def _along(entries: Mapping[Index, Ball], axis: int, column: Column) -> dict[Index, Ball]:
+def along(entries: Mapping[Index, Ball], axis: int, column: Column) -> dict[Index, Ball]:
     """x_..i.. v^i."""
     result: dict[Index, Ball] = {}
     for index, x in entries.items():

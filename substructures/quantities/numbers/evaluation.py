@@ -25,6 +25,7 @@ from substructures.quantities.accelerations import (
 from substructures.quantities.canonical import momentum
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.numbers.conditioning import Look, solved_anew
+from substructures.quantities.numbers.levels import singular_loops
 from substructures.quantities.numbers.reaction_numbers import reaction_numbers
 from substructures.quantities.numbers.result import Evaluation, Failure, failures_of, without_axis
 from substructures.quantities.numbers.result_warnings import advice, result_of, state_warnings, told_of
@@ -286,7 +287,12 @@ def _answered(
     if asked.form.float32 or not _is_finite(names, found):
         failures = failures_of(
             shown,
-            lambda name, state: advice(name, told.get(name, {}).get(state), asked.form.is_beyond(results[name], state)),
+            lambda name, state: advice(
+                name,
+                told.get(name, {}).get(state),
+                asked.form.is_beyond(results[name], state),
+                singular_loops(model),
+            ),
         )
     return Evaluation(
         model.coordinates,

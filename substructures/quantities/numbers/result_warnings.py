@@ -66,13 +66,12 @@ def _rows(result: Any) -> Array:
     return np.concatenate([x.reshape(len(x), prod(x.shape[1:])) for x in each], axis=1)
 
 
-def advice(name: str, doubt: Doubt | None, is_beyond: bool) -> tuple[str, str]:
-    """Code and message of a failure. ``is_beyond``: only in the precision wanted."""
+def advice(name: str, doubt: Doubt | None, is_beyond: bool, more: str = "") -> tuple[str, str]:
+    """Code and message of a failure. ``is_beyond``: only in the precision wanted; ``more``: what else it may be."""
     if is_beyond:
         return "overflow", "the result is beyond 3.4e38, the largest number of single precision"
-    if doubt is not None:
-        return doubt.code, doubt.message
-    return "not-finite", {CONDITION: _ENDLESS, REACTIONS: _NO_MOTION}.get(name, _NOT_FINITE)
+    message = {CONDITION: _ENDLESS, REACTIONS: _NO_MOTION}.get(name, _NOT_FINITE) if doubt is None else doubt.message
+    return "not-finite" if doubt is None else doubt.code, f"{message}; {more}" if more else message
 
 
 def state_warnings(

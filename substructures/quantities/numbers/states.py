@@ -18,7 +18,7 @@ from numpy.typing import ArrayLike
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.documents.fields import in_si
-from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, among
+from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, among, listed
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
@@ -155,7 +155,11 @@ def _count_of(coordinates: Sequence[str]) -> str:
 
 
 def _given(coordinate: str, model: Model) -> str:
-    """What is said of the state of a coordinate that is driven or ignored."""
+    """What is said of the state of a coordinate that is driven or ignored, or depends on others."""
+    for level in model.reduced:
+        if coordinate in level["dependent"]:
+            movers = listed(f"'{name}'" for name in level["independent"])
+            return f"'{coordinate}' depends on {movers} (reduced level): leave it out"
     what, field = ("motion", "driven") if coordinate in model.driven else ("momentum", "ignored")
     return f"the {what} of '{coordinate}' is given ('{field}'): leave it out"
 
@@ -166,11 +170,12 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
     """
     names = model.positions if name == "q" else model.coordinates
     unknown = [str(key) for key in given if key not in names]
+    taken = {*model.given, *(z for level in model.reduced for z in level["dependent"])}
     faults = [
         Fault(
             f"/{name}/{escape(key)}",
             "unknown-coordinate",
-            _given(key, model) if key in model.given else f"unknown coordinate '{key[:80]}'{among(key, names, k)}",
+            _given(key, model) if key in taken else f"unknown coordinate '{key[:80]}'{among(key, names, k)}",
         )
         for k, key in enumerate(unknown)
     ]

@@ -7,6 +7,7 @@ from typing import Any
 
 from substructures.array import Array
 from substructures.documents import escape
+from substructures.quantities.numbers.levels import ranges_left
 from substructures.quantities.quantity import MODEL, TABLE
 from substructures.quantities.sources import Sources, steps
 
@@ -48,6 +49,8 @@ def value_warnings(
     if judge is not None and q is not None:
         notices += judge.left(model.positions, q, parameters, first)
         notices += judge.apart(model.positions, q, first)
+    if model.reduced and q is not None and len(q):
+        notices += ranges_left(model, q.min(axis=0), q.max(axis=0))
     return notices
 
 

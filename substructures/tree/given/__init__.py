@@ -1,1 +1,1 @@
-"""Coordinates that are given: their motion (driven), or their momentum (ignored)."""
+"""Coordinates that are given: by others (dependent), or their motion (driven), or their momentum (ignored)."""

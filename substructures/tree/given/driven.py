@@ -27,7 +27,7 @@ a driven coordinate has no force beside that of the drive.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from substructures.documents import escape
@@ -44,6 +44,7 @@ from substructures.expr.walk import transfer
 from substructures.part.relations import OF_COORDINATES
 from substructures.tree.assembly import Assembly
 from substructures.tree.document import DrivenInput, DrivenTable
+from substructures.tree.given.dependent import reduced
 
 Elements = Mapping[tuple[int, ...], Any]
 #: s, s', s''
@@ -58,14 +59,34 @@ MOTIONS = frozenset(("linear_momentum", "angular_momentum", "U", "Omega"))
 AXES: dict[str, tuple[int, ...]] = {**OF_COORDINATES, "g_a0": (0,), "Gamma_ab0": (0, 1), "Gamma_a00": (0,)}
 
 
-def all_coordinates(assembly: Assembly) -> dict[str, str]:
-    """The kinds of all coordinates by name, free and driven: R or P."""
+def every_coordinate(assembly: Assembly) -> dict[str, str]:
+    """The kinds of all coordinates of all parts by name, dependent ones among them: R or P."""
     pairs = zip(assembly.instances, assembly.mounted, strict=True)
     return {
         f"{instance.name}.{name}": kind
         for instance, m in pairs
         for name, kind in zip(m.part.coordinates, m.part.joints, strict=True)
     }
+
+
+def all_coordinates(assembly: Assembly) -> dict[str, str]:
+    """Those that do not depend on others, free, driven and ignored."""
+    values = assembly.dependent.values
+    return {name: kind for name, kind in every_coordinate(assembly).items() if name not in values}
+
+
+def levels(assembly: Assembly) -> Iterator[dict[str, Any]]:
+    """The reduced instances: their coordinates, by themselves and dependent, and the closures that make them so."""
+    values = assembly.dependent.values
+    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
+        if instance.name in assembly.reduced:
+            names = [f"{instance.name}.{q}" for q in m.part.coordinates]
+            yield {
+                "instance": instance.name,
+                "independent": [q for q in names if q not in values],
+                "dependent": [q for q in names if q in values],
+                "closures": [f"{instance.name}.{each.name}" for each in m.part.definition.closures],
+            }
 
 
 def driven_names(assembly: Assembly) -> tuple[str, ...]:
@@ -135,9 +156,11 @@ def _ends_flat(knots: Knots) -> bool:
 def put_in(
     assembly: Assembly, outputs: Mapping[str, Formulas], axes: Mapping[str, Sequence[int]] = AXES
 ) -> dict[str, Formulas]:
-    """Outputs of all coordinates with the given motions in them: along axes of coordinates those that are free, beside
-    them what the table says. ``axes``: those of coordinates by output. Raises as :func:`given_motions`.
+    """Outputs of all coordinates with dependent coordinates and given motions in them: along axes of coordinates those
+    that are free, beside them what the table says. ``axes``: those of coordinates by output. Raises as
+    :func:`given_motions`.
     """
+    outputs = reduced(assembly.dependent, list(every_coordinate(assembly)), outputs, axes)
     motions = given_motions(assembly)
     if not motions:
         return dict(outputs)

@@ -1,0 +1,97 @@
+"""At which of the positions that closures allow a program of the reduced level is compared with the documents.
+
+On the branch of a loop det d phi / dz may change its sign, as that of parallelograms does where they are flat. So at
+each state a program has to be what the documents say of one of the positions there; and at the start of the definition,
+with the default values of its parameters, of the position that is nearest to it. What is analytic has one branch.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from itertools import islice, product
+from typing import Any
+
+from flint import arb, ctx
+
+from substructures.certificate.linear import Ball
+from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.outputs import Outputs
+from substructures.certificate.states import draws
+from substructures.certificate.stored import Stored, operations_in_balls
+from substructures.errors import VerificationFailed
+
+#: most combinations of sides
+MOST = 64
+#: what tells a position
+PLACES = ("position", "rotation", "metric")
+
+#: outputs out of the document of a tree, at values of all symbols
+Make = Callable[[Plain, Mapping[str, Any]], Outputs]
+
+
+def on_a_side(tree: Plain, definitions: Mapping[str, Plain], program: Stored, make: Make) -> Callable[[Any], Outputs]:
+    """What ``make`` gives for the position that the program has at a state; for the first one where it has none."""
+    if not tree.get("reduced"):
+        return lambda values: make(tree, values)
+
+    def expected(values: Mapping[str, Ball]) -> Outputs:
+        """At one state."""
+        stored, first = operations_in_balls(program, values), None
+        for sides in _sides(tree, definitions):
+            outputs = make({**tree, "sides": sides}, values)
+            if _agrees(program, stored, outputs, outputs.keys()) or not _is_closed(outputs):
+                return outputs
+            first = first or outputs
+        return first or Outputs()
+
+    return expected
+
+
+def _sides(tree: Plain, definitions: Mapping[str, Plain]) -> Iterator[tuple[int, ...]]:
+    count = sum(len(definitions[name]["closures"]) for name in tree["reduced"])
+    return islice(product((1, -1), repeat=count), MOST)
+
+
+def _is_closed(outputs: Outputs) -> bool:
+    """Whether there is a position: everything has a value, but for potentials that are not known."""
+    return all(x.is_finite() for values in outputs.values() if values.shape for x in values.entries.values())
+
+
+def _agrees(program: Stored, stored: list[Ball], outputs: Outputs, names: Any) -> bool:
+    """Whether all elements may be the same ones."""
+    for name in (name for name in names if name in program.outputs and not outputs[name].along):
+        output, values = program.outputs[name], outputs[name]
+        for index, entry in zip(output.index, output.entries, strict=True):
+            x = values.entries.get(tuple(index), arb(0))
+            if tuple(index) not in values.others and not (x.is_finite() and stored[entry].overlaps(x)):
+                return False
+    return True
+
+
+def starts_of(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
+    """Where the independent coordinates of reduced instances start, by name."""
+    with ctx.workprec(1100):
+        return {
+            f"{name}.{q}": Numbers({}).read(definitions[name].get("start", {}).get(q, 0))
+            for name in tree.get("reduced", ())
+            for q in definitions[name]["independent"]
+        }
+
+
+def require_start(
+    tree: Plain, definitions: Mapping[str, Plain], program: Stored, make: Make, kinds: Mapping[str, str]
+) -> None:
+    """Raises VerificationFailed unless the program is on the branch of the start."""
+    if not tree.get("reduced"):
+        return
+    (state,) = next(draws(kinds, {}, 1))
+    with ctx.workprec(128):
+        values = {name: arb(x) for name, x in state.items()}
+        for name in tree["reduced"]:
+            given = {f"{name}.{p}": x.get("value") for p, x in definitions[name].get("parameters", {}).items()}
+            values |= {p: Numbers({}).read(1 if x is None else x) for p, x in given.items() if p in values}
+        values |= {q: x for q, x in starts_of(tree, definitions).items() if q in values}
+        outputs, stored = make(tree, values), operations_in_balls(program, values)
+        known = all(x.is_finite() for name in PLACES if name in outputs for x in outputs[name].entries.values())
+        if known and not _agrees(program, stored, outputs, PLACES):
+            raise VerificationFailed("the loops are not on the branch of the start of their definitions")

@@ -1,0 +1,129 @@
+"""The reduced level of parts with loops: outputs of all coordinates as those of the independent ones (notation.md,
+section 10).
+
+With z the dependent coordinates of :mod:`substructures.tree.given.loops`, q' = N y' and q'' = N y'' + H y' y',
+
+    g*_ij = N_ai g_ab N_bj        Gamma*_ijk = N_ai (Gamma_abc N_bj N_ck + g_ab H_bjk)        Q*_i = N_ai Q_a
+
+and every output with an index of coordinates like Q, at z(y), z' and z''. Closures of the tree have G N for G, and
+G_a H_ajk y'^j y'^k more in c. Limits and friction stay those of independent coordinates; an actuator of a dependent
+coordinate has no force. Nothing of the tree depends on dependent coordinates any more.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from typing import Any
+
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.program import Formulas
+from substructures.expr.walk import transfer
+from substructures.tree.given.loops.closed_form import Dependent
+
+Entries = dict[tuple[int, ...], Any]
+#: what has a term more, g_ab H_bjk y'^j y'^k or G_a H_ajk y'^j y'^k
+BENT = {"bias": "metric", "nonlinear_effects": "metric", "closure.acceleration": "closure.jacobian"}
+#: of single coordinates
+OWN = frozenset(("limits", "friction", "friction_load"))
+SYMMETRIES = {"metric": "symmetric", "christoffel": "connection"}
+
+
+def reduced(
+    known: Dependent, names: Sequence[str], outputs: Mapping[str, Formulas], axes: Mapping[str, Sequence[int]]
+) -> dict[str, Formulas]:
+    """Outputs of all coordinates as those of the ones that do not depend on others.
+
+    ``known``: the dependent ones; ``names``: of all coordinates; ``axes``: those of coordinates, by output.
+    """
+    if not known.values:
+        return dict(outputs)
+    level = _Reduced(known.graph, known, names)
+    found = {name: level.moving(name, each, axes.get(name, ()), outputs) for name, each in outputs.items()}
+    return level.written(found)
+
+
+class _Reduced:
+    """N by its columns, and H."""
+
+    def __init__(self, graph: Graph, known: Dependent, names: Sequence[str]) -> None:
+        self.graph, self.known, self.names = graph, known, names
+        self.free = [a for a, name in enumerate(names) if name not in known.values]
+        self.place = {a: i for i, a in enumerate(self.free)}
+        number = {name: a for a, name in enumerate(names)}
+        self.N: list[dict[int, Expr]] = [{a: graph.one} for a in self.free]
+        self.H: dict[int, list[tuple[int, int, Expr]]] = {}
+        for z in known.values:
+            for y, x in known.N[z].items():
+                self.N[self.place[number[y]]][number[z]] = x
+            rows = ((self.place[number[j]], self.place[number[k]], x) for (j, k), x in known.H[z].items())
+            self.H[number[z]] = list(rows)
+        speeds = [graph.symbol(f"{names[a]}'") for a in self.free]
+        #: H y' y' of dependent coordinates
+        self.bent = {
+            a: graph.sum(x * speeds[j] * speeds[k] * (1 if j == k else 2) for j, k, x in rows)
+            for a, rows in self.H.items()
+        }
+        self.values = {f"tau.{z}": graph.zero for z in known.values}
+        for mark, more in (("'", {}), ("''", self.bent)):
+            moving = [graph.symbol(f"{names[a]}{mark}") for a in self.free]
+            for z in known.values:
+                a = number[z]
+                x = graph.sum(self.N[i][a] * v for i, v in enumerate(moving) if a in self.N[i])
+                self.values[f"{z}{mark}"] = x + more[a] if a in more else x
+
+    def moving(self, name: str, each: Formulas, axes: Sequence[int], outputs: Mapping[str, Formulas]) -> Formulas:
+        """An output along its axes, as formula of all coordinates."""
+        if name in OWN:
+            own: Entries = {(self.place[a], *rest): x for (a, *rest), x in each.entries.items() if a in self.place}
+            return Formulas((len(self.free), *each.shape[1:]), own, each.symmetry)
+        entries: Entries = dict(each.expanded())
+        if name in BENT:
+            entries = self._sums([*entries.items(), *self._pull(outputs[BENT[name]])])
+        if not axes:
+            return Formulas(each.shape, entries if name in BENT else each.entries, each.symmetry)
+        for axis in axes:
+            entries = self._contracted(entries, axis)
+        if name == "christoffel":
+            entries = self._sums([*entries.items(), *self._turned(outputs["metric"])])
+        if name in SYMMETRIES:
+            entries = {i: x for i, x in entries.items() if i[-2] <= i[-1]}
+        shape = tuple(len(self.free) if axis in axes else size for axis, size in enumerate(each.shape))
+        return Formulas(shape, entries, SYMMETRIES.get(name, each.symmetry))
+
+    def written(self, outputs: Mapping[str, Formulas]) -> dict[str, Formulas]:
+        """Without dependent coordinates, their rates and accelerations."""
+        roots = [self.graph.lift(x) for each in outputs.values() for x in each.entries.values()]
+        found = iter(self.known.put_in(transfer(roots, self.graph, self.values)))
+        return {
+            name: Formulas(each.shape, {i: next(found) for i in each.entries}, each.symmetry)
+            for name, each in outputs.items()
+        }
+
+    def _pull(self, linear: Formulas) -> Iterable[tuple[tuple[int, ...], Any]]:
+        """x_.b H_bjk y'^j y'^k."""
+        return (((i,), x * self.bent[b]) for (i, b), x in linear.expanded().items() if b in self.bent)
+
+    def _turned(self, metric: Formulas) -> Iterable[tuple[tuple[int, ...], Any]]:
+        """N_ai g_ab H_bjk."""
+        for (i, b), x in self._contracted(dict(metric.expanded()), 0).items():
+            for j, k, bend in self.H.get(b, ()):
+                yield from (((i, *both), x * bend) for both in {(j, k), (k, j)})
+
+    def _contracted(self, entries: Entries, axis: int) -> Entries:
+        """N_ai x_..a.."""
+        by: dict[int, list[tuple[int, Expr]]] = {}
+        for i, column in enumerate(self.N):
+            for a, x in column.items():
+                by.setdefault(a, []).append((i, x))
+        return self._sums(
+            ((*index[:axis], i, *index[axis + 1 :]), x * y)
+            for index, x in entries.items()
+            for i, y in by.get(index[axis], ())
+        )
+
+    def _sums(self, terms: Iterable[tuple[tuple[int, ...], Any]]) -> Entries:
+        found: dict[tuple[int, ...], list[Any]] = {}
+        for index, x in terms:
+            found.setdefault(index, []).append(x)
+        sums = {index: self.graph.sum(some) for index, some in found.items()}
+        return {index: x for index, x in sums.items() if not x.is_zero}

@@ -1,0 +1,295 @@
+"""Dependent coordinates of a part as functions of its independent ones, where its loops are planar four-bars.
+
+Of the four-bar family, that is: one closure after the other may leave three motions unknown (:mod:`.triangle`), until
+all coordinates but the independent ones y are known. With phi = 0 what a closure demands in its plane, z its unknown
+coordinates,
+
+    q' = N y'           N_z = -phi_z^-1 phi_other N_other
+    q'' = N y'' + H y' y'     H_z = -phi_z^-1 (phi_other H_other + phi_ab N_a N_b)
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+from itertools import combinations_with_replacement
+from typing import Any
+
+from substructures.expr.differentiate import gradient
+from substructures.expr.graph import Expr, Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.operations import Symbol
+from substructures.expr.program import array, program
+from substructures.expr.trigonometry import cos, linear_form, sin
+from substructures.expr.walk import build, reachable, transfer
+from substructures.loads.scope import Scope, no_names
+from substructures.part.frames import constant, cut_frames
+from substructures.part.outputs import over_formulas
+from substructures.part.part import Part
+from substructures.tree.given.loops.planar import Chains, Loop, NotPlanar, loop_of
+from substructures.tree.given.loops.triangle import Complex, Solution, conjugate, solutions, times
+
+#: (coordinate, factor) of a sum of angles
+Sum = frozenset[tuple[str, int]]
+#: relative difference of distances from the start that tells no branch
+SAME = 1e-6
+
+
+@dataclass
+class Dependent:
+    """What the coordinates of a part are: values of dependent ones, cosines and sines of sums of them, rows of N by
+    coordinate and independent coordinate, H by coordinate and two of these; ``branches``: the signs that were taken.
+
+    Values and angles are formulas of independent coordinates and parameters; N and H of all coordinates.
+    """
+
+    graph: Graph
+    independent: tuple[str, ...]
+    values: dict[str, Expr] = field(default_factory=dict)
+    angles: dict[Sum, Complex] = field(default_factory=dict)
+    N: dict[str, dict[str, Expr]] = field(default_factory=dict)
+    H: dict[str, dict[tuple[str, str], Expr]] = field(default_factory=dict)
+    branches: list[int] = field(default_factory=list)
+
+    def moved(self, graph: Graph, names: Mapping[str, str], bindings: Mapping[str, Expr]) -> Dependent:
+        """In another graph, where symbols are ``bindings`` and coordinates have these ``names``."""
+        given = [*self.values.values(), *(x for pair in self.angles.values() for x in pair)]
+        given += [x for row in self.N.values() for x in row.values()]
+        given += [x for bend in self.H.values() for x in bend.values()]
+        found = iter(transfer(given, graph, bindings))
+        own = tuple(names[q] for q in self.independent)
+        values = {names[q]: next(found) for q in self.values}
+        angles = {frozenset((names[q], n) for q, n in known): (next(found), next(found)) for known in self.angles}
+        N = {names[q]: {names[j]: next(found) for j in row} for q, row in self.N.items()}
+        H = {names[q]: {(names[j], names[k]): next(found) for j, k in row} for q, row in self.H.items()}
+        return Dependent(graph, own, values, angles, N, H, list(self.branches))
+
+    def beside(self, other: Dependent) -> Dependent:
+        """Those of both."""
+        values, angles = self.values | other.values, self.angles | other.angles
+        N, H, branches = self.N | other.N, self.H | other.H, self.branches + other.branches
+        return Dependent(self.graph, self.independent + other.independent, values, angles, N, H, branches)
+
+    def put_in(self, roots: Sequence[Expr]) -> list[Expr]:
+        """Formulas with what dependent coordinates are in their places."""
+        new: dict[Expr, Expr] = {}
+        for node in reachable(roots):
+            if node.op == "sym":
+                new[node] = self.values.get(str(node.value), node)
+            elif not node.args or all(new[a] is a for a in node.args):
+                new[node] = node
+            elif node.op in ("cos", "sin", "tan"):
+                c, s = self._cos_sin(node.args[0], new)
+                new[node] = {"cos": c, "sin": s}.get(node.op) or s / c
+            else:
+                new[node] = build(self.graph, node.op, [new[a] for a in node.args])
+        return [new[root] for root in roots]
+
+    def _cos_sin(self, angle: Expr, new: Mapping[Expr, Expr]) -> Complex:
+        """Of a sum of angles, by those of dependent coordinates in it."""
+        terms, turns = linear_form(angle)
+        own = {str(x.value): n for x, n in terms.items() if x.op == "sym" and x.value in self.values}
+        if any(n.denominator != 1 for n in own.values()) or not own:
+            return cos(new[angle]), sin(new[angle])
+        graph = self.graph
+        rest = graph.sum(
+            new.get(x, x) * graph.number(n) for x, n in terms.items() if not (x.op == "sym" and x.value in own)
+        )
+        rest = rest + graph.pi * graph.number(turns)
+        found: Complex = cos(rest), sin(rest)
+        left = {name: int(n) for name, n in own.items()}
+        for known in sorted(self.angles, key=len, reverse=True):
+            for sign in (1, -1):
+                while known and all(left.get(name, 0) * n * sign > 0 for name, n in known):
+                    x = self.angles[known]
+                    found = times(found, x if sign > 0 else conjugate(x))
+                    for name, n in known:
+                        left[name] -= sign * n
+        return found
+
+
+@dataclass(frozen=True)
+class _Known:
+    """A part by what tells it from others."""
+
+    definition: str
+    program: str
+    part: Part = field(compare=False)
+
+
+def dependent(part: Part) -> Dependent | str:
+    """The closed form of a part that names independent coordinates, or why there is none.
+
+    >>> from substructures import derive
+    >>> dependent(derive("delta-robot"))
+    "the closure 'bars1': of the coordinates around it 3 are unknown"
+    """
+    return _dependent(_Known(part.definition.digest, part.program.digest, part))
+
+
+@lru_cache(maxsize=256)
+def _dependent(known: _Known) -> Dependent | str:
+    try:
+        return _Solver(known.part).solve()
+    except NotPlanar as why:
+        return str(why)
+
+
+class _Solver:
+    """Closures of a part, one after the other."""
+
+    def __init__(self, part: Part) -> None:
+        self.part, self.definition, self.graph = part, part.definition, Graph()
+        run = over_formulas(self.graph)
+        self.chains = Chains(self.graph, part, run(part, {}, tuple(part.program.outputs)))
+        self.found = Dependent(self.graph, tuple(q for q in part.coordinates if q in self.definition.independent))
+        one = self.graph.one
+        self.found.N = {q: {q: one} for q in self.found.independent}
+        self.found.H = {q: {} for q in self.found.independent}
+        self.start = {q: self._constant(x) for q, x in self.definition.start.items()}
+        self.numbers = {q: self.start.get(q, 0.0) for q in self.found.independent}
+        self.numbers |= {
+            name: 1.0 if p.value is None else self._constant(p.value) for name, p in self.definition.parameters.items()
+        }
+
+    def _constant(self, given: Any) -> float:
+        return constant(Scope(Graph()).read(given, "", no_names))
+
+    def solve(self) -> Dependent:
+        """All of them. Raises NotPlanar."""
+        waiting, why = list(self.definition.closures), ""
+        while waiting:
+            for closure in waiting:
+                try:
+                    self._close(closure)
+                except NotPlanar as reason:
+                    why = why or f"the closure '{closure.name}': {reason}"
+                else:
+                    waiting.remove(closure)
+                    why = ""
+                    break
+            else:
+                raise NotPlanar(why)
+        left = [q for q in self.part.coordinates if q not in self.found.N]
+        if left:
+            raise NotPlanar(f"no closure tells '{left[0]}' from the independent coordinates")
+        return self.found
+
+    def _close(self, closure: Any) -> None:
+        """One more. Raises NotPlanar."""
+        scope = Scope(self.graph)
+        cut = cut_frames(scope, closure, "", self.graph.symbol)
+        loop = loop_of(self.chains, (closure.type, closure.from_, closure.to), cut, self.found.N)
+        try:
+            found = [self._known(loop, each) for each in solutions(loop.motions, loop.K, loop.known)]
+        except (ZeroDivisionError, ValueError):
+            raise NotPlanar("points that have to be apart coincide") from None
+        gaps = [self._gap(each) for each in found]
+        best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
+        if math.isnan(gaps[best]):
+            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
+        if len(gaps) > 1 and abs(gaps[0] - gaps[1]) < SAME * max(gaps):
+            raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+        values, angles = found[best]
+        self._move(loop)
+        self.found.branches.append(best)
+        self.numbers |= self._numbers(values)
+        self.found.values |= values
+        self.found.angles |= angles
+
+    def _known(self, loop: Loop, each: Solution) -> tuple[dict[str, Expr], dict[Sum, Complex]]:
+        """Values and angles of the unknown coordinates of a loop, without dependent ones."""
+        values, angles, unknown = dict[str, Expr](), dict[Sum, Complex](), loop.unknown
+        for places, (c, s) in each.turns.items():
+            if max(places) < len(unknown):
+                # of the turns by sign * q: where the signs are -1, of the opposite sum
+                names: Sum = frozenset((unknown[k].coordinate, unknown[k].sign) for k in places)
+                angles[names] = self._written((c, s))
+        for k, x in enumerate(unknown):
+            if k in each.slides:
+                values[x.coordinate] = self.found.put_in([each.slides[k] * x.sign])[0]
+            else:
+                values[x.coordinate] = self._angle(x.coordinate, x.sign, angles[frozenset(((x.coordinate, x.sign),))])
+        return values, angles
+
+    def _written(self, x: Complex) -> Complex:
+        c, s = self.found.put_in(x)
+        return c, s
+
+    def _angle(self, name: str, sign: int, x: Complex) -> Expr:
+        """Between -pi and pi of where it starts."""
+        graph = self.graph
+        at = Scope(graph).read(self.definition.start.get(name, 0), "", no_names)
+        c, s = times((x[0], x[1] * sign), (cos(at), -sin(at)))
+        return at + graph.function("atan2", s, c)
+
+    def _numbers(self, values: Mapping[str, Expr]) -> dict[str, float]:
+        """At the start of independent coordinates, with default values of parameters."""
+        names = list(values)
+        symbols = {name: Symbol(name, "parameter", "") for name in self.numbers}
+        made = program(self.graph, {"v": array((len(names),), lambda i: values[names[i]])}, symbols)
+        numbers = {symbol.name: self.numbers.get(symbol.name, 1.0) for symbol in made.symbols}
+        return dict(zip(names, map(float, interpret(made, numbers)["v"]), strict=True))
+
+    def _gap(self, found: tuple[dict[str, Expr], dict[Sum, Complex]]) -> float:
+        """How far a solution is from the start; nan where there is none."""
+        numbers = self._numbers(found[0])
+        return sum(abs(x - self.start.get(name, 0.0)) for name, x in numbers.items())
+
+    def _move(self, loop: Loop) -> None:
+        """N and H of the unknown coordinates of a loop."""
+        z = [x.coordinate for x in loop.unknown]
+        names = [*z, *self.found.N]
+        N, H = self.found.N, self.found.H
+        slopes = gradient(loop.rows, names)
+        bent = [gradient(row, names) for row in slopes]
+        inverse = _inverse([row[: len(z)] for row in slopes])
+        graph, y = self.graph, self.found.independent
+
+        def solved(columns: Sequence[Expr]) -> list[Expr]:
+            """-phi_z^-1 x."""
+            return [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in inverse]
+
+        others = list(enumerate(names))[len(z) :]
+        for j in y:
+            pushed = [graph.sum(row[k] * N[q][j] for k, q in others if j in N[q]) for row in slopes]
+            for q, x in zip(z, solved(pushed), strict=True):
+                N.setdefault(q, {}).update({} if x.is_zero else {j: x})
+        for j, k in combinations_with_replacement(y, 2):
+            terms = []
+            for row, bend in zip(slopes, bent, strict=True):
+                along = [row[i] * H[q][j, k] for i, q in others if (j, k) in H[q]]
+                along += [
+                    bend[a][b] * N[p][j] * N[q][k]
+                    for a, p in enumerate(names)
+                    for b, q in enumerate(names)
+                    if j in N[p] and k in N[q]
+                ]
+                terms.append(graph.sum(along))
+            for q, x in zip(z, solved(terms), strict=True):
+                H.setdefault(q, {}).update({} if x.is_zero else {(j, k): x})
+
+
+def _inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:
+    """Of one, two or three rows, by Cramer's rule. Raises NotPlanar for a determinant that is always zero."""
+    n = len(A)
+
+    def det(rows: Sequence[int], columns: Sequence[int]) -> Expr:
+        """Of a block."""
+        if not rows:
+            return A[0][0].graph.one
+        terms = [
+            A[rows[0]][c] * det(rows[1:], [x for x in columns if x != c]) * (-1) ** k for k, c in enumerate(columns)
+        ]
+        return A[0][0].graph.sum(terms)
+
+    every = range(n)
+    whole = det(every, every)
+    if whole.is_zero:
+        raise NotPlanar("it does not tell the coordinates that are unknown")
+    return [
+        [det([r for r in every if r != i], [c for c in every if c != j]) * (-1) ** (i + j) / whole for i in every]
+        for j in every
+    ]

@@ -1,0 +1,228 @@
+"""The reduced level of instances: linkages by hand, the equations with multipliers, planted faults, bad input."""
+
+# ruff: noqa: N806 -- symbols of the notation
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+from closed_trees import tree_model, tree_parts
+from mechanics.reduced_parts import ARM, PARTS
+
+from substructures import Definition, InvalidInput, Model, TreeSpec, catalogue, couple, derive, evaluate, simulate
+from substructures.analysis.closed.reduced import reduced_equations
+from substructures.errors import VerificationFailed
+from substructures.quantities.reactions import reactions
+from substructures.tree.certificate import certify_tree
+from substructures.tree.given.loops import closed_form
+from substructures.tree.shape import shape_digest
+
+NAMES = {each["name"]: each for each in PARTS}
+
+
+def alone(name: str, level: str | None = None, gravity: Any = (0, -9.81, 0), **more: Any) -> Model:
+    instance = {"name": "x", "substructure": name} | ({"level": level} if level else {})
+    return tree_model({"gravity": list(gravity), "instances": [instance], **more}, {name: NAMES[name]})
+
+
+def on_an_arm(name: str, level: str | None = None) -> Model:
+    """Between two arms, the second one on its last body."""
+    linkage = {"name": "x", "substructure": name, "at": "arm.tip", "placement": {"rpy": ["0.3", 0, "0.1"]}}
+    last = NAMES[name]["bodies"][-1]["name"]
+    instances = [
+        {"name": "arm", "substructure": "arm"},
+        linkage | ({"level": level} if level else {}),
+        {"name": "hand", "substructure": "arm", "at": f"x.{last}"},
+    ]
+    return tree_model({"gravity": [1, "-9.81", 2], "instances": instances}, {"arm": ARM, name: NAMES[name]})
+
+
+def start_of(name: str) -> dict[str, float]:
+    return {f"x.{q}": float(x) for q, x in NAMES[name]["start"].items()}
+
+
+@pytest.mark.parametrize("crank", [-2.0, 0.4, 3.0, 7.0])
+def test_the_crank_rocker_by_hand(crank: float) -> None:
+    """Angles by the law of cosines (F. Freudenstein, 1955), rates by that of sines; g* = 2 T, V, Q* of its laws."""
+    model = alone("crank-rocker")
+    assert model.coordinates == ("x.phi",)
+    assert not model.closures
+    L0, L1, L2, L3 = 1, 0.3, 0.9, 0.7
+    B = L1 * np.exp(1j * crank)
+    d = abs(L0 - B)
+    coupler = np.angle(L0 - B) + np.arccos((L2**2 + d**2 - L3**2) / (2 * L2 * d))
+    rocker = float(np.angle(B + L2 * np.exp(1j * coupler) - L0))
+    w2 = L1 * np.sin(rocker - crank) / (L2 * np.sin(coupler - rocker))
+    w3 = L1 * np.sin(coupler - crank) / (L3 * np.sin(coupler - rocker))
+    found = evaluate(model, ["metric", "position", "potential_energy", "forces", "generalised_momenta"], [crank], [1.0])
+    tip = found["position"][model.frames.index("x.tip")]
+    np.testing.assert_allclose(tip, [L0 + L3 * np.cos(rocker), L3 * np.sin(rocker), 0], atol=1e-13)
+    c = 0.1 + 0.05j
+    v1, v2, v3 = 1j * np.exp(1j * crank) * c, 1j * B + 1j * w2 * np.exp(1j * coupler) * c, 1j * w3 * abs(c)
+    energy = sum(abs(v) ** 2 for v in (v1, v2, v3)) + 0.02 * (1 + w2**2 + w3**2) + 0.1 * w3**2
+    assert found["metric"][0, 0] == pytest.approx(energy, rel=1e-12)
+    height = np.imag(np.exp(1j * crank) * c + B + np.exp(1j * coupler) * c + np.exp(1j * rocker) * c)
+    assert found["potential_energy"] == pytest.approx(9.81 * height + 1.5 * (rocker - 0.7) ** 2, rel=1e-12)
+    weight = -9.81 * np.imag(v1 + v2 + 1j * w3 * np.exp(1j * rocker) * c)
+    assert found["forces"][0] == pytest.approx(weight - 3 * (rocker - 0.7) * w3 - 0.2 * w3**2, rel=1e-11)
+
+
+@pytest.mark.parametrize("angle", [-1.0, 0.3, 2.0])
+def test_the_slider_crank_by_hand(angle: float) -> None:
+    """x = r cos phi + sqrt(l^2 - r^2 sin^2 phi); Gamma* is half the slope of g*."""
+    model, r, long = alone("slider-pin"), 0.3, 0.8
+
+    def by_hand(phi: float) -> tuple[float, float]:
+        s = np.sqrt(long**2 - r**2 * np.sin(phi) ** 2)
+        turn = -r * np.cos(phi) / s
+        slope = -r * np.sin(phi) - r**2 * np.sin(phi) * np.cos(phi) / s
+        along = (s - 1j * r * np.sin(phi)) / long
+        v = 1j * r * np.exp(1j * phi) + 1j * turn * along * (0.1 + 0.05j)
+        return r * np.cos(phi) + s, abs(0.1 + 0.05j) ** 2 + abs(v) ** 2 + slope**2 + 0.02 * (1 + turn**2)
+
+    found, h = evaluate(model, ["metric", "christoffel", "position"], [angle]), 1e-5
+    x, g = by_hand(angle)
+    assert found["position"][model.frames.index("x.slider")][0] == pytest.approx(x, rel=1e-13)
+    assert found["metric"][0, 0] == pytest.approx(g, rel=1e-12)
+    assert found["christoffel"][0, 0, 0] == pytest.approx(
+        (by_hand(angle + h)[1] - by_hand(angle - h)[1]) / (4 * h), abs=1e-8
+    )
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_they_are_the_equations_with_multipliers(name: str) -> None:
+    """Between two arms: metric, symbols, forces and accelerations of the tree with closures, reduced in numbers."""
+    model, full, rng = on_an_arm(name), on_an_arm(name, "full"), np.random.default_rng(3)
+    assert full.closures
+    assert not model.closures
+    assert [x["instance"] for x in model.reduced] == ["x"]
+    names, start = model.coordinates, start_of(name)
+    for _ in range(2):
+        q = {c: start.get(c, 0) + rng.uniform(-0.2, 0.2) for c in names}
+        qd, tau = ({f"{x}{c}": rng.uniform(-1, 1) for c in names} for x in ("", "tau."))
+        other = reduced_equations(full, q, qd=qd, inputs=tau, independent=names, start=start)
+        assert other.is_right
+        found = evaluate(model, ["metric", "christoffel", "forces", "forward_dynamics", "bias"], q, qd, inputs=tau)
+        named = {"metric": "metric", "christoffel": "christoffel", "forces": "forces"}
+        for ours, theirs in (named | {"forward_dynamics": "accelerations"}).items():
+            wanted = getattr(other, theirs)
+            np.testing.assert_allclose(found[ours], wanted, rtol=0, atol=1e-11 * np.abs(wanted).max())
+        speeds = np.array(list(qd.values()))
+        bias = np.einsum("abc,b,c", found["christoffel"], speeds, speeds)
+        np.testing.assert_allclose(found["bias"], bias, rtol=0, atol=1e-12 * np.abs(bias).max())
+
+
+def test_motions_are_those_with_closures() -> None:
+    model, full = alone("crank-rocker"), alone("crank-rocker", "full")
+    ours = simulate(model, [1.0], (0, 1), qd=[2.0])
+    closed = reduced_equations(full, {"x.phi": 1.0}, qd={"x.phi": 2.0})
+    theirs = simulate(full, closed.q, (0, 1), qd=closed.qd)
+    assert ours.is_right
+    assert theirs.is_right
+    np.testing.assert_allclose(ours.q[:, 0], theirs.q[:, 0], rtol=0, atol=1e-6)
+
+
+def test_a_driven_crank_has_the_torque_of_the_motor() -> None:
+    """At constant speed the torque is Gamma* w^2 - Q*; nothing is left to move."""
+    driven = alone("slider-pin", driven={"x.phi": "0.3 + 2*t"})
+    assert driven.dof == 0
+    torque = evaluate(driven, "drive_forces", [], t=0.4)["drive_forces"][0]
+    found = evaluate(alone("slider-pin"), "inverse_dynamics", [1.1], [2.0], [0.0])["inverse_dynamics"][0]
+    assert torque == pytest.approx(found, rel=1e-12)
+
+
+def test_parallelograms_have_no_root_and_pass_where_they_are_flat() -> None:
+    model = tree_model(
+        {"gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "five-bar"}]},
+        {"five-bar": catalogue.load("five-bar")},
+    )
+    assert not any(operation[0] == "sqrt" for operation in model.program.operations)
+    assert model.operations["christoffel"] < 60
+    found = evaluate(model, ["metric", "christoffel"], [0.2, 1.9])
+    p = {name: float(x["value"]) for name, x in catalogue.load("five-bar")["parameters"].items()}
+    d11 = p["m1"] * p["c1"] ** 2 + p["m3"] * p["c3"] ** 2 + p["m4"] * p["l1"] ** 2 + p["I1"] + p["I3"]
+    d22 = p["m2"] * p["c2"] ** 2 + p["m3"] * p["l2"] ** 2 + p["m4"] * p["c4"] ** 2 + p["I2"] + p["I4"]
+    np.testing.assert_allclose(found["metric"], np.diag([d11, d22]), atol=1e-13)
+    np.testing.assert_allclose(found["christoffel"], 0, atol=1e-13)
+    far = simulate(model, [0.0, 1.0], (0, 1), qd=[0.0, 6.0])
+    assert np.ptp(far.q[:, 1]) > 3
+
+
+def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Another branch than that of the start; a wrong second derivative; a level that the documents do not say."""
+    definition, tree = NAMES["rod"], {"name": "t", "instances": [{"name": "x", "substructure": "rod"}]}
+    part = derive(Definition.read(definition))
+    spec, right = TreeSpec.read(tree), closed_form.dependent(part)
+    assert isinstance(right, closed_form.Dependent)
+    model = couple(spec, {"x": part})
+    full = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "rod", "level": "full"}]})
+    with pytest.raises(VerificationFailed, match="reduced"):
+        certify_tree(full, {"x": part.definition}, model.described(), model.program)
+    bend = {q: {at: x * 2 for at, x in row.items()} for q, row in right.H.items()}
+    mirrored = closed_form._Solver(part)
+    mirrored._gap = lambda found: -closed_form._Solver._gap(mirrored, found)  # type: ignore[method-assign]
+    for wrong, told in ((replace(right, H=bend), "christoffel"), (mirrored.solve(), "branch")):
+        with monkeypatch.context() as patch:
+            patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
+            with pytest.raises(VerificationFailed, match=told):
+                couple(spec, {"x": part})
+
+
+def test_shapes_tell_levels_and_branches_apart() -> None:
+    """Programs that were kept for trees with all coordinates are not those of the reduced level."""
+    specs = [
+        tree_parts(
+            {"instances": [{"name": "x", "substructure": "rod"} | ({"level": "full"} if full else {})]}, {"rod": each}
+        )
+        for full in (True, False)
+        for each in (NAMES["rod"], {**NAMES["rod"], "start": {"phi": "0.5", "psi": "-1.7"}})
+    ]
+    assert len({shape_digest(*spec) for spec in specs}) >= 3
+
+
+def test_what_is_outside_of_a_loop_is_told() -> None:
+    """A range that is left, a position that cannot be closed, a motion into a dead centre: coordinate and closure."""
+    narrow = {**NAMES["slider-pin"], "name": "narrow", "ranges": {"phi": ["-0.3", "0.5"]}}
+    model = tree_model({"instances": [{"name": "x", "substructure": "narrow"}]}, {"narrow": narrow})
+    found = evaluate(model, ["metric", "forward_dynamics"], [1.4], parameters={"x.l": 0.2})
+    assert {(f.quantity, f.state) for f in found.failures} == {("metric", 0), ("forward_dynamics", 0)}
+    assert all("'x.loop' at 'x.phi'" in f.message for f in found.failures)
+    assert [w["code"] for w in found.warnings] == ["gravity-not-given", "range-left"]
+    motion = simulate(model, [0.1], (0, 1), qd=[9.0], parameters={"x.l": 0.2})
+    assert not motion.is_right
+    assert {"range-left", "loop-singular"} <= {w["code"] for w in motion.warnings}
+    with pytest.raises(InvalidInput, match=r"depends on 'x\.phi'"):
+        evaluate(model, "metric", {"x.phi": 0.1, "x.x": 1.0})
+
+
+@pytest.mark.parametrize(
+    ("entry", "level", "code", "told"),
+    [
+        ("delta-robot", "reduced", "not-reduced", "the closure 'bars1'"),
+        ("simple-pendulum", "reduced", "not-reduced", "names no independent"),
+        ("five-bar", "half", "literal-error", "'full' or 'reduced'"),
+    ],
+)
+def test_levels_that_there_are_not(entry: str, level: str, code: str, told: str) -> None:
+    with pytest.raises(InvalidInput, match=told) as raised:
+        tree_model(
+            {"instances": [{"name": "x", "substructure": entry, "level": level}]}, {entry: catalogue.load(entry)}
+        )
+    assert [(fault.pointer, fault.code) for fault in raised.value.faults] == [("/instances/0/level", code)]
+
+
+def test_what_does_not_take_it_says_so() -> None:
+    """Loops of another family keep their closures, and say why; reactions want them."""
+    delta = tree_model(
+        {"instances": [{"name": "x", "substructure": "delta-robot"}]}, {"delta-robot": catalogue.load("delta-robot")}
+    )
+    assert [w["code"] for w in delta.certificate["warnings"]] == ["full-level", "gravity-not-given"]
+    assert len(delta.closures) == 3
+    even = {**NAMES["crank-rocker"], "name": "even", "start": {}}
+    told = tree_model({"instances": [{"name": "x", "substructure": "even"}]}, {"even": even}).certificate["warnings"]
+    assert "two positions are as near" in told[0]["message"]
+    with pytest.raises(InvalidInput, match="reduced level"):
+        reactions(*tree_parts({"instances": [{"name": "x", "substructure": "rod"}]}, {"rod": NAMES["rod"]}))
