@@ -21,7 +21,8 @@ from substructures.certificate.derived.adjoint import Held
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
-from substructures.tree.model import Model, require_open
+from substructures.tree.closures import require_open
+from substructures.tree.model import Model
 
 #: G and c of closures
 HOLDING = ("closure.jacobian", "closure.acceleration")

@@ -26,8 +26,9 @@ from substructures.analysis.orbits.search import Search
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, InvalidDocument, among
 from substructures.quantities.numbers.quaternions import at_zero
+from substructures.tree.closures import require_open
 from substructures.tree.given.ties import require_chains
-from substructures.tree.model import Model, require_open
+from substructures.tree.model import Model
 
 DEFAULT = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-13)
 
