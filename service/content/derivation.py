@@ -16,7 +16,7 @@ from typing import Any
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
 from substructures.part.part import MAX_NODES, Part, derive
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import TreeSpec, with_levels
 from substructures.tree.model import Model, couple
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
@@ -59,11 +59,11 @@ def derived_part(definition: bytes, recipe: str | None = None, max_nodes: int = 
 
 def _published(wanted: Definition, recipe: Mapping[str, Any], max_nodes: int) -> Part | None:
     """The part coupled of its instances; None where the recipe is that of another definition."""
-    spec = TreeSpec.stored(recipe["tree"])
     parts = {
         name: derived_part(write_json(each["definition"]), each.get("recipe"), max_nodes)
         for name, each in recipe["parts"].items()
     }
+    spec = _stored_tree(recipe["tree"], parts)
     how = Publication(recipe["about"], recipe["ports"], tuple(recipe["free"]), recipe["defaults"])
     found = published(spec, parts, how)
     return published_part(found, parts, max_nodes) if found.definition.digest == wanted.digest else None
@@ -84,5 +84,9 @@ def recipe_of(spec: TreeSpec, parts: Mapping[str, Part], recipes: Mapping[str, s
 
 def coupled_tree(document: bytes, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> tuple[TreeSpec, Model]:
     """A stored tree and its model; ``parts``: by instance. Raises as :func:`substructures.tree.model.couple`."""
-    spec = TreeSpec.stored(read_json(document))
+    spec = _stored_tree(read_json(document), parts)
     return spec, couple(spec, parts, max_nodes)
+
+
+def _stored_tree(document: Any, parts: Mapping[str, Part]) -> TreeSpec:
+    return with_levels(TreeSpec.stored(document), {name: part.definition for name, part in parts.items()})

@@ -173,14 +173,19 @@ def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> 
 
 
 def _current(tree: trees.Tree) -> dict[str, Any]:
-    """The document of a stored tree as one of today: units that did not count when it was stored become words, and
-    gravity that was given as zero stays given.
+    """The document of a stored tree as one of today: units that did not count when it was stored become words, gravity
+    that was given as zero stays given, and an instance with all coordinates of its loops keeps them.
     """
     spec: dict[str, Any] = counted(read_json(tree.spec.encode()))
     for instance in spec.get("instances", ()):
         if "definition" in instance:
             instance["definition"] = counted(instance["definition"])
-    warnings = read_json(tree.summary.encode())["certificate"].get("warnings")
+    summary = read_json(tree.summary.encode())
+    closed = {each["name"].rpartition(".")[0] for each in summary.get("closures", ())}
+    for instance in spec.get("instances", ()):
+        if instance["name"] in closed:
+            instance.setdefault("level", "full")
+    warnings = summary["certificate"].get("warnings")
     if warnings is not None and all(warning["code"] != "gravity-not-given" for warning in warnings):
         spec.setdefault("gravity", [0, 0, 0])
     return spec

@@ -227,6 +227,18 @@ def require_unignored(ignored: Collection[str]) -> None:
         raise InvalidDocument.at("", "has-ignored", f"{given}: take the tree without 'ignored'")
 
 
+def with_levels(spec: TreeSpec, definitions: Mapping[str, Definition], reduced: Collection[str] = ()) -> TreeSpec:
+    """The tree, in which every instance whose definition names independent coordinates says its level: those that are
+    ``reduced``, and the others all coordinates, as documents that were stored before there was another level mean.
+    """
+    unsaid = {each.name for each in spec.instances if each.level is None and definitions[each.name].independent}
+    if not unsaid:
+        return spec
+    level = {name: "reduced" if name in reduced else "full" for name in unsaid}
+    said = (each.model_copy(update={"level": level.get(each.name, each.level)}) for each in spec.instances)
+    return spec.model_copy(update={"instances": tuple(said)})
+
+
 def require_full(reduced: Collection[str], instead: str) -> None:
     """Raises InvalidDocument (``has-reduced``) for what takes all coordinates of parts with loops; ``instead``: what to
     ask then.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from hashlib import sha256
 from typing import Any
 
 import numpy as np
@@ -9,7 +10,9 @@ import pytest
 from fastapi.testclient import TestClient
 from mechanics.reduced_parts import PARTS
 
+from service.operations.renewal import renew_tree
 from service.store.store import Store
+from substructures.documents import read_json, write_json
 
 from .fake_engine import FakeEngine, finished, running, submitted
 
@@ -82,6 +85,41 @@ def test_what_it_is_asked_wrongly(press: TestClient) -> None:
     assert away.json()["errors"][0]["message"].startswith("'x.chi' depends on 'x.phi'")
     wrong = press.post("/v1/trees", json={**TREE, "instances": [{**TREE["instances"][0], "level": "short"}]})
     assert wrong.json()["errors"][0]["pointer"] == "/instances/0/level"
+
+
+def stored(store: Store) -> dict[str, Any]:
+    with store.database.read() as connection:
+        return read_json(connection.exec_driver_sql("SELECT spec FROM trees WHERE revision = 1").scalar_one().encode())
+
+
+def test_documents_say_their_level(press: TestClient, store: Store) -> None:
+    """Those of another software, too, whatever level that takes by itself; the same tree is no other one."""
+    assert [each["level"] for each in stored(store)["instances"]] == ["reduced"]
+    assert press.post("/v1/trees", json=TREE).status_code == 200
+    assert press.post("/v1/trees", json={**TREE, "name": "other"}).json()["dof"] == 1
+    found = renew_tree(store.database, "press", 1)
+    assert found.tree.dof == 1
+
+
+def test_documents_from_before_there_were_levels_keep_all_coordinates(press: TestClient, store: Store) -> None:
+    """Derived anew, and as what others are made from."""
+    document = stored(store)
+    del document["instances"][0]["level"]
+    text = write_json(document).decode()
+    digest = "sha256:" + sha256(text.encode()).hexdigest()
+    with store.database.write() as connection:
+        connection.exec_driver_sql("UPDATE trees SET spec = ?, digest = ? WHERE revision = 1", (text, digest))
+    assert renew_tree(store.database, "press", 1).tree.dof == 3
+    seen = press.get("/v1/trees/press").json()
+    assert (seen["dof"], [each["name"] for each in seen["closures"]]) == (3, ["x.loop"])
+    with running(store, FakeEngine()):
+        for kind in ("verify", "upgrade"):
+            done = finished(press, submitted(press, {"kind": kind, "items": [{"tree": "press@1"}]}))
+            assert (done["state"], done["progress"]["failed"]) == ("succeeded", 0), done
+    assert press.get("/v1/trees/press@1").json()["dof"] == 3
+    grown = press.post("/v1/trees/press/couplings", json={"name": "y", "substructure": "crank-rocker", "at": "world"})
+    assert grown.status_code == 201, grown.text
+    assert grown.json()["coordinates"] == ["x.phi", "x.psi", "x.chi", "y.phi"]
 
 
 def test_sweeps_have_its_columns(press: TestClient, store: Store) -> None:

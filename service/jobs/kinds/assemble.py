@@ -27,7 +27,7 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
-from substructures.tree.document import Instance, TreeSpec, misplaced
+from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels
 from substructures.tree.model import couple_shape
 from substructures.tree.units import DescribedParameters, check_tree_units
 
@@ -75,6 +75,9 @@ def pinned_spec(
         faults += check_tree_units(spec, _parameters(known, found), known).faults
     if faults:
         raise InvalidDocument(faults)
+    if is_stored:
+        read = {each.name: _definition(each, found, library) for each in spec.instances}
+        spec = with_levels(spec, {name: each for name, each in read.items() if each is not None})
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     text = spec.model_copy(update={"instances": pinned}).canonical()
@@ -151,6 +154,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
     model = couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    definitions = {name: part.definition for name, part in parts.items()}
+    spec = with_levels(spec, definitions, {each["instance"] for each in model.reduced})
     check_constraints(model)
     check_contacts(model)
     progress(0.9)

@@ -24,6 +24,7 @@ from service.settings import Limits
 from substructures.documents import read_json, read_model
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
+from substructures.tree.document import TreeSpec
 from substructures.tree.model import couple_shape
 
 ALL = "*"
@@ -46,8 +47,9 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
     if kind == "substructure":
         return {**item, **pinned, **recipe_member(known_part(item, library), library)}, (found.digest, found.program)
     tree = known_tree(item, library)
-    parts, blobs = pinned_tree({"tree": read_json(tree.spec.encode()), "nodes": item["nodes"]}, library, is_stored=True)
-    return {**item, **pinned, "parts": parts}, (tree.program, *blobs)
+    document = read_json(tree.spec.encode())
+    parts, blobs = pinned_tree({"tree": document, "nodes": item["nodes"]}, library, is_stored=True)
+    return {**item, **pinned, "document": document, "parts": parts}, (tree.program, *blobs)
 
 
 def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
@@ -80,8 +82,10 @@ def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     told = {"name": name, "digest": digest, "program": model.program.digest, "nodes": len(model.program)}
     told["software"] = software()
     figures = {"dof": model.dof, "before": found.before, "after": found.after, "outcome": found.outcome}
-    files = {"program": pack(model.program), **tree_summary(spec, model).files()} if found.is_one else {}
-    return Outcome({**told, **figures}, files)
+    if not found.is_one:
+        return Outcome({**told, **figures})
+    summary = tree_summary(TreeSpec.stored(item["document"]), model)
+    return Outcome({**told, **figures}, {"program": pack(model.program), **summary.files()})
 
 
 KINDS = {"upgrade": Kind(_spread, _resolve, _run)}

@@ -25,7 +25,7 @@ from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.numbers.evaluation import Evaluator
 from substructures.quantities.quantity import OF_PARTS
 from substructures.quantities.sources import Sources
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import TreeSpec, with_levels
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -98,7 +98,8 @@ def tree_parts(store: Store, tree: Tree) -> tuple[TreeSpec, dict[str, Part]]:
     with reading(f"the document of tree {tree.name}@{tree.revision}", tree.digest):
         spec = TreeSpec.stored(read_json(tree.spec.encode()))
         with store.database.read() as connection:
-            return spec, {each.name: store.required_part(connection, each.digest) for each in spec.instances}
+            parts = {each.name: store.required_part(connection, each.digest) for each in spec.instances}
+            return with_levels(spec, {name: part.definition for name, part in parts.items()}), parts
 
 
 def part_programs(store: Store, tree: Tree) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs
 from service.schemas.jobs import ItemDocument
-from substructures.tree.document import TreeSpec
+from substructures.tree.document import TreeSpec, with_levels
 from substructures.tree.model import couple_shape
 from substructures.tree.plausibility import Plausibility
 
@@ -29,10 +29,11 @@ def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
 def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     """Files ``program`` (packed), ``summary``, ``form`` of a stored document; ``parts``: the digests of definition and
     program of every instance. Raises as :func:`substructures.tree.model.couple_shape`."""
-    spec = TreeSpec.stored(item["tree"])
     parts = {name: part_of(definition, program, blobs) for name, (definition, program) in item["parts"].items()}
-    model = couple_shape(spec, parts, item["nodes"])
-    mass = Plausibility(spec, {name: part.definition for name, part in parts.items()}).mass
+    definitions = {name: part.definition for name, part in parts.items()}
+    spec = TreeSpec.stored(item["tree"])
+    model = couple_shape(with_levels(spec, definitions), parts, item["nodes"])
+    mass = Plausibility(spec, definitions).mass
     told = {"program": model.program.digest, "nodes": len(model.program)}
     told |= {"dof": model.dof, "joints": model.joints, "mass": mass}
     return Outcome(told, {"program": pack(model.program), **tree_summary(spec, model).files()})
