@@ -69,15 +69,13 @@ def pinned_spec(
         if version.software != software():  # it may lack what is coupled today
             raise NotDerived("part", version.digest)
     faults += _faults(spec, found, library)
+    definitions = {each.name: _definition(each, found, library) for each in spec.instances}
+    known = {name: each for name, each in definitions.items() if each is not None}
     if not is_stored:
-        definitions = {each.name: _definition(each, found, library) for each in spec.instances}
-        known = {name: each for name, each in definitions.items() if each is not None}
         faults += check_tree_units(spec, _parameters(known, found), known).faults
     if faults:
         raise InvalidDocument(faults)
-    if is_stored:
-        read = {each.name: _definition(each, found, library) for each in spec.instances}
-        spec = with_levels(spec, {name: each for name, each in read.items() if each is not None})
+    spec = with_levels(spec, known) if is_stored else spec
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     text = spec.model_copy(update={"instances": pinned}).canonical()
