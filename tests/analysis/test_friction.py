@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from decimal import Decimal
 from itertools import product
 from typing import Any
@@ -17,9 +18,12 @@ from simulated import simulated
 from substructures import InvalidArgument, InvalidDocument, InvalidInput, Model
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide
-from substructures.analysis.simulate import Event, FixedStep
+from substructures.analysis.simulate import Event, FixedStep, Table
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 from substructures.quantities.numbers.evaluation import evaluate
 
 G = 9.81
@@ -190,6 +194,40 @@ def test_who_sticks_when_several_are_at_rest(seed: int) -> None:
     motion = simulated(model, [0, 0, 0], (0, 0.05), inputs=tau, count=3, friction="exact")
     assert motion.is_right, motion.checks
     assert np.array_equal(np.sign(motion.qd[-1]), signs)
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+def test_steps_are_machine_code_whoever_sticks(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Accelerations and powers as by hand, what sticks without any; and a motion as in Python."""
+    model, rng = chain(3, [30.0, 25.0, 16.0]), np.random.default_rng(1)
+    table = Table([0, 0.2, 0.5, 0.8, 1], [0, 30, -39, 48, 0], "cubic")
+    start = Start([0, 0, 0], inputs={f"tau.{model.coordinates[1]}": table})
+    conditions = read_conditions(model, start, (0, 1), ["metric", "bias", "forces"])
+    laws = replace(friction_laws(model, conditions.values), stribeck=np.array([0.1, 0.0, 0.3]))
+    dry = DryMotion(RightHandSide(model, conditions.values, conditions.zero, conditions), conditions, laws)
+    for ways in product((-1, 0, 1), repeat=3):
+        dry.signs = np.array(ways)
+        x = np.concatenate([rng.uniform(-1, 1, 3), rng.uniform(0, 0.5, 3) * dry.signs, [0.0]])
+        rates = dry.compiled()
+        assert rates is not None
+        run = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0))
+        run.begin(0.4, x, 0.4, 1.0)
+        run.advance(0)
+        assert rates.power is not None
+        ours, watts = rates.written[0].copy(), rates.power.copy()
+        second, _, power = dry.moved(0.4, x, dry.signs)
+        np.testing.assert_allclose(ours, second, rtol=1e-12, atol=1e-12)
+        assert not ours[dry.signs == 0].any()
+        np.testing.assert_allclose(watts, power, rtol=1e-12, atol=1e-12)
+    given = {"span": (0, 1), "inputs": start.inputs, "count": 41, "friction": "exact"}
+    found = simulated(model, [0, 0, 0], **given)
+    monkeypatch.setattr(DryMotion, "compiled", lambda _: None)
+    plain = simulated(model, [0, 0, 0], **given)
+    assert found.is_right
+    assert [(e.name, e.kind) for e in found.events] == [(e.name, e.kind) for e in plain.events]
+    assert len(found.events) > 5
+    np.testing.assert_allclose([e.t for e in found.events], [e.t for e in plain.events], rtol=0, atol=1e-8)
+    np.testing.assert_allclose(found.qd, plain.qd, rtol=0, atol=1e-8)
 
 
 def test_two_blocks_and_a_spring_come_to_rest() -> None:

@@ -85,14 +85,16 @@ STARTS = {
 DOCUMENTS = {
     "d.json": catalogue.load("simple-pendulum"),
     "t.json": {"name": "t", "instances": [{"name": "a", "substructure": "simple-pendulum"}]},
-    "m.json": {"q": [0.5], "span": [0, 0.1]},
+    "m.json": {"q": [0.5], "span": [0, 0.1], "inputs": {"tau.a.q1": {"times": [0, 1], "values": [0, 1]}}},
 }
 
 
-def imported(words: list[str], folder: Path) -> set[str]:
-    """The modules that are there after a command, in a process of its own."""
-    program = f"import sys\nfrom service.cli.main import main\nmain({words!r})\nprint('modules', *sys.modules)"
-    done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True, check=True)
+def imported(words: list[str], folder: Path, code: int = 0) -> set[str]:
+    """The modules that are there after a command with this exit code, in a process of its own."""
+    program = f"import sys\nfrom service.cli.main import main\ncode = main({words!r})\n"
+    program += "print('modules', *sys.modules)\nsys.exit(code)"
+    done = subprocess.run([sys.executable, "-c", program], cwd=folder, capture_output=True, text=True, check=False)
+    assert done.returncode == code, done.stderr
     return set(done.stdout.splitlines()[-1].split())
 
 
@@ -108,7 +110,7 @@ def test_a_command_on_files_imports_what_it_needs(command: str, tmp_path: Path) 
 @pytest.mark.parametrize("command", ["list", "search x", "versions x", "show x"])
 def test_a_command_on_a_server_computes_nothing_itself(command: str, tmp_path: Path) -> None:
     """Nothing answers there."""
-    found = imported([*command.split(), "--server", "http://127.0.0.1:9"], tmp_path)
+    found = imported([*command.split(), "--server", "http://127.0.0.1:9"], tmp_path, 1)
     computing = {"flint", "llvmlite", "scipy", "substructures.part.part", "substructures.tree.model"}
     assert not (NEVER | ROBOTS | WRITERS | ANALYSES | MOTIONS | computing) & found
     assert "httpx2" in found

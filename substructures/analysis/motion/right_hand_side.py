@@ -6,7 +6,7 @@ algebra. W' is the power of the forces without potential; H - W is constant for 
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
@@ -91,7 +91,13 @@ class RightHandSide:
         columns = [(self._names, self._x), *self._varying]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
         source = _forward_program(Known(model.program.digest, model), frozenset(zero))
-        self._laws = Laws(source, self.kernel, outputs, dict(values) | {"t": self._t}, columns)
+        self._values = dict(values) | {"t": self._t}
+        self._columns = columns
+        self._laws = Laws(source, self.kernel, outputs, self._values, columns)
+
+    def bound(self, kernel: Kernel, outputs: Mapping[str, Array]) -> Callable[[], None]:
+        """Another kernel of the same symbols, at the states of :meth:`evaluate`."""
+        return kernel.bind(outputs, self._values, columns=self._columns)
 
     def corners(self, t: float, x: Array, folder: Path | None = None) -> list[Watch]:
         """Follow force laws on one side of their corners, from a start on; the corners are to be watched."""

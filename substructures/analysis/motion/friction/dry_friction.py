@@ -21,11 +21,12 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
+from substructures.analysis.motion.friction.dry_rates import DryRates
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.array import Array
+from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.states import require
@@ -54,6 +55,11 @@ class FrictionLaws:
         more, width = self._bump
         # F_c + (F_s - F_c) exp(-(v/v_s)^2)
         return np.asarray(self.coulomb + more * np.exp(-np.square(rates / width)))
+
+    @property
+    def numbers(self) -> Array:
+        """F_c, F_s - F_c and v_s (0 and 1 where there is none), and v_0, (k, 4)."""
+        return np.column_stack((self.coulomb, *self._bump, self.velocity))
 
     @cached_property
     def _bump(self) -> tuple[Array, Array]:
@@ -97,10 +103,11 @@ class DryMotion:
     def __init__(self, f: RightHandSide, conditions: Conditions, laws: FrictionLaws) -> None:
         self.f, self.laws, self.n, self.enter = f, laws, f.n, f.enter
         self.signs: Signs = np.zeros(len(laws.places), dtype=np.int64)
-        self._q, self._g = np.zeros((1, f.n)), np.zeros((1, f.n, f.n))
-        kernel = program_kernel(conditions.model.program.select(["metric"]))
-        columns = [(list(conditions.model.coordinates), self._q)]
-        self._metric = kernel.bind({"metric": self._g}, conditions.values, columns=columns)
+        self._rates = DryRates(f, conditions.model, tuple(laws.places.tolist()), laws.numbers)
+
+    def compiled(self) -> CompiledRates | None:
+        """The same in machine code, as the signs are now; None where more than kernels is called."""
+        return self._rates.compiled(self.signs)
 
     def __call__(self, t: float, x: Array) -> Array:
         """x' at (t, x)."""
@@ -168,11 +175,10 @@ class DryMotion:
     def _freed(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """q'' without friction (n,), the columns (n, k) of g^-1 for the joints with friction, and the power."""
         acceleration, _, power = self.f.evaluate(t, x)
-        self._q[0] = x[: self.n]
-        self._metric()
+        self._rates.dynamics()
         unit = np.zeros((self.n, len(self.laws.places)))
         unit[self.laws.places, np.arange(len(self.laws.places))] = 1.0
-        W = np.linalg.solve(self._g[0], unit)
+        W = np.linalg.solve(self._rates.metric[0], unit)
         v = x[self.n + self.laws.places]
         smooth = self.laws.smooth(v)
         # the smooth law, which the formulas have, taken off
@@ -182,6 +188,8 @@ class DryMotion:
 def _least(W: Array, free: Array, most: Array) -> Array:
     """f with the least 1/2 f^T W f + free^T f and |f| <= most."""
     bound = np.maximum(most, 1e-300)
+    if len(free) == 1:
+        return np.clip(-free / W[0], -bound, bound)
     # W = L L^T: least |L^T f + L^-1 free|
     L = np.linalg.cholesky(W)
     right = -scipy.linalg.solve_triangular(L, free, lower=True)

@@ -57,11 +57,20 @@ class Dense:
     def __init__(self, solver: Any, make: Stepper) -> None:
         self.solver, self.make = solver, make
         self.output: Any = None
+        self._roughly: dict[bytes, Array] = {}
 
     @cached_property
-    def rough(self) -> Callable[[Array], Array]:
-        """States (K, N) at times (K,) by the stepper's own polynomial, which costs little and is less accurate."""
+    def _polynomial(self) -> Callable[[Array], Array]:
         return roughly_within(self.solver)
+
+    def rough(self, times: Array) -> Array:
+        """States (K, N) at times (K,) by the stepper's own polynomial, which costs little and is less accurate; those
+        of times that were asked for are kept, as all watches look at the same ones first.
+        """
+        key = times.tobytes()
+        if key not in self._roughly:
+            self._roughly[key] = self._polynomial(times)
+        return self._roughly[key]
 
     def __call__(self, t: float) -> Array:
         """The state (N,) at a time within the step."""

@@ -11,6 +11,7 @@ import numpy as np
 import scipy
 
 from substructures.analysis.arguments import NumberOrExpression, Numbers, one_of, reals
+from substructures.array import Array
 from substructures.errors import InvalidArgument
 
 Interpolation = Literal["hold", "linear", "cubic", "quintic"]
@@ -64,9 +65,9 @@ class Curve:
     """A table as piecewise polynomial of the time; ``breaks``: inner times where its value or its slope jumps."""
 
     def __init__(self, table: Table) -> None:
-        curve = polynomials(table, "linear")
+        times, coefficients = _pieces(table, "linear")
         # coefficients of every piece, highest power first
-        self.times, self.pieces = curve.x.tolist(), curve.c.T.tolist()
+        self.times, self.pieces = times.tolist(), coefficients.T.tolist()
         self.breaks = [] if table.interpolation in ("cubic", "quintic") else self.times[1:-1]
         self._piece: int | None = None
 
@@ -99,15 +100,22 @@ class Curve:
 
 def polynomials(table: Table, default: Interpolation) -> Any:
     """A table as scipy.interpolate.PPoly; ``default``: the interpolation where it has none."""
-    t, y = np.array(table.times), np.array(table.values)
+    times, coefficients = _pieces(table, default)
+    return scipy.interpolate.PPoly(coefficients, times)
+
+
+def _pieces(table: Table, default: Interpolation) -> tuple[Array, Array]:
+    """The ends of its pieces (m + 1,), and their coefficients (d + 1, m), highest power first."""
+    t, y = np.array(table.times, dtype=np.float64), np.array(table.values, dtype=np.float64)
     how = table.interpolation or default
     if how == "cubic":
-        return scipy.interpolate.CubicSpline(t, y)
+        spline = scipy.interpolate.CubicSpline(t, y)
+        return spline.x, spline.c
     if how == "quintic":
         # of few points the degree is less; the knots at the ends are there several times
         spline = scipy.interpolate.PPoly.from_spline(scipy.interpolate.make_interp_spline(t, y, k=min(5, len(t) - 1)))
         x, long = spline.x, np.diff(spline.x) > 0
-        return scipy.interpolate.PPoly(spline.c[:, long], np.append(x[:-1][long], x[-1]))
+        return np.append(x[:-1][long], x[-1]), spline.c[:, long]
     # s(t) = (y_k+1 - y_k) / (t_k+1 - t_k) (t - t_k) + y_k, or s(t) = y_k
     rows = [np.diff(y) / np.diff(t), y[:-1]] if how == "linear" else [y[:-1]]
-    return scipy.interpolate.PPoly(np.stack(rows), t)
+    return t, np.stack(rows)
