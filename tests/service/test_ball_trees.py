@@ -188,7 +188,6 @@ def test_it_leaves_as_urdf_and_comes_back(satellite: TestClient) -> None:
     ("path", "body"),
     [
         ("curvatures", {"q": [0, 0, 0, 1, 0, 0, 0, 0]}),
-        ("steady-motions", {"rates": {}, "count": 1}),
         ("evaluations", {"quantities": ["floating_metric"], "q": [0, 0, 0, 1, 0, 0, 0, 0]}),
     ],
 )

@@ -14,6 +14,7 @@ def _adjoint(source: Source, options: Options) -> Made:
     controls, varied = options.get("controls", tuple(inputs_of(source.model))), options.get("parameters", ())
     found = adjoint_equations(source.model, controls, cost, varied)
     names = {"coordinates": found.coordinates, "controls": found.controls, "parameters": found.varied}
+    names |= {"positions": found.positions} if source.model.balls else {}
     return Made(found.program, {name: list(value) for name, value in names.items()})
 
 

@@ -5,7 +5,8 @@ Where the second variation of H - l_k I_k is definite for all disturbances that 
 and the I_k together bound the motion, and it is stable but for shifts of the coordinates s that move anyway. Where
 the dI_k depend on each other, so that the l_k are not unique, one choice that makes it definite is enough (Chetaev's
 proof for the sleeping top). An I_k that changes with s counts when its derivative by s vanishes: then it is a
-component, zero in the steady motion, of a vector whose square does not change with s.
+component, zero in the steady motion, of a vector whose square does not change with s. With ball joints the numbers of
+a state have the squares of their quaternions among the integrals, and shifts are turns about axes of bodies.
 """
 
 from __future__ import annotations
@@ -18,18 +19,22 @@ import scipy
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.kernels import Known, known_model
+from substructures.analysis.motion.conditions import state_names
 from substructures.array import Array
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
-from substructures.expr.program import Program, array, program
+from substructures.expr.program import Program, Symbol, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.tree.model import Model
 
 #: coordinates of models that are looked at: second derivatives of all integrals are formed
 MOST = 12
 #: what counts as zero, relative to the largest of its kind; and the least eigenvalue that counts as definite
 NOTHING, DEFINITE = 1e-9, 1e-7
+#: |Q|^2, which every motion keeps
+LENGTH = "|Q|"
 
 
 def bounded_by_integrals(
@@ -44,16 +49,16 @@ def bounded_by_integrals(
     names, source = _derivatives(known_model(model), frozenset(zero))
     if "energy" not in names:
         return None
-    n = model.dof
     found = interpret(source, {s.name: values[s.name] for s in source.symbols}, ["first", "second"])
     if not all(np.isfinite(x).all() for x in found.values()):
         return None
-    # z = (x, q'): without the coordinates s
-    z = [*(a for a in range(n) if a not in moving), *range(n, 2 * n)]
+    # z = (x, q'): without the shifts s
+    shifts = _shifts(model, values, moving)
+    z = scipy.linalg.null_space(shifts) if len(shifts) else np.eye(shifts.shape[1])
     H = names.index("energy")
-    used = [k for k in range(len(names)) if k != H and _is_invariant(found["first"][k], moving)]
-    dH, dI = found["first"][H][z], found["first"][used][:, z]
-    second = found["second"][:, z][:, :, z]
+    used = [k for k in range(len(names)) if k != H and _is_invariant(found["first"][k], shifts)]
+    dH, dI = found["first"][H] @ z, found["first"][used] @ z
+    second = np.einsum("kab,ai,bj->kij", found["second"], z, z)
     multipliers, family = _multipliers(dH, dI)
     if multipliers is None:
         return None
@@ -63,7 +68,7 @@ def bounded_by_integrals(
     more = [sum((x * w for x, w in zip(row, W[1:], strict=True)), np.zeros_like(W[0])) for row in family]
     for sign, word in ((1.0, "minimum"), (-1.0, "maximum")):
         if _can_be_definite(sign * base, more):
-            kept = ", ".join(names[k] for k in used) or "no other integral"
+            kept = ", ".join(names[k] for k in used if names[k] != LENGTH) or "no other integral"
             return f"the energy has a strict {word} at constant {kept} (Routh, Lyapunov)"
     return None
 
@@ -81,7 +86,10 @@ def _derivatives(known: Known, zero: frozenset[str]) -> tuple[tuple[str, ...], P
     graph = Graph()
     outputs = replay(found.program, graph, dict.fromkeys(zero, graph.zero), names)
     integrals: list[Expr] = [graph.lift(outputs[name].entries.get((), 0)) for name in names]
-    z = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
+    for ball in model.balls:
+        integrals.append(graph.sum(graph.symbol(name) * graph.symbol(name) for name in ball["positions"][-4:]))
+        names = (*names, LENGTH)
+    z = state_names(model)
     first = gradient(integrals, z)
     second = [gradient(row, z) for row in first]
     size = (len(names), len(z))
@@ -89,12 +97,21 @@ def _derivatives(known: Known, zero: frozenset[str]) -> tuple[tuple[str, ...], P
         "first": array(size, lambda k, a: first[k][a]),
         "second": array((*size, len(z)), lambda k, a, b: second[k][a][b]),
     }
-    return names, program(graph, formulas, {s.name: s for s in found.program.symbols})
+    symbols = {s.name: s for s in found.program.symbols}
+    symbols |= {name: Symbol(name, "coordinate", unit) for name, unit in model.state_units["q"].items()}
+    return names, program(graph, formulas, symbols)
 
 
-def _is_invariant(first: Array, moving: Sequence[int]) -> bool:
+def _shifts(model: Model, values: Mapping[str, float], moving: Sequence[int]) -> Array:
+    """Changes (k, m + n) of a state with each of the coordinates s, of ball joints turns about axes of the body."""
+    states = model.positions, model.coordinates, model.balls
+    displaced = np.linalg.pinv(by_displacements(*states, np.array([values[name] for name in model.positions])))
+    return np.concatenate((displaced.T, np.zeros((model.dof, model.dof))), axis=1)[list(moving)]
+
+
+def _is_invariant(first: Array, shifts: Array) -> bool:
     """Whether an integral does not change with s, to first order."""
-    return bool(np.abs(first[list(moving)]).max(initial=0) <= NOTHING * max(1.0, float(np.abs(first).max(initial=0))))
+    return bool(np.abs(shifts @ first).max(initial=0) <= NOTHING * max(1.0, float(np.abs(first).max(initial=0))))
 
 
 def _multipliers(dH: Array, dI: Array) -> tuple[Array | None, Array]:

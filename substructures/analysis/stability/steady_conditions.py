@@ -13,11 +13,16 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
-from substructures.analysis.stability.nearly_cyclic import nearly_cyclic
 from substructures.analysis.stability.steady_result import Held
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
+from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, among
+from substructures.expr.interpret import interpret_in_blocks
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
+
+#: what rounding of decimals is of the size of what it is in; states that are looked at
+ROUNDING, STATES = 1e-12, 12
 
 
 @dataclass(frozen=True)
@@ -87,6 +92,17 @@ def require_rates(rates: object, momenta: object, held: Held) -> None:
         raise InvalidArgument(faults)
 
 
+def require_plain_rates(rates: object, others: Mapping[str, object], held: Held) -> None:
+    """Raises InvalidArgument for what is not known with ball joints: all but ``rates``."""
+    message = "is not for trees with ball and floating joints, whose cyclic 'rates' are given: leave it out"
+    given = {**others, "held": None if held == "momenta" else held}
+    faults = [Fault(f"/{name}", "not-supported", f"'{name}' {message}") for name, x in given.items() if x is not None]
+    if not faults and rates is None:
+        faults = [Fault("/rates", "missing", "'rates' are needed, by name; those that are not named are 0")]
+    if faults:
+        raise InvalidArgument(faults)
+
+
 def require_no_velocities(velocities: object, independent: object) -> None:
     """Raises InvalidArgument for quasi-velocities of a tree without velocity constraints."""
     pairs = (("velocities", velocities is not None), ("independent", independent is not None))
@@ -131,3 +147,42 @@ def _moving(model: Model, conditions: RestConditions, given: Mapping[str, str], 
     if held == "rates":
         require_free(model, moving)
     return moving
+
+
+def nearly_cyclic(model: Model, conditions: RestConditions) -> list[str]:
+    """The coordinates c on which, and along which, nothing depends or acts but rounding, by numbers at random states: a
+    world that is turned by decimals has its gravity along an axis to 16 digits, and no formula of it is zero.
+
+    Sizes are those of the geometry, whatever the units: of g_ab sqrt(g_aa g_bb), of Q_a sqrt(g_aa) times the largest
+    Q_b / sqrt(g_bb) there is, of G_ka the largest element of G.
+    """
+    rng, n = np.random.default_rng(7), model.dof
+    q, qd = rng.uniform(-1, 1, (2, STATES, n))
+    shift = rng.uniform(0.5, 1.5, STATES)
+    here = _sized(model, conditions, q, qd)
+    found = []
+    for c, name in enumerate(model.coordinates):
+        there = _sized(model, conditions, q + shift[:, None] * np.eye(n)[c], qd)
+        stays = all(np.abs(there[k] - x).max(initial=0) <= ROUNDING for k, x in here.items())
+        if stays and all(np.abs(here[k][..., c]).max(initial=0) <= ROUNDING for k in ("forces", "closures")):
+            found.append(name)
+    return found
+
+
+def _sized(model: Model, conditions: RestConditions, q: Array, qd: Array) -> dict[str, Array]:
+    """Metric (N, n, n), forces (N, n) and the Jacobian of closures (N, m, n) over their sizes; not a number where there
+    is none.
+    """
+    names = [name for name in ("metric", "forces", "closure.jacobian") if name in model.program.outputs]
+    states = read_states(model, {"q": q, "qd": qd}, None)
+    given: dict[str, Any] = symbol_values(model, vars(conditions), states, names)
+    found = interpret_in_blocks(model.program, given, names, len(q))
+    g, Q, G = found["metric"], found["forces"], found.get("closure.jacobian", np.zeros((len(q), 0, model.dof)))
+    with np.errstate(invalid="ignore", divide="ignore"):
+        root = np.sqrt(np.einsum("naa->na", g))
+        forces = Q / root
+        return {
+            "metric": g / (root[:, :, None] * root[:, None, :]),
+            "forces": forces / (np.abs(forces).max(initial=0) or 1.0),
+            "closures": G / (np.abs(G).max(initial=0) or 1.0),
+        }

@@ -17,6 +17,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 
@@ -29,11 +31,15 @@ from substructures.analysis.stability.constrained_search import ConstrainedSearc
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
 from substructures.analysis.stability.found_places import confirmed
+from substructures.analysis.stability.linearisation_result import Linearisation
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.steady_balls import steady_with_balls
 from substructures.analysis.stability.steady_conditions import (
     SteadyConditions,
     ends_of,
     given_of,
     require_no_velocities,
+    require_plain_rates,
     require_rates,
 )
 from substructures.analysis.stability.steady_families import DIFFERENCE, SINGULAR, FamilySearch
@@ -107,7 +113,7 @@ def steady_motions(
     require_moving(model, "steady-motions")
     whole(steps, "steps", *STEPS)
     if model.velocity_constraints:
-        conditions = RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
+        conditions = _conditions(model, parameters, inputs)
         require_rates(rates, momenta, held)
         ends = ends_of(model, vary, between, tuple(velocities or ()))
         given = dict(rates or {}) | ({} if vary is None or vary in model.parameters else {vary: ends[0]})
@@ -117,6 +123,12 @@ def steady_motions(
     require_no_velocities(velocities, independent)
     require_undriven(model.driven, "take the tree without it, or equilibria, which are relative to the drives")
     one_of(held, "held", ("momenta", "rates"))
+    if model.balls:
+        require_plain_rates(rates, {"momenta": momenta, "vary": vary}, held)
+        conditions = _conditions(model, parameters, inputs)
+        within, about = SearchRange(starts, count, reach, seed), {"parameters": parameters, "inputs": inputs}
+        linearised = partial(_linearised, model, about)
+        return steady_with_balls(model, numbers(rates, "rates"), within, conditions, linearised)
     ends = ends_of(model, vary, between)
     given, field = given_of(rates, momenta, held)
     constant = numbers(parameters, "parameters"), with_input_defaults(model, inputs or {})
@@ -128,8 +140,7 @@ def steady_motions(
     within = SearchRange(starts, count, reach, seed)
     searches = [asked.search(moving, within, value) for value in ends]
     found = [search.places(search.starts(), list(range(search.n))) for search in searches]
-    failing = sum(count for _, count in found)
-    singular = f"{failing} places were left out where these coordinates are singular" if failing else ""
+    singular = _singular(sum(count for _, count in found))
     names = tuple(model.coordinates[s] for s in moving)
     if vary is None:
         motions, left_out = confirmed([_described(searches[0], x, held) for x in found[0][0]])
@@ -143,6 +154,20 @@ def steady_motions(
     message = "" if motions else "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
     message = "; ".join(filter(None, (message, singular, left_out)))
     return SteadyMotions(motions, names, held, vary, more, message=message)
+
+
+def _conditions(
+    model: Model, parameters: Mapping[str, float] | None, inputs: Mapping[str, float] | None
+) -> RestConditions:
+    return RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
+
+
+def _linearised(model: Model, about: Mapping[str, Any], q: Array, v: Array) -> Linearisation:
+    return linearise(model, q, qd=v, **about)
+
+
+def _singular(count: int) -> str:
+    return f"{count} places were left out where these coordinates are singular" if count else ""
 
 
 def _families(
