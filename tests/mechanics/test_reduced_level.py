@@ -18,6 +18,7 @@ from substructures.errors import VerificationFailed
 from substructures.quantities.reactions import reactions
 from substructures.tree.certificate import certify_tree
 from substructures.tree.given.loops import closed_form
+from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.shape import shape_digest
 
 NAMES = {each["name"]: each for each in PARTS}
@@ -156,7 +157,7 @@ def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     definition, tree = NAMES["rod"], {"name": "t", "instances": [{"name": "x", "substructure": "rod"}]}
     part = derive(Definition.read(definition))
     spec, right = TreeSpec.read(tree), closed_form.dependent(part)
-    assert isinstance(right, closed_form.Dependent)
+    assert isinstance(right, Dependent)
     model = couple(spec, {"x": part})
     full = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "rod", "level": "full"}]})
     with pytest.raises(VerificationFailed, match="reduced"):

@@ -18,7 +18,7 @@ from typing import Any
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas
 from substructures.expr.walk import transfer
-from substructures.tree.given.loops.closed_form import Dependent
+from substructures.tree.given.loops.dependent import Dependent
 
 Entries = dict[tuple[int, ...], Any]
 #: what has a term more, g_ab H_bjk y'^j y'^k or G_a H_ajk y'^j y'^k

@@ -22,92 +22,17 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.operations import Symbol
 from substructures.expr.program import array, program
-from substructures.expr.trigonometry import cos, linear_form, sin
-from substructures.expr.walk import build, reachable, transfer
+from substructures.expr.trigonometry import cos, sin
 from substructures.loads.scope import Scope, no_names
 from substructures.part.frames import constant, cut_frames
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
+from substructures.tree.given.loops.dependent import Dependent, Sum
 from substructures.tree.given.loops.planar import Chains, Loop, NotPlanar, loop_of
-from substructures.tree.given.loops.triangle import Complex, Solution, conjugate, solutions, times
+from substructures.tree.given.loops.triangle import Complex, Solution, solutions, times
 
-#: (coordinate, factor) of a sum of angles
-Sum = frozenset[tuple[str, int]]
 #: relative difference of distances from the start that tells no branch
 SAME = 1e-6
-
-
-@dataclass
-class Dependent:
-    """What the coordinates of a part are: values of dependent ones, cosines and sines of sums of them, rows of N by
-    coordinate and independent coordinate, H by coordinate and two of these; ``branches``: the signs that were taken.
-
-    Values and angles are formulas of independent coordinates and parameters; N and H of all coordinates.
-    """
-
-    graph: Graph
-    independent: tuple[str, ...]
-    values: dict[str, Expr] = field(default_factory=dict)
-    angles: dict[Sum, Complex] = field(default_factory=dict)
-    N: dict[str, dict[str, Expr]] = field(default_factory=dict)
-    H: dict[str, dict[tuple[str, str], Expr]] = field(default_factory=dict)
-    branches: list[int] = field(default_factory=list)
-
-    def moved(self, graph: Graph, names: Mapping[str, str], bindings: Mapping[str, Expr]) -> Dependent:
-        """In another graph, where symbols are ``bindings`` and coordinates have these ``names``."""
-        given = [*self.values.values(), *(x for pair in self.angles.values() for x in pair)]
-        given += [x for row in self.N.values() for x in row.values()]
-        given += [x for bend in self.H.values() for x in bend.values()]
-        found = iter(transfer(given, graph, bindings))
-        own = tuple(names[q] for q in self.independent)
-        values = {names[q]: next(found) for q in self.values}
-        angles = {frozenset((names[q], n) for q, n in known): (next(found), next(found)) for known in self.angles}
-        N = {names[q]: {names[j]: next(found) for j in row} for q, row in self.N.items()}
-        H = {names[q]: {(names[j], names[k]): next(found) for j, k in row} for q, row in self.H.items()}
-        return Dependent(graph, own, values, angles, N, H, list(self.branches))
-
-    def beside(self, other: Dependent) -> Dependent:
-        """Those of both."""
-        values, angles = self.values | other.values, self.angles | other.angles
-        N, H, branches = self.N | other.N, self.H | other.H, self.branches + other.branches
-        return Dependent(self.graph, self.independent + other.independent, values, angles, N, H, branches)
-
-    def put_in(self, roots: Sequence[Expr]) -> list[Expr]:
-        """Formulas with what dependent coordinates are in their places."""
-        new: dict[Expr, Expr] = {}
-        for node in reachable(roots):
-            if node.op == "sym":
-                new[node] = self.values.get(str(node.value), node)
-            elif not node.args or all(new[a] is a for a in node.args):
-                new[node] = node
-            elif node.op in ("cos", "sin", "tan"):
-                c, s = self._cos_sin(node.args[0], new)
-                new[node] = {"cos": c, "sin": s}.get(node.op) or s / c
-            else:
-                new[node] = build(self.graph, node.op, [new[a] for a in node.args])
-        return [new[root] for root in roots]
-
-    def _cos_sin(self, angle: Expr, new: Mapping[Expr, Expr]) -> Complex:
-        """Of a sum of angles, by those of dependent coordinates in it."""
-        terms, turns = linear_form(angle)
-        own = {str(x.value): n for x, n in terms.items() if x.op == "sym" and x.value in self.values}
-        if any(n.denominator != 1 for n in own.values()) or not own:
-            return cos(new[angle]), sin(new[angle])
-        graph = self.graph
-        rest = graph.sum(
-            new.get(x, x) * graph.number(n) for x, n in terms.items() if not (x.op == "sym" and x.value in own)
-        )
-        rest = rest + graph.pi * graph.number(turns)
-        found: Complex = cos(rest), sin(rest)
-        left = {name: int(n) for name, n in own.items()}
-        for known in sorted(self.angles, key=len, reverse=True):
-            for sign in (1, -1):
-                while known and all(left.get(name, 0) * n * sign > 0 for name, n in known):
-                    x = self.angles[known]
-                    found = times(found, x if sign > 0 else conjugate(x))
-                    for name, n in known:
-                        left[name] -= sign * n
-        return found
 
 
 @dataclass(frozen=True)
@@ -193,11 +118,26 @@ class _Solver:
         if len(gaps) > 1 and abs(gaps[0] - gaps[1]) < SAME * max(gaps):
             raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
         values, angles = found[best]
-        self._move(loop)
         self.found.branches.append(best)
         self.numbers |= self._numbers(values)
         self.found.values |= values
         self.found.angles |= angles
+        self._move(loop)
+        for name in values:
+            self._straighten(name, angles)
+
+    def _straighten(self, name: str, angles: Mapping[Sum, Complex]) -> None:
+        """An angle that is a sum of independent ones, with numbers, and of right angles, written so."""
+        graph, N = self.graph, self.found.N[name]
+        own = [(x[0], x[1] * sign) for sign in (1, -1) for known, x in angles.items() if known == {(name, sign)}]
+        if not own or not all(n.is_number for n in N.values()):
+            return
+        along = graph.sum(graph.symbol(y) * n for y, n in N.items())
+        for k in range(4):
+            angle = along + graph.pi * k / 2
+            if (cos(angle) - own[0][0]).is_zero and (sin(angle) - own[0][1]).is_zero:
+                self.found.sums[name] = angle
+                self.found.angles = {s: a for s, a in self.found.angles.items() if name not in dict(s)}
 
     def _known(self, loop: Loop, each: Solution) -> tuple[dict[str, Expr], dict[Sum, Complex]]:
         """Values and angles of the unknown coordinates of a loop, without dependent ones."""
@@ -249,8 +189,9 @@ class _Solver:
         graph, y = self.graph, self.found.independent
 
         def solved(columns: Sequence[Expr]) -> list[Expr]:
-            """-phi_z^-1 x."""
-            return [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in inverse]
+            """-phi_z^-1 x, as a number where it is one."""
+            found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in inverse]
+            return [w if w.is_number else x for x, w in zip(found, self.found.put_in(found), strict=True)]
 
         others = list(enumerate(names))[len(z) :]
         for j in y:
