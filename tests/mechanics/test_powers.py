@@ -195,7 +195,7 @@ def test_a_motion_that_does_not_begin_has_none() -> None:
 
 def test_a_power_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     model, by = slide()
-    given = load_powers.interpret_in_blocks
+    given = load_powers.evaluated
 
     def without_gravity(program: Any, *rest: Any) -> Any:
         found = given(program, *rest)
@@ -203,7 +203,7 @@ def test_a_power_that_is_left_out_is_seen(monkeypatch: pytest.MonkeyPatch) -> No
             found["powers"][:, 0] = 0
         return found
 
-    monkeypatch.setattr(load_powers, "interpret_in_blocks", without_gravity)
+    monkeypatch.setattr(load_powers, "evaluated", without_gravity)
     motion = simulate(model, [-0.3], (0, 0.2), outputs=Outputs(powers=by))
     assert motion.is_right is False
     assert motion.checks[-1].holds is False

@@ -7,6 +7,8 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
@@ -44,5 +46,6 @@ def evaluated(source: Program, values: Mapping[str, Any], names: Sequence[str], 
     spent, size = _spent(Known(chosen.digest, chosen)), len(chosen)
     spent[0] += size * (INTERPRETED + VALUE * states)
     if spent[0] > COMPILED + LINE * size:
-        return program_kernel(chosen).evaluate(values, names)
+        found = program_kernel(chosen).evaluate(values, names)
+        return {name: np.array(np.broadcast_to(x, (states, *chosen.outputs[name].shape))) for name, x in found.items()}
     return interpret_in_blocks(chosen, values, list(names), states)

@@ -8,10 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
 
+from substructures.analysis.equations.kernels import Known, evaluated, known_model
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.friction.dry_friction import friction_laws
 from substructures.analysis.motion.friction.transmitted import accelerations, has_not_begun, state_values
@@ -23,7 +25,6 @@ from substructures.array import Array
 from substructures.certificate.derived.powers import OUTPUT
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
-from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Formulas, Program
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import kept
@@ -48,7 +49,7 @@ def with_powers(
     values: dict[str, Any] = {**conditions.values, **state_values(model, motion)}
     values |= conditions.inputs_at(motion.t, np.concatenate([motion.q, motion.qd], axis=1))
     second = accelerations(model, motion, values)
-    found = interpret_in_blocks(by_load.program, values, [OUTPUT], len(motion.t))[OUTPUT]
+    found = evaluated(by_load.program, values, [OUTPUT], len(motion.t))[OUTPUT]
     rows = by_load.rows
     if "friction" in motion.series:
         found = _with_friction(model, conditions.values, rows, found, motion)
@@ -58,7 +59,7 @@ def with_powers(
         found = np.concatenate([found, watts[:, None]], axis=1)
     if model.driven:
         known = values | {f"{name}''": second[:, a] for a, name in enumerate(model.coordinates)}
-        watts = interpret_in_blocks(model.program, known, [DRIVES], len(motion.t))[DRIVES]
+        watts = evaluated(model.program, known, [DRIVES], len(motion.t))[DRIVES]
         rows, found = (*rows, *(f"drive {name}" for name in model.driven)), np.concatenate([found, watts], axis=1)
     check = _check(model, values, second, found, motion, limit)
     return replace(motion, series={**motion.series, OUTPUT: found}, loads=rows, checks=(*motion.checks, check))
@@ -74,6 +75,11 @@ def kinetic_energy_rate(model: Model) -> Program:
     seeds |= r.moved([r.velocity_symbol(a) for a in range(model.dof)])
     seeds |= {f"{name}'": r.acceleration_symbol(a) for a, name in enumerate(model.coordinates)}
     return r.program({RATE: Formulas((), {(): directional([r.graph.lift(T)], seeds)[0]})})
+
+
+@lru_cache(maxsize=32)
+def _rate(model: Known) -> Program:
+    return kinetic_energy_rate(model.source)
 
 
 def _with_friction(
@@ -93,8 +99,8 @@ def _check(
     """Whether the rows add up to dT/dt, where the motion has accelerations."""
     known = dict(values) | {f"{name}''": second[:, a] for a, name in enumerate(model.coordinates)}
     K = len(motion.t)
-    rate = interpret_in_blocks(kinetic_energy_rate(model), known, [RATE], K)[RATE]
-    metric = interpret_in_blocks(model.program, known, ["metric"], K)["metric"]
+    rate = evaluated(_rate(known_model(model)), known, [RATE], K)[RATE]
+    metric = evaluated(model.program, known, ["metric"], K)["metric"]
     # what rounding is of: |q'^a| |g_ab| |q''^b|; where closures are not met exactly, their forces do some work
     sizes = np.einsum("ka,kab,kb->k", np.abs(motion.qd), np.abs(metric), np.abs(second))
     noise = ROUNDING * sizes

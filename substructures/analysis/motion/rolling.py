@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import one_of
+from substructures.analysis.equations.kernels import evaluated
 from substructures.analysis.equations.nonholonomic.positions import start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
@@ -186,7 +187,7 @@ def _series(rolling: ReducedMotion, t: Array, y: Array) -> tuple[Array, dict[str
     values |= {f"{name}'": slopes[:, n + i] for i, name in enumerate(equations.velocities)}
     more = [name for name in ("gaps", "given") if name in equations.program.outputs]
     names = ["constraints", "multipliers", "kinetic_energy", "potential_energy", *more]
-    return x, interpret_in_blocks(equations.program, values, names, len(t))
+    return x, evaluated(equations.program, values, names, len(t))
 
 
 def _places(equations: QuasiVelocities) -> NDArray[np.int64]:

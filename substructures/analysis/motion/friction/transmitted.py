@@ -8,13 +8,13 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.equations.kernels import evaluated
 from substructures.analysis.equations.nonholonomic.independent_rows import independent_rows
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
-from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import array, program
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.formulas import DYNAMICS
@@ -46,7 +46,7 @@ def with_reactions(model: Model, transmitted: ReactionModel, motion: Trajectory,
     # a row that follows from others has no multiplier
     values |= {s.name: 0.0 for s in transmitted.program.symbols if s.name.startswith("lambda.")}
     values |= {f"lambda.{row}": motion.series["multipliers"][:, k] for k, row in enumerate(rows)}
-    found = interpret_in_blocks(transmitted.program, values, list(OUTPUTS), len(motion.t))
+    found = evaluated(transmitted.program, values, list(OUTPUTS), len(motion.t))
     return replace(motion, series={**motion.series, **found}, joints=transmitted.rows)
 
 
@@ -56,7 +56,7 @@ def _constrained(model: Model, motion: Trajectory, values: Mapping[str, Any]) ->
     rows, _ = independent_rows(f, constraints_of(model))
     m, n = len(rows.rows), model.dof
     B = program(f.graph, {"B": array((m, n), lambda k, a: rows.rows[k][a])}, f.symbols)
-    found = interpret_in_blocks(B, values, ["B"], len(motion.t))["B"]
+    found = evaluated(B, values, ["B"], len(motion.t))["B"]
     return rows.labels, np.einsum("kma,km->ka", found, motion.series["multipliers"])
 
 
@@ -76,5 +76,5 @@ def accelerations(model: Model, motion: Trajectory, values: Mapping[str, Any], m
     if "qdd" in motion.series:
         return motion.series["qdd"]
     known = {symbol.name: 0.0 for symbol in model.program.symbols if symbol.kind == "input"} | dict(values)
-    found = interpret_in_blocks(model.program, known, list(DYNAMICS), len(motion.t))
+    found = evaluated(model.program, known, list(DYNAMICS), len(motion.t))
     return definite_solve(found["metric"], found["forces"] - found["bias"] + more)[0]
