@@ -20,8 +20,8 @@ PERIOD = 2.3678419475762373
 
 
 def catalogue_model(name: str, gravity: tuple[float | str, ...] = (0, 0, -9.81), **parameters: Any) -> Model:
-    """A catalogue entry alone at the world, as instance x."""
-    one = {"name": "x", "substructure": name, "parameters": parameters}
+    """A catalogue entry alone at the world, as instance x, with all coordinates of its loops."""
+    one = {"name": "x", "substructure": name, "parameters": parameters, "level": "full"}
     return coupled_once({"name": "t", "gravity": list(gravity), "instances": [one]}, {name: catalogue.load(name)})
 
 

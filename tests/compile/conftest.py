@@ -92,14 +92,14 @@ def _tree(*instances: tuple[str, str, str]) -> Model:
         "name": "tree",
         "gravity": [0, 0, "-g"],
         "parameters": {"g": {"value": 9.81, "unit": "m/s^2"}},
-        "instances": [{"name": i, "substructure": entry, "at": at} for i, entry, at in instances],
+        "instances": [{"name": i, "substructure": entry, "at": at, "level": "full"} for i, entry, at in instances],
     }
     return couple(TreeSpec.read(document), parts)
 
 
 @pytest.fixture(scope="session")
 def tree() -> Callable[..., Model]:
-    """tree((instance, entry, at), ...) under gravity along -z."""
+    """tree((instance, entry, at), ...) under gravity along -z, with all coordinates of loops."""
     return _tree
 
 

@@ -74,9 +74,8 @@ def rotors(part: Part) -> Any:
 
 @pytest.mark.parametrize("name", all_entries())
 def test_catalogue(name: str) -> None:
-    spec, parts = of(
-        {"name": "t", "gravity": [0.3, -1, -9.81], "instances": [{"name": "x", "substructure": name}]},
-    )
+    one = {"name": "x", "substructure": name, "level": "full"}
+    spec, parts = of({"name": "t", "gravity": [0.3, -1, -9.81], "instances": [one]})
     Y = check(spec, parts, rotors(parts["x"]))
     links = dict.fromkeys(entry.rsplit(".", 1)[0] for entry in Y.names)
     assert Y.names == tuple(f"{link}.{entry}" for link in links for entry in TEN)
