@@ -133,7 +133,8 @@ def test_entry_derives(part: Part) -> None:
 
 
 def test_metric_is_positive_definite_at_the_default_values(part: Part) -> None:
-    model = couple(TreeSpec.read({"name": "one", "instances": [{"name": "x", "substructure": part.name}]}), {"x": part})
+    instance = {"name": "x", "substructure": part.name, "level": "full"}
+    model = couple(TreeSpec.read({"name": "one", "instances": [instance]}), {"x": part})
     if not part.dof:
         assert model.coordinates == ()
         return

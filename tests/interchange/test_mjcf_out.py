@@ -42,8 +42,9 @@ EXACT = 1e-11
 
 
 def in_tree(part: Part) -> tuple[TreeSpec, dict[str, Part], Model]:
-    """The part on the world, its instance is x."""
-    plain = {"name": "t", "gravity": list(GRAVITY), "instances": [{"name": "x", "substructure": part.name}]}
+    """The part on the world, its instance is x, with all coordinates of its loops."""
+    instance = {"name": "x", "substructure": part.name, "level": "full"}
+    plain = {"name": "t", "gravity": list(GRAVITY), "instances": [instance]}
     spec = TreeSpec.read(plain)
     return spec, {"x": part}, couple(spec, {"x": part})
 

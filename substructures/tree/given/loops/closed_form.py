@@ -60,6 +60,8 @@ def _dependent(known: _Known) -> Dependent | str:
         return _Solver(known.part).solve()
     except NotPlanar as why:
         return str(why)
+    except (ZeroDivisionError, ValueError):
+        return "its loops cannot be closed, or are singular, in every position"
 
 
 class _Solver:

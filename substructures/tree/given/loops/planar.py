@@ -108,7 +108,9 @@ class _Reader:
         order = [*((k, 1, -1) for k in reversed(other)), *((k, 0, 1) for k in first)]
         open_ = [(k, side, sign) for k, side, sign in order if k in self.moved]
         cuts = {**dict.fromkeys(TURNING, 1), **dict.fromkeys(SLIDING, 1), **dict.fromkeys(FIXED, 0), ROD: 2}
-        if self.type not in cuts or len(open_) + cuts[self.type] != 3:
+        if self.type not in cuts:
+            raise NotPlanar(f"its type '{self.type}' is none of a loop in a plane")
+        if len(open_) + cuts[self.type] != 3:
             raise NotPlanar(f"of the coordinates around it {len(open_)} are unknown")
         places = {k: self._at_zero(self.chains.pose(self._way(k))) for k, _, _ in open_}
         poses = [self._at_zero(self.chains.pose(way, end)) for way, end in zip(self.ways, self.ends, strict=True)]
