@@ -57,6 +57,12 @@ FREE: Plain = {
 }
 INSTANCE: Plain = {"name": "x", "definition": CART}
 BAR: Plain = {"name": "bar", "type": "rod", "from": "x.tip", "to": "x.seat", "length": 1}
+LINKAGE: Plain = {
+    **CART,
+    "closures": [{**BAR, "from": "tip", "to": "seat"}],
+    "independent": ["a", "b"],
+    "start": {"c": 1},
+}
 TREES: dict[str, Plain] = {
     "open": {"instances": [INSTANCE]},
     "relations": {
@@ -69,6 +75,7 @@ TREES: dict[str, Plain] = {
         "instances": [{"name": "hull", "definition": FREE}, {**INSTANCE, "at": "hull.deck"}],
     },
     "closures": {"instances": [INSTANCE], "closures": [BAR]},
+    "reduced level": {"instances": [{**INSTANCE, "definition": LINKAGE}]},
     "driven": {"instances": [INSTANCE], "driven": {"x.a": "t/2"}},
     "ignored": {"instances": [INSTANCE], "ignored": {"x.a": "1/2"}},
     "velocity constraints": {
@@ -88,9 +95,9 @@ TREES: dict[str, Plain] = {
 
 TEXT = """
 Each analysis and each formula of analyses was tried on a small tree of each kind: a cart with two pendulums, one
-coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), a cart whose
+coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), the same in the part, with `independent` coordinates (reduced level), a cart whose
 motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity constraint, a point above the
-floor (`contacts`), a floating body below (`balls`). **no**: the request is refused with the code `has-closures`,
+floor (`contacts`), a floating body below (`balls`). **no**: the request is refused with the code `has-closures`, `has-reduced`,
 `has-driven`, `has-ignored`, `has-velocity-constraints`, `has-contacts` or `has-balls`, and told what to take in its
 place. Formulas of the tree itself (`metric`,
 `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
