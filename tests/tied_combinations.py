@@ -95,13 +95,14 @@ TREES: dict[str, Plain] = {
 
 TEXT = """
 Each analysis and each formula of analyses was tried on a small tree of each kind: a cart with two pendulums, one
-coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), the same in the part, with `independent` coordinates (reduced level), a cart whose
-motion is given (`driven`) or whose momentum is (`ignored`), a linear velocity constraint, a point above the
-floor (`contacts`), a floating body below (`balls`). **no**: the request is refused with the code `has-closures`, `has-reduced`,
-`has-driven`, `has-ignored`, `has-velocity-constraints`, `has-contacts` or `has-balls`, and told what to take in its
-place. Formulas of the tree itself (`metric`,
-`christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are those without
-velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the `no` of all.
+coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), the same
+in the part, with `independent` coordinates (reduced level), a cart whose motion is given (`driven`) or whose momentum
+is (`ignored`), a linear velocity constraint, a point above the floor (`contacts`), a floating body below (`balls`).
+**no**: the request is refused with the code `has-closures`, `has-reduced`, `has-driven`, `has-ignored`,
+`has-velocity-constraints`, `has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree
+itself (`metric`, `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are
+those without velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the
+`no` of all.
 """
 
 
