@@ -32,8 +32,8 @@ Build = Callable[[Plain, Mapping[str, Plain], Mapping[str, Ball]], tuple[Numbers
 PRIMES = ("", "'", "''")
 #: starts that are tried, and steps of Newton's method from each
 STARTS, MANY, STEPS = 5, 40, 12
-#: steps that make floats exact to a thousand bits
-DOUBLINGS = 7
+#: bits that floats are exact to at least; each step of Newton's method doubles them
+EXACT = 40
 #: of what no closure depends on
 MASSES = frozenset(("mass", "com", "inertia"))
 LAWS = frozenset(("stiffness", "rest", "damping", "armature", "limits", "friction"))
@@ -145,7 +145,7 @@ class Loops:
         rows, names = [k for block in blocks for k in block.rows], list(self.kinds)
         precision = ctx.prec
         with ctx.workprec(precision + 64):
-            for _ in range(DOUBLINGS):
+            for _ in range((ctx.prec // EXACT).bit_length()):
                 found = self.rows(at)
                 phi, jacobian = found["closure.residual"].entries, found["closure.jacobian"].entries
                 G = arb_mat(
