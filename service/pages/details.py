@@ -98,6 +98,7 @@ def tree_page(tree: Tree, model: Model, work: Html, notes: Notes = ((), ())) -> 
         table(("name", "part", "mounted on"), map(_instance, summary["instances"])),
         *_loads(summary.get("loads", ())),
         *_closures(model),
+        *_reduced(model),
         *_given(model, read_json(tree.spec.encode())),
         *_constraints(model),
         *_contacts(model),
@@ -164,6 +165,16 @@ def _closures(model: Model) -> list[Html]:
     """The loops of a tree and of its parts."""
     rows = [(x.name, x.type, x.start, x.end, len(x.rows)) for x in model.closures]
     return [tag("h2", "Closures"), table(("name", "type", "from", "to", "rows"), rows)] if rows else []
+
+
+def _reduced(model: Model) -> list[Html]:
+    """The instances whose loops are in the formulas."""
+    rows = [
+        (each["instance"], *(", ".join(each[name]) for name in ("closures", "independent", "dependent")))
+        for each in model.reduced
+    ]
+    names = "instance", "closures", "coordinates", "move with them"
+    return [tag("h2", "Loops in the formulas"), table(names, rows)] if rows else []
 
 
 def _given(model: Model, spec: Mapping[str, Any]) -> list[Html]:

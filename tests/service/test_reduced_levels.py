@@ -76,6 +76,7 @@ def test_it_is_shown_and_exported(press: TestClient, path: str) -> None:
     assert found.status_code == 200, found.text
     page = press.get("/trees/press")
     assert page.status_code == 200
+    assert "<td>x.loop</td><td>x.phi</td><td>x.psi, x.chi</td>" in page.text
 
 
 def test_what_it_is_asked_wrongly(press: TestClient) -> None:
