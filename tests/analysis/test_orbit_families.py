@@ -18,36 +18,41 @@ from substructures.tree.model import Model
 F, D = 0.1, 0.1
 
 
-@pytest.fixture(scope="module")
-def duffing() -> Model:
-    """x'' + d x' + k x + x^3 = F cos t"""
-    parameters = {"d": {"value": "0.1", "unit": "N s/m"}, "k": {"value": 1, "unit": "N/m"}}
-    parameters |= {"w": {"value": 1, "unit": "N/m^3"}}
+def forced(cubic: str) -> Model:
+    """x'' + d x' + x + c x^3 = F cos(w t)"""
+    parameters = {"d": {"value": "0.1", "unit": "N s/m"}, "w": {"value": "0.5", "unit": "rad/s"}}
+    parameters |= {"k": {"value": 1, "unit": "N/m"}, "c": {"value": cubic, "unit": "N/m^3"}}
     bodies = [{**slider("x", "base", [1, 0, 0], damping="d"), "mass": 1}]
-    loads = [{"type": "potential", "potential": "k*x^2/2 + w*x^4/4"}]
-    return tree_of({"name": "duffing", "parameters": parameters, "bodies": bodies, "loads": loads})
+    loads = [
+        {"type": "potential", "potential": "k*x^2/2 + c*x^4/4"},
+        {"type": "joint", "coordinate": "x", "force": "0.1*cos(w*t)"},
+    ]
+    return tree_of({"name": "forced", "parameters": parameters, "bodies": bodies, "loads": loads})
 
 
 @pytest.fixture(scope="module")
-def bent(duffing: Model) -> Family:
-    given: Any = {"inputs": {"tau.p.x": "0.1*cos(t)"}, "vary": "p.k", "between": (1.2, 0.1), "steps": 10}
-    return periodic_orbits(duffing, [0.3], Shooting(2 * np.pi), **given)
+def bent() -> Family:
+    given: Any = {"vary": "p.w", "between": (0.8, 1.8), "steps": 8}
+    return periodic_orbits(forced("1"), [0.3], Shooting("2*pi/p.w"), **given)
 
 
 def test_folds_of_duffings_oscillator(bent: Family) -> None:
-    """A multiplier is +1 there; about where the amplitude a of one harmonic, ((k - 1 + 3/4 a^2)^2 + d^2) a^2 = F^2, is
-    vertical over k (I. Kovacic and M. J. Brennan, The Duffing Equation, 2011, chapter 5).
+    """A multiplier is +1 there; about where the amplitude a of one harmonic, (1 + 3/4 a^2 - w^2)^2 + d^2 w^2 =
+    F^2 / a^2, is vertical over w (I. Kovacic and M. J. Brennan, The Duffing Equation, 2011, chapter 5).
     """
     assert (bent.message, bent.is_right) == ("", True)
     assert [one.kind for one in bent.bifurcations] == ["fold", "fold"]
-    a = np.linspace(1e-3, F / D, 200_001)[:-1]
-    branches = [1 - 0.75 * a**2 + side * np.sqrt((F / a) ** 2 - D**2) for side in (1, -1)]
-    turns = [float(k[1:-1][extreme]) for k in branches for extreme in np.flatnonzero(np.diff(np.sign(np.diff(k))))]
+    a = np.linspace(0.05, 1.2, 100_001)
+    middle = 1 + 0.75 * a**2 - D**2 / 2
+    with np.errstate(invalid="ignore"):
+        root = np.sqrt(F**2 / a**2 - D**2 * (1 + 0.75 * a**2 - D**2 / 4))
+        branches = [w[np.isfinite(w)] for w in (np.sqrt(middle + root), np.sqrt(middle - root))]
+    turns = [float(w[1:-1][extreme]) for w in branches for extreme in np.flatnonzero(np.diff(np.sign(np.diff(w))))]
     found = sorted(one.at.value or 0.0 for one in bent.bifurcations)
-    np.testing.assert_allclose(found, sorted(turns), rtol=0.05)
+    np.testing.assert_allclose(found, sorted(turns), rtol=0.03)
     for one in bent.bifurcations:
         assert np.abs(one.at.multipliers - 1).min() < 1e-4
-        assert np.prod(one.at.multipliers).real == pytest.approx(np.exp(-2 * np.pi * D), rel=1e-6)
+        assert np.prod(one.at.multipliers).real == pytest.approx(np.exp(-one.at.period * D), rel=1e-6)
 
 
 def test_three_orbits_at_one_value(bent: Family) -> None:
@@ -59,11 +64,11 @@ def test_three_orbits_at_one_value(bent: Family) -> None:
     assert np.count_nonzero(np.diff(side)) == 3
     for orbit in bent.found[:: len(bent.found) // 5]:
 
-        def rate(t: float, z: Any, k: float = orbit.value or 0.0) -> Any:
-            return [z[1], F * np.cos(t) - D * z[1] - k * z[0] - z[0] ** 3]
+        def rate(t: float, z: Any, w: float = orbit.value or 0.0) -> Any:
+            return [z[1], F * np.cos(w * t) - D * z[1] - z[0] - z[0] ** 3]
 
         start = [*orbit.q, *orbit.qd]
-        other = solve_ivp(rate, (0, 2 * np.pi), start, method="DOP853", rtol=1e-12, atol=1e-13)
+        other = solve_ivp(rate, (0, orbit.period), start, method="DOP853", rtol=1e-12, atol=1e-13)
         np.testing.assert_allclose(other.y[:, -1], start, atol=1e-8)
 
 
@@ -101,7 +106,29 @@ def test_rest_that_is_shaken_awakes_with_twice_the_period() -> None:
         ({"between": (1, 2)}, "/vary"),
     ],
 )
-def test_bad_ranges(duffing: Model, given: Any, pointer: str) -> None:
+def test_bad_ranges(given: Any, pointer: str) -> None:
     with pytest.raises(InvalidInput) as caught:
-        periodic_orbits(duffing, [0.3], Shooting(1), **given)
+        periodic_orbits(forced("1"), [0.3], Shooting(1), **given)
     assert caught.value.faults[0].pointer == pointer
+
+
+@pytest.mark.parametrize("given", [{"between": (0.5, 1.5), "steps": 3}, {"values": [0.5, 0.9, 1.1, 1.5]}])
+def test_resonance_over_the_frequency(given: Any) -> None:
+    """The period follows: F / (k - w^2 + i d w) is the orbit, exp of the eigenvalues times the period multiply."""
+    found = periodic_orbits(forced("0"), [0.1], Shooting("2*pi/p.w"), vary="p.w", **given)
+    assert (found.is_right, found.message) == (True, "")
+    assert found.found[-1].value == 1.5
+    for orbit in found.found:
+        w = orbit.value or 0.0
+        assert orbit.period == pytest.approx(2 * np.pi / w, rel=1e-14)
+        answer = F / (1 - w**2 + 1j * D * w)
+        np.testing.assert_allclose([orbit.q[0], orbit.qd[0]], [answer.real, -w * answer.imag], atol=1e-9)
+        expected = np.exp(np.roots([1, D, 1]) * orbit.period)
+        np.testing.assert_allclose(np.sort_complex(orbit.multipliers), np.sort_complex(expected), atol=1e-8)
+
+
+@pytest.mark.parametrize("period", ["2*pi/p.x", "2*pi/q", "-p.w", "2*"])
+def test_bad_periods(period: str) -> None:
+    with pytest.raises(InvalidInput) as caught:
+        periodic_orbits(forced("0"), [0.1], Shooting(period))
+    assert caught.value.faults[0].pointer == "/period"

@@ -39,7 +39,8 @@ def _orbits(source: Source, request: PeriodicOrbitRequest, report: ProgressRepor
     read = read_states(model, state, 1)
     given = _state(arguments(request)) | {"qd": read.qd[0]}
     section = None if request.section is None else request.section.value()
-    shooting = Shooting(request.period, request.fixed, request.hold, request.turns, section)
+    period = request.period if isinstance(request.period, str | None) else float(request.period)
+    shooting = Shooting(period, request.fixed, request.hold, request.turns, section)
     family: dict[str, Any] = {"vary": request.vary, "values": request.values}
     family |= {"between": request.between, "steps": request.steps}
     family["events"] = [event.value() for event in request.events]

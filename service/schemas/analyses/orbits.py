@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import Field
 
 from service.schemas.analyses.motions import MAX_EVENTS, Event, Seconds, StateRequest
-from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED
+from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED, SECONDS
 from service.schemas.parts import RequestPart
 from substructures.analysis.orbits.returns import Section
 from substructures.documents.fields import PlainNumber, Real
@@ -35,7 +35,9 @@ class PeriodicOrbitRequest(StateRequest):
     tables or expressions in t, of which it is a period.
     """
 
-    period: Annotated[Seconds | None, Field(description="s; a guess, where no input depends on the time")] = None
+    period: Annotated[PlainNumber | None, SECONDS] = Field(
+        None, description="s, or an expression in parameters (`2*pi/w`); a guess, where no input depends on the time"
+    )
     section: OrbitSection | None = Field(None, description="near the start, in place of `period`, which is unknown")
     fixed: bool = Field(False, description="whether the period stays as it is")
     hold: tuple[str, ...] = Field((), max_length=500, description="coordinates and velocities that stay as given")

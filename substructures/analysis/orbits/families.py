@@ -80,9 +80,12 @@ class _Branch:
         self, problem: TreeProblem, shooting: Shooting, vary: str, between: tuple[float, float], orbit: Orbit
     ) -> None:
         self.problem, self.vary, self.between = problem, vary, between
-        self.shooting = replace(shooting, period=orbit.period, section=None)
+        self.shooting = replace(shooting, section=None)
         self.z = np.concatenate((orbit.q, orbit.qd, [orbit.period]))
-        search = self._search(between[0])
+        search = _with(problem, replace(self.shooting, period=orbit.period), vary, between[0])
+        #: whether the period is a formula
+        self.is_told = search.is_fixed and isinstance(shooting.period, str)
+        self.shooting = self.shooting if self.is_told else search.shooting
         self.is_forced = search.flow.is_forced
         self.start, self.along = self.z[:-1].copy(), search.flow.rate(0.0, self.z[:-1])
         kept = {*search.held, *([len(self.z) - 1] if search.is_fixed else [])}
@@ -107,7 +110,8 @@ class _Branch:
     def orbit(self, u: Array) -> Orbit:
         """With its multipliers and checks."""
         x, period, value = self._at(u)
-        return replace(self._search(value).orbit(x, period, "", 0), value=value)
+        search = self._search(value)
+        return replace(search.orbit(x, self._period(search, period), "", 0), value=value)
 
     def equations(self, u: Array) -> tuple[Array, Array]:
         """(x(T) - x, phase) over the sizes, and derivatives; not a number where a motion ends early."""
@@ -140,6 +144,7 @@ class _Branch:
         x, period, value = self._at(u)
         search, m, size = self._search(value), len(x), self.size
         end, monodromy = self._ends(search, x, period)
+        period = self._period(search, period)
         sides = [self._ends(self._search(self._value(u[-1] + side * STEP)), x, period)[0] for side in (1, -1)]
         rows = np.column_stack([monodromy - np.eye(m), search.flow.rate(period, end)]) * size / size[0]
         F = (end - x - search.turned) / size[0]
@@ -151,6 +156,11 @@ class _Branch:
             slopes = np.append(slopes, 0.0)
         return F, np.column_stack((rows[:, self.free], slopes)), monodromy
 
+    def _period(self, search: Search, period: float) -> float:
+        """That of the formula, if it is one."""
+        return search.period if self.is_told and search.period else period
+
     def _ends(self, search: Search, x: Array, period: float) -> tuple[Array, Array]:
+        period = self._period(search, period)
         states, slopes = search.flow.move(x, np.eye(len(x)), (0.0, period), np.array([0.0, period]))
         return states[-1], slopes[-1]

@@ -9,11 +9,15 @@ from typing import Literal
 import numpy as np
 
 from substructures.analysis.arguments import positive
+from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.errors import InvalidArgument
+from substructures.expr.interpret import interpret
+from substructures.quantities.numbers.states import default_numbers
+from substructures.tree.model import Model
 
 Stability = Literal["stable", "unstable", "neutral", "unknown"]
 BifurcationKind = Literal["fold", "branch-point", "period-doubling", "torus"]
@@ -83,25 +87,42 @@ class Family:
 
 @dataclass(frozen=True)
 class Shooting:
-    """What is looked for. ``period`` [s]: a guess, of forced motions the period, or None: the time of return to the
-    ``section`` that the start is near; ``is_fixed``: it stays as it is; ``hold``: components of the state (``arm.q1``,
-    ``arm.q1'``) that stay as they are; ``turns``: whole turns that revolute coordinates make in a period.
+    """What is looked for. ``period`` [s], a number or an expression in parameters (``2*pi/w``): a guess, of forced
+    motions the period, or None: the time of return to the ``section`` that the start is near; ``is_fixed``: it stays
+    as it is; ``hold``: components of the state (``arm.q1``, ``arm.q1'``) that stay as they are; ``turns``: whole turns
+    that revolute coordinates make in a period.
     """
 
-    period: float | None
+    period: float | str | None
     is_fixed: bool = False
     hold: tuple[str, ...] = ()
     turns: Mapping[str, int] | None = None
     section: Section | None = None
 
-    def longest(self) -> float:
-        """Of the period or the section, which is given in place of it, the longest time [s]. Raises InvalidArgument."""
+    def period_at(self, model: Model, parameters: Mapping[str, float]) -> float | None:
+        """The period [s] as a number, at these ``parameters`` and the defaults of others. Raises InvalidArgument,
+        MissingValue.
+        """
+        if not isinstance(self.period, str):
+            return self.period
+        read = read_expressions(model, {"period": [(self.period, "/period")]})
+        for symbol in read.symbols:
+            if symbol.kind != "parameter":
+                message = f"a period depends on parameters alone, not on '{symbol.name}'"
+                raise InvalidArgument.at("/period", "unknown-name", message)
+        values = {**default_numbers(model.parameters), **parameters}
+        return positive(float(interpret(read, values)["period"][0]), "period")
+
+    def longest(self, period: float | None) -> float:
+        """Of the ``period`` or the section, which is given in place of it, the longest time [s]. Raises
+        InvalidArgument.
+        """
         if self.section is None:
-            if self.period is None:
+            if period is None:
                 message = "give 'period', or the 'section' whose time of return it is"
                 raise InvalidArgument.at("/period", "missing", message)
-            return positive(self.period, "period")
-        if self.period is not None:
+            return positive(period, "period")
+        if period is not None:
             message = "give 'period', or the 'section' whose time of return it is, not both"
             raise InvalidArgument.at("/section", "contradiction", message)
         if self.is_fixed:

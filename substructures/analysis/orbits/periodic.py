@@ -58,7 +58,7 @@ def periodic_orbits(
     """
     given = dict(parameters or {})
     start = Start(q, qd, given, inputs or {})
-    times = OutputTimes((0.0, shooting.longest()))
+    times = OutputTimes((0.0, shooting.longest(shooting.period_at(model, given))))
     problem = TreeProblem(model=model, start=start, times=times, integrator=integrator, events=events)
     names = state_names(model)
     _check(model, shooting, vary, values if between is None else between, names)
@@ -105,7 +105,8 @@ def _family(problem: TreeProblem, shooting: Shooting, vary: str, values: Sequenc
             x, own = replace(start, parameters={**start.parameters, vary: value}), shooting
         orbit = replace(Search(replace(problem, start=x), own).run(), value=value)
         if orbit.status == "finished":
-            start, shooting = replace(start, q=orbit.q, qd=orbit.qd), replace(shooting, period=orbit.period)
+            start = replace(start, q=orbit.q, qd=orbit.qd)
+            shooting = shooting if isinstance(shooting.period, str) else replace(shooting, period=orbit.period)
         yield orbit
 
 

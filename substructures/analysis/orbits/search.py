@@ -40,6 +40,7 @@ class Search:
 
     def __init__(self, problem: TreeProblem, shooting: Shooting) -> None:
         self.problem, self.shooting = problem, shooting
+        self.period = shooting.period_at(problem.model, problem.start.parameters or {})
         self.flow = HybridFlow(problem) if problem.events else Flow(problem)
         self.chart = self.flow.chart
         names = state_names(problem.model)
@@ -58,7 +59,7 @@ class Search:
 
     def _begun(self) -> tuple[Array, float]:
         """Where the search begins. Raises EndsEarlyError."""
-        x, period = self.flow.start.copy(), self.shooting.period
+        x, period = self.flow.start.copy(), self.period
         if self.returns and period is None:
             met, period = self.returns.first(x)
             x = x if self.held else met
@@ -73,7 +74,7 @@ class Search:
             x, guess = self._begun()
         except EndsEarlyError as error:
             why = f"the motion from the start has no end: {error}"
-            return self.orbit(self.flow.start, self.shooting.period or np.nan, why, 0)
+            return self.orbit(self.flow.start, self.period or np.nan, why, 0)
         period = guess
         for k in range(ITERATIONS):
             try:
