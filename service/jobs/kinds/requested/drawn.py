@@ -38,7 +38,8 @@ def _subject(item: ItemDocument, blobs: Blobs) -> _Drawn:
         return _Drawn(*tree_parts(item["parts"], blobs), model_of(item, blobs))
     name, _, digest = item["substructure"].partition("@")
     parts = {INSTANCE: part_of(digest, item["program"], blobs)}
-    spec = TreeSpec.read({"name": name, "instances": [{"name": INSTANCE, "substructure": item["substructure"]}]})
+    one = {"name": INSTANCE, "substructure": item["substructure"], "level": "full"}  # as the formulas of the part
+    spec = TreeSpec.read({"name": name, "instances": [one]})
     return _Drawn(spec, parts, couple(spec, parts, item["nodes"]))
 
 

@@ -41,7 +41,7 @@ def _parts(item: ItemDocument) -> tuple[TreeSpec, Mapping[str, Part]]:
     nodes = item["nodes"]
     if "tree" not in item:
         part = derive(read_model(Definition, item["definition"]), nodes)
-        instance = {"name": INSTANCE, "substructure": part.name}
+        instance = {"name": INSTANCE, "substructure": part.name, "level": "full"}
         return TreeSpec.read({"name": part.name, "instances": [instance]}), {INSTANCE: part}
     spec = TreeSpec.read(item["tree"])
     return spec, {each.name: derive(each.definition, nodes) for each in spec.instances if each.definition is not None}

@@ -71,7 +71,7 @@ def _part(item: ItemDocument, blobs: Blobs) -> _Subject:
     """A part alone."""
     digest, program = item["definition"], item["program"]
     part = part_of(digest, program, blobs)
-    instance = {"name": INSTANCE, "substructure": f"{part.name}@{digest}"}
+    instance = {"name": INSTANCE, "substructure": f"{part.name}@{digest}", "level": "full"}
     spec, parts = TreeSpec.read({"name": part.name, "instances": [instance], **GRAVITY}), {INSTANCE: part}
     model = _alone.once((digest, program, item["nodes"]), lambda: couple(spec, parts, item["nodes"]))
     definition = part.definition

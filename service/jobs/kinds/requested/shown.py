@@ -74,7 +74,8 @@ def _exported(found: Part | Source, item: ItemDocument) -> Exported:
 
 def _kinematics(part: Part, interface: Interface, nodes: int) -> list[Function]:
     """Positions and rotations of all frames of a part mounted on the world, in the names of the part."""
-    spec = TreeSpec.read({"name": part.name, "instances": [{"name": INSTANCE, "substructure": part.name}]})
+    one = {"name": INSTANCE, "substructure": part.name, "level": "full"}
+    spec = TreeSpec.read({"name": part.name, "instances": [one]})
     model = couple(spec, {INSTANCE: part}, nodes)
     found = []
     for name in KINEMATICS:
