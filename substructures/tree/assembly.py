@@ -25,6 +25,7 @@ from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.given.loops.closed_form import dependent
 from substructures.tree.given.loops.dependent import Dependent
+from substructures.tree.given.loops.levels import reduced_instances
 from substructures.tree.given.ties import require_chains
 from substructures.tree.mounted_part import WORLD, MountedPart, balls_of, friction_of_movers, limits_of_movers
 
@@ -91,7 +92,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    reduced = _reduced(spec, parts, scope)
+    reduced = reduced_instances(spec, parts, scope)
     reading = Reading(spec, parts, scope, place, bound, frozenset(parameters), reduced)
     mounted: list[MountedPart] = []
     first = 0
@@ -110,26 +111,6 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     instances = tuple(spec.instances[i] for i in order)
     places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading, reduced
     return _known_with_balls(spec, Assembly(scope, instances, *places))
-
-
-def _reduced(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> frozenset[str]:
-    """The instances that take the reduced level: whose parts name independent coordinates, with a closed form."""
-    found = set[str]()
-    for i, instance in enumerate(spec.instances):
-        definition = parts[instance.name].definition
-        if instance.level == "full" or not (definition.independent or instance.level):
-            continue
-        why = dependent(parts[instance.name]) if definition.independent else "it names no independent coordinates"
-        if not isinstance(why, str):
-            found.add(instance.name)
-        elif instance.level:
-            message = f"'{definition.name}' has no reduced level: {why}; take 'full'"
-            scope.fault(f"/instances/{i}/level", "not-reduced", message)
-        else:
-            message = f"'{instance.name}' has all coordinates of its loops: {why}"
-            scope.notices.append({"pointer": f"/instances/{i}", "code": "full-level", "message": message})
-    scope.finish()
-    return frozenset(found)
 
 
 def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:

@@ -23,15 +23,9 @@ from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.closures import ClosureRows, Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.driven import (
-    all_coordinates,
-    driven_inputs,
-    driven_names,
-    every_coordinate,
-    levels,
-    put_in,
-)
+from substructures.tree.given.driven import all_coordinates, driven_inputs, driven_names, every_coordinate, put_in
 from substructures.tree.given.ignored import ignore, ignored_names
+from substructures.tree.given.reduced import instances_of
 from substructures.tree.grouping import Admitted, every, numbers_and
 from substructures.tree.load_potentials import found_potential
 from substructures.tree.loads import load_formulas
@@ -271,7 +265,8 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told
     more: dict[str, Any] = {**given, "reduction": reduction, "velocity_constraints": tied, "contacts": touching}
-    more |= {"balls": ball_rows(assembly.balls, moving), "reduced": tuple(levels(assembly))}
+    levels = {i.name: m.part for i, m in pairs if i.name in assembly.reduced}
+    more |= {"balls": ball_rows(assembly.balls, moving), "reduced": tuple(instances_of(assembly.dependent, levels))}
     return Model(result, *axes, assembly.parameters, {}, rows, inputs, limited, plausibility, **more)
 
 

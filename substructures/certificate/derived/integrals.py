@@ -6,6 +6,7 @@ That a quantity is constant is checked with it: its derivative along the equatio
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from math import prod
 from typing import Any
@@ -43,17 +44,21 @@ def constant(
     ``program``: of the integrals, whose derivatives along the motion have to vanish. ``multipliers``: symbols of the
     reactions of closures, or of all ``rows``.
     """
-    return partial(_constant, program, integrals, multipliers, rows, balls)
+    return partial(_constant, _Held(program, multipliers, rows, balls), integrals)
 
 
-def _constant(
-    program: Stored,
-    integrals: Sequence[Mapping[str, Any]],
-    multipliers: Sequence[str],
-    rows: Rows | None,
-    balls: BallRows,
-    m: ModelAt,
-) -> Outputs:
+@dataclass(frozen=True)
+class _Held:
+    """The program of integrals, and what holds the motion along which they are constant."""
+
+    program: Stored
+    multipliers: Sequence[str]
+    rows: Rows | None
+    balls: BallRows
+
+
+def _constant(given: _Held, integrals: Sequence[Mapping[str, Any]], m: ModelAt) -> Outputs:
+    program, balls = given.program, given.balls
     result = Outputs()
     found = {"linear_momentum": m.momentum("linear"), "angular_momentum": m.momentum("angular")}
     for each in integrals:
@@ -80,7 +85,7 @@ def _constant(
         result.scalar(name, value)
     result.scalar("power", power(m, balls))
     held = [each for each in integrals if each["rule"] == "constant"]
-    _require_constant(program, held, multipliers, rows, balls, m)
+    _require_constant(given, held, m)
     return result
 
 
@@ -150,19 +155,13 @@ def _rate_of_momentum(m: ModelAt, balls: BallRows) -> list[Ball]:
     return [total(moved.get((a, i), zero) * v + own.get((a, i), zero) * w for a, (v, w) in pairs) for i in range(3)]
 
 
-def _require_constant(
-    program: Stored,
-    integrals: Sequence[Mapping[str, Any]],
-    multipliers: Sequence[str],
-    rows: Rows | None,
-    balls: BallRows,
-    m: ModelAt,
-) -> None:
+def _require_constant(given: _Held, integrals: Sequence[Mapping[str, Any]], m: ModelAt) -> None:
     """Raise VerificationFailed for an integral that changes along the motion, whatever the reactions of closures and of
     velocity constraints are; they do no work."""
+    program, multipliers, rows = given.program, given.multipliers, given.rows
     values = {**m.values, **dict.fromkeys(multipliers, arb(1))}
     found = operations_in_balls(program, values)
-    free = tangents(program, found, motion(m, balls, m.accelerations()))
+    free = tangents(program, found, motion(m, given.balls, m.accelerations()))
     held = free
     if multipliers:
         G = m.matrix("closure.jacobian") if rows is None else _held(rows(m), integrals)

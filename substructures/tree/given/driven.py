@@ -27,7 +27,7 @@ a driven coordinate has no force beside that of the drive.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.documents import escape
@@ -44,7 +44,7 @@ from substructures.expr.walk import transfer
 from substructures.part.relations import OF_COORDINATES
 from substructures.tree.assembly import Assembly
 from substructures.tree.document import DrivenInput, DrivenTable
-from substructures.tree.given.dependent import reduced
+from substructures.tree.given.reduced import reduced
 
 Elements = Mapping[tuple[int, ...], Any]
 #: s, s', s''
@@ -73,20 +73,6 @@ def all_coordinates(assembly: Assembly) -> dict[str, str]:
     """Those that do not depend on others, free, driven and ignored."""
     values = assembly.dependent.values
     return {name: kind for name, kind in every_coordinate(assembly).items() if name not in values}
-
-
-def levels(assembly: Assembly) -> Iterator[dict[str, Any]]:
-    """The reduced instances: their coordinates, by themselves and dependent, and the closures that make them so."""
-    values = assembly.dependent.values
-    for instance, m in zip(assembly.instances, assembly.mounted, strict=True):
-        if instance.name in assembly.reduced:
-            names = [f"{instance.name}.{q}" for q in m.part.coordinates]
-            yield {
-                "instance": instance.name,
-                "independent": [q for q in names if q not in values],
-                "dependent": [q for q in names if q in values],
-                "closures": [f"{instance.name}.{each.name}" for each in m.part.definition.closures],
-            }
 
 
 def driven_names(assembly: Assembly) -> tuple[str, ...]:

@@ -20,7 +20,7 @@ Positions, and whatever else depends on q^c, are those of q^c = 0: relative to w
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Any
 
 from substructures.documents import escape
@@ -33,18 +33,13 @@ from substructures.expr.walk import reachable, transfer
 from substructures.mechanics.factorisation import Factors, factorised
 from substructures.part.relations import OF_COORDINATES
 from substructures.tree.assembly import Assembly
+from substructures.tree.given.projection import Column, Entries, Projection
 
-Entries = dict[tuple[int, ...], Any]
-#: by coordinate
-Column = Mapping[int, Expr]
 #: what may not be of a coordinate that is ignored, or depend on it
 FRICTION = ("friction", "friction_load")
 EQUATIONS = ("metric", "christoffel", "forces", "bias", "potential_energy", "friction")
 #: what changes where the motion is known but for the coordinates that are left
 MOTIONS = {"linear_momentum": 0, "angular_momentum": 0, "U": 1, "Omega": 1}
-#: of joints whose coordinates are left
-OWN = frozenset(("limits", "friction", "friction_load"))
-SYMMETRIES = {"metric": "symmetric", "christoffel": "connection"}
 
 
 def ignored_names(assembly: Assembly, names: Iterable[str]) -> tuple[str, ...]:
@@ -182,6 +177,7 @@ class _Reduction:
         for a in self.rest:
             column = factors.solve([-(zero + self.g.get((c, a), 0)) for c in cyclic])
             self.P.append({a: graph.one, **{c: x for c, x in zip(cyclic, column, strict=True) if not x.is_zero}})
+        self.projection = Projection(graph, self.P, self.rest)
         # q'^c = K^c_a q'^a + w^c
         pairs = list(zip(self.P, self.rates, strict=True))
         self.moving = [self.w[c] + graph.sum(x[c] * v for x, v in pairs if c in x) for c in cyclic]
@@ -197,46 +193,15 @@ class _Reduction:
     def _reduced(self, name: str, each: Formulas) -> Formulas:
         """P along all axes of coordinates."""
         axes = OF_COORDINATES.get(name, ())
-        if not axes:
-            return each
-        entries: Entries = dict(each.expanded())
-        if name in OWN:
-            place = {a: i for i, a in enumerate(self.rest)}
-            kept: Entries = {(place[a], k): x for (a, k), x in entries.items() if a in place}
-            return Formulas((len(self.rest), *each.shape[1:]), kept, each.symmetry)
-        for axis in axes:
-            entries = self._contracted(entries, axis)
-        if name in SYMMETRIES:
-            entries = {i: x for i, x in entries.items() if i[-2] <= i[-1]}
-        shape = tuple(len(self.rest) if axis in axes else size for axis, size in enumerate(each.shape))
-        return Formulas(shape, entries, SYMMETRIES.get(name, each.symmetry))
-
-    def _contracted(self, entries: Entries, axis: int) -> Entries:
-        """P_ia x_..i.."""
-        by: dict[int, list[tuple[int, Expr]]] = {}
-        for a, column in enumerate(self.P):
-            for i, x in column.items():
-                by.setdefault(i, []).append((a, x))
-        return self._sums(
-            ((*index[:axis], a, *index[axis + 1 :]), x * y)
-            for index, x in entries.items()
-            for a, y in by.get(index[axis], ())
-        )
+        return self.projection.along(name, each, axes, dict(each.expanded())) if axes else each
 
     def _along(self, entries: Entries, axis: int, column: Column) -> Entries:
         """x_..i.. v^i, without the axis."""
-        return self._sums(
+        return self.projection.sums(
             (index[:axis] + index[axis + 1 :], x * column[index[axis]])
             for index, x in entries.items()
             if index[axis] in column
         )
-
-    def _sums(self, terms: Iterator[tuple[tuple[int, ...], Any]]) -> Entries:
-        found: dict[tuple[int, ...], list[Any]] = {}
-        for index, x in terms:
-            found.setdefault(index, []).append(x)
-        sums = {index: self.graph.sum(some) for index, some in found.items()}
-        return {index: x for index, x in sums.items() if not x.is_zero}
 
     def _at_no_rate(self, name: str, axis: int) -> Formulas:
         """x_..c.. w^c: what moves while the coordinates that are left do not."""
@@ -259,8 +224,8 @@ class _Reduction:
             "ignored_rates": array((len(self.moving),), lambda c: self.moving[c]),
         }
         if "christoffel" in self.found:
-            gamma = self._contracted(self._along(dict(self.found["christoffel"].expanded()), 2, self.w), 0)
-            found["Gamma_ab0"] = Formulas((n, n), self._contracted(gamma, 1))
+            gamma = self.projection.contracted(self._along(dict(self.found["christoffel"].expanded()), 2, self.w), 0)
+            found["Gamma_ab0"] = Formulas((n, n), self.projection.contracted(gamma, 1))
             found["Gamma_a00"] = Formulas((n,), self._along(gamma, 1, self.w))
         return found
 

@@ -12,20 +12,18 @@ coordinate has no force. Nothing of the tree depends on dependent coordinates an
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas
 from substructures.expr.walk import transfer
+from substructures.part.part import Part
 from substructures.tree.given.loops.dependent import Dependent
+from substructures.tree.given.projection import Projection, Terms
 
-Entries = dict[tuple[int, ...], Any]
 #: what has a term more, g_ab H_bjk y'^j y'^k or G_a H_ajk y'^j y'^k
 BENT = {"bias": "metric", "nonlinear_effects": "metric", "closure.acceleration": "closure.jacobian"}
-#: of single coordinates
-OWN = frozenset(("limits", "friction", "friction_load"))
-SYMMETRIES = {"metric": "symmetric", "christoffel": "connection"}
 
 
 def reduced(
@@ -42,21 +40,34 @@ def reduced(
     return level.written(found)
 
 
+def instances_of(known: Dependent, parts: Mapping[str, Part]) -> Iterator[dict[str, Any]]:
+    """The reduced instances: their coordinates, by themselves and dependent, and the closures that make them so."""
+    for instance, part in parts.items():
+        names = [f"{instance}.{q}" for q in part.coordinates]
+        yield {
+            "instance": instance,
+            "independent": [q for q in names if q not in known.values],
+            "dependent": [q for q in names if q in known.values],
+            "closures": [f"{instance}.{each.name}" for each in part.definition.closures],
+        }
+
+
 class _Reduced:
     """N by its columns, and H."""
 
     def __init__(self, graph: Graph, known: Dependent, names: Sequence[str]) -> None:
         self.graph, self.known, self.names = graph, known, names
         self.free = [a for a, name in enumerate(names) if name not in known.values]
-        self.place = {a: i for i, a in enumerate(self.free)}
+        place = {a: i for i, a in enumerate(self.free)}
         number = {name: a for a, name in enumerate(names)}
         self.N: list[dict[int, Expr]] = [{a: graph.one} for a in self.free]
         self.H: dict[int, list[tuple[int, int, Expr]]] = {}
         for z in known.values:
             for y, x in known.N[z].items():
-                self.N[self.place[number[y]]][number[z]] = x
-            rows = ((self.place[number[j]], self.place[number[k]], x) for (j, k), x in known.H[z].items())
+                self.N[place[number[y]]][number[z]] = x
+            rows = ((place[number[j]], place[number[k]], x) for (j, k), x in known.H[z].items())
             self.H[number[z]] = list(rows)
+        self.projection = Projection(graph, self.N, self.free)
         speeds = [graph.symbol(f"{names[a]}'") for a in self.free]
         #: H y' y' of dependent coordinates
         self.bent = {
@@ -73,22 +84,13 @@ class _Reduced:
 
     def moving(self, name: str, each: Formulas, axes: Sequence[int], outputs: Mapping[str, Formulas]) -> Formulas:
         """An output along its axes, as formula of all coordinates."""
-        if name in OWN:
-            own: Entries = {(self.place[a], *rest): x for (a, *rest), x in each.entries.items() if a in self.place}
-            return Formulas((len(self.free), *each.shape[1:]), own, each.symmetry)
-        entries: Entries = dict(each.expanded())
+        entries = dict(each.expanded())
         if name in BENT:
-            entries = self._sums([*entries.items(), *self._pull(outputs[BENT[name]])])
-        if not axes:
-            return Formulas(each.shape, entries if name in BENT else each.entries, each.symmetry)
-        for axis in axes:
-            entries = self._contracted(entries, axis)
-        if name == "christoffel":
-            entries = self._sums([*entries.items(), *self._turned(outputs["metric"])])
-        if name in SYMMETRIES:
-            entries = {i: x for i, x in entries.items() if i[-2] <= i[-1]}
-        shape = tuple(len(self.free) if axis in axes else size for axis, size in enumerate(each.shape))
-        return Formulas(shape, entries, SYMMETRIES.get(name, each.symmetry))
+            entries = self.projection.sums([*entries.items(), *self._pull(outputs[BENT[name]])])
+        elif not axes:
+            return each
+        more = self._turned(outputs["metric"]) if name == "christoffel" else ()
+        return self.projection.along(name, each, axes, entries, more)
 
     def written(self, outputs: Mapping[str, Formulas]) -> dict[str, Formulas]:
         """Without dependent coordinates, their rates and accelerations."""
@@ -99,31 +101,12 @@ class _Reduced:
             for name, each in outputs.items()
         }
 
-    def _pull(self, linear: Formulas) -> Iterable[tuple[tuple[int, ...], Any]]:
+    def _pull(self, linear: Formulas) -> Terms:
         """x_.b H_bjk y'^j y'^k."""
         return (((i,), x * self.bent[b]) for (i, b), x in linear.expanded().items() if b in self.bent)
 
-    def _turned(self, metric: Formulas) -> Iterable[tuple[tuple[int, ...], Any]]:
+    def _turned(self, metric: Formulas) -> Terms:
         """N_ai g_ab H_bjk."""
-        for (i, b), x in self._contracted(dict(metric.expanded()), 0).items():
+        for (i, b), x in self.projection.contracted(dict(metric.expanded()), 0).items():
             for j, k, bend in self.H.get(b, ()):
                 yield from (((i, *both), x * bend) for both in {(j, k), (k, j)})
-
-    def _contracted(self, entries: Entries, axis: int) -> Entries:
-        """N_ai x_..a.."""
-        by: dict[int, list[tuple[int, Expr]]] = {}
-        for i, column in enumerate(self.N):
-            for a, x in column.items():
-                by.setdefault(a, []).append((i, x))
-        return self._sums(
-            ((*index[:axis], i, *index[axis + 1 :]), x * y)
-            for index, x in entries.items()
-            for i, y in by.get(index[axis], ())
-        )
-
-    def _sums(self, terms: Iterable[tuple[tuple[int, ...], Any]]) -> Entries:
-        found: dict[tuple[int, ...], list[Any]] = {}
-        for index, x in terms:
-            found.setdefault(index, []).append(x)
-        sums = {index: self.graph.sum(some) for index, some in found.items()}
-        return {index: x for index, x in sums.items() if not x.is_zero}
