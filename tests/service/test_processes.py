@@ -295,5 +295,5 @@ def test_whoever_has_fewest_takes_the_next(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def test_only_as_a_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    assert main(["serve", "--processes", "2", "--database", f"sqlite:///{tmp_path}/x.db"]) == 1
+    assert main(["serve", "--port", "0", "--processes", "2", "--database", f"sqlite:///{tmp_path}/x.db"]) == 1
     assert "several processes are started by the command" in capsys.readouterr().err
