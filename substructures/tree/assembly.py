@@ -116,7 +116,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
 def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:
     """The assembly. Raises InvalidDocument (``has-balls``) for what does not go with ball and floating joints."""
     given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
-    for name, some in (given | {"closures": assembly.cuts or assembly.reduced}).items():
+    for name, some in (given | {"closures": assembly.cuts}).items():
         if some:
             require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
     return assembly

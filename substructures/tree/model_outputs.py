@@ -121,7 +121,8 @@ def _position_rates(assembly: Assembly, rates: Sequence[Scalar]) -> Formulas:
     for ball in assembly.balls:
         moved = position_rates(graph, ball.positions, [graph.lift(rates[a]) for a in ball.joints])
         found |= zip(ball.positions, moved, strict=True)
-    order = positions_of([names[a] for a in movers], ball_rows(assembly.balls, names))
+    left = [names[a] for a in movers if names[a] not in assembly.dependent.values]
+    order = positions_of(left, ball_rows(assembly.balls, names))
     return array((len(order),), lambda i: found[order[i]])
 
 

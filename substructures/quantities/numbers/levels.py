@@ -16,7 +16,7 @@ def ranges_left(model: Model, lowest: Array, highest: Array) -> list[dict[str, s
     for name, ends in model.reduction.ranges.items():
         if name not in own:
             continue
-        a, (low, high) = model.coordinates.index(name), map(default_number, ends)
+        a, (low, high) = model.positions.index(name), map(default_number, ends)
         gone = [x for x in (lowest[a], highest[a]) if not low <= x <= high]
         if gone:
             closures = listed(f"'{closure}'" for closure in own[name]["closures"])
