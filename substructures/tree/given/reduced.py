@@ -20,7 +20,7 @@ from substructures.expr.program import Formulas
 from substructures.expr.walk import transfer
 from substructures.part.part import Part
 from substructures.tree.given.loops.dependent import Dependent
-from substructures.tree.given.projection import Projection, Terms
+from substructures.tree.given.projection import Projection, Terms, changed
 
 #: what has a term more, g_ab H_bjk y'^j y'^k or G_a H_ajk y'^j y'^k
 BENT = {"bias": "metric", "nonlinear_effects": "metric", "closure.acceleration": "closure.jacobian"}
@@ -94,12 +94,8 @@ class _Reduced:
 
     def written(self, outputs: Mapping[str, Formulas]) -> dict[str, Formulas]:
         """Without dependent coordinates, their rates and accelerations."""
-        roots = [self.graph.lift(x) for each in outputs.values() for x in each.entries.values()]
-        found = iter(self.known.put_in(transfer(roots, self.graph, self.values)))
-        return {
-            name: Formulas(each.shape, {i: next(found) for i in each.entries}, each.symmetry)
-            for name, each in outputs.items()
-        }
+        known, graph = self.known, self.graph
+        return changed(graph, outputs, lambda every: known.put_in(transfer(every, graph, self.values)))
 
     def _pull(self, linear: Formulas) -> Terms:
         """x_.b H_bjk y'^j y'^k."""
