@@ -21,8 +21,7 @@ _PRIMES = {"q": "", "qd": "'", "qdd": "''"}
 
 def interface_of_model(model: Model, reference: str = "", digest: str = "") -> Interface:
     """The vectors of a tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
-    efforts = [f"tau.{name}" for name in model.coordinates]
-    inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
+    inputs = [*sorted(frozenset(model.inputs).difference(model.efforts)), *model.efforts]
     states = _states(model.coordinates, model.joints, model.balls)
     vectors = states | _others(model.parameters, inputs, model.units, input_defaults(model))
     always = ("t", "u") if model.driven else ()

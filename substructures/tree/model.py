@@ -103,9 +103,15 @@ class Model:
     @cached_property
     def units(self) -> dict[str, str]:
         """The SI units of parameters and inputs by name; empty where none was given."""
-        efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
         declared = {**self.parameters, **self.inputs}
-        return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
+        return {name: str(given.get("unit", "")) for name, given in declared.items()} | self.efforts
+
+    @cached_property
+    def efforts(self) -> dict[str, str]:
+        """The actuators, of coordinates and of those that depend on them (reduced level), with their SI units."""
+        own = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
+        others = {f"tau.{name}" for level in self.reduced for name in level["dependent"]}
+        return own | {s.name: s.unit for s in self.program.symbols if s.name in others}
 
     @cached_property
     def state_units(self) -> dict[str, dict[str, str]]:
@@ -121,7 +127,7 @@ class Model:
     def input_names(self) -> tuple[str, ...]:
         """All inputs: those in the formulas in the order of the program's symbols, then those without effect."""
         named = [s.name for s in self.program.symbols if s.kind == "input"]
-        return tuple(dict.fromkeys([*named, *self.inputs, *(f"tau.{name}" for name in self.coordinates)]))
+        return tuple(dict.fromkeys([*named, *self.inputs, *self.efforts]))
 
     def described(self) -> dict[str, Any]:
         """What the axes of the outputs are, as plain data."""

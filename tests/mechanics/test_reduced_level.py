@@ -120,7 +120,8 @@ def test_they_are_the_equations_with_multipliers(name: str) -> None:
     names, start = model.coordinates, start_of(name)
     for _ in range(2):
         q = {c: start.get(c, 0) + rng.uniform(-0.2, 0.2) for c in names}
-        qd, tau = ({f"{x}{c}": rng.uniform(-1, 1) for c in names} for x in ("", "tau."))
+        qd = {c: rng.uniform(-1, 1) for c in names}
+        tau = {f"tau.{c}": rng.uniform(-1, 1) for c in full.coordinates}
         other = reduced_equations(full, q, qd=qd, inputs=tau, independent=names, start=start)
         assert other.is_right
         found = evaluate(model, ["metric", "christoffel", "forces", "forward_dynamics", "bias"], q, qd, inputs=tau)
@@ -147,7 +148,8 @@ def test_joints_transmit_what_they_do_with_closures(name: str) -> None:
     ours, theirs = (with_reactions(*between_arms(name, level)) for level in (None, "full"))
     rng, start, names = np.random.default_rng(3), start_of(name), ours.model.coordinates
     q = {c: start.get(c, 0) + rng.uniform(-0.2, 0.2) for c in names}
-    qd, tau = ({f"{x}{c}": rng.uniform(-1, 1) for c in names} for x in ("", "tau."))
+    qd = {c: rng.uniform(-1, 1) for c in names}
+    tau = {f"tau.{c}": rng.uniform(-1, 1) for c in theirs.model.coordinates}
     closed = reduced_equations(theirs.model, q, qd=qd, independent=names, start=start)
     assert_same_reactions(ours, theirs, (q, qd), (closed.q, closed.qd), tau)
 

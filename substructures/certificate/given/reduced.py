@@ -22,7 +22,7 @@ from substructures.certificate.described import (
     positions_in,
 )
 from substructures.certificate.given.ignored import MOTIONS, OWN, along, contracted, whole
-from substructures.certificate.given.loops import Build, Loops, Reduced
+from substructures.certificate.given.loops import PRIMES, Build, Loops, Reduced
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Bindings, Plain
 from substructures.certificate.outputs import Outputs, Values
@@ -36,7 +36,7 @@ def reduced_symbols(tree: Plain, definitions: Mapping[str, Plain], kinds: Mappin
     """The kinds of symbols without those of dependent coordinates."""
     every = coordinates_in(tree, definitions)
     names = [name for name in every if is_dependent(tree, definitions, name)]
-    gone = {f"{x}{name}{p}" for name in names for x, p in (("tau.", ""), ("", ""), ("", "'"), ("", "''"))}
+    gone = {f"{name}{p}" for name in names for p in PRIMES}
     return {name: kind for name, kind in kinds.items() if name not in gone}
 
 
