@@ -22,6 +22,7 @@ from substructures.certificate.described import (
     coordinates_in,
     free_coordinates,
     hosts_first,
+    is_dependent,
     positions_in,
 )
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
@@ -85,6 +86,8 @@ def _at_level(
         return _outputs(tree, definitions, stored, values)
     found = level_at(tree, definitions, with_driven(tree, values))
     outputs = reduced_outputs(tree, definitions, found, _outputs(all_free(tree), definitions, stored, found.values))
+    z = [q for q in coordinates_in(tree, definitions) if is_dependent(tree, definitions, q)]
+    outputs.array("dependent", (len(z),)).update({(k,): found.values[q] for k, q in enumerate(z)})
     driven, free = tree.get("driven", ()), list(free_coordinates(tree, definitions))
     more = driven_level(outputs, free, found.values, driven) if driven else {}
     outputs.update(more)
