@@ -9,18 +9,14 @@ neither depends on where the base is. Gamma~_abc = Gamma~_acb; they are not thos
 rates are not derivatives of coordinates (Boltzmann and Hamel). Gravity g_0 in the axes of the base gives Q_a = g~_ai
 g_0^i, i = 1, 2, 3; a force F at the base's origin and a moment M are Q = (F, M, 0).
 
-They are made from the tree on a host without mass that has three sliding and three turning joints, all of them at zero,
-whose rates are those above there; of the accelerations
-
-    r'' = v' + w x v,        (roll'', pitch'', yaw'') = w' - (-w_y w_z, w_x w_z, -w_x w_y).
+They are those of the tree on a host without mass that floats (:mod:`substructures.mechanics.balls`).
 
 Source: J. G. Papastavridis, Analytical Mechanics, 2002, chapter 3; the formalism of the paper for the tree on its host.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
-from fractions import Fraction
+from collections.abc import Mapping
 from functools import lru_cache, partial
 
 from substructures.certificate.derived.floating import (
@@ -30,24 +26,22 @@ from substructures.certificate.derived.floating import (
     floating_metric_outputs,
 )
 from substructures.errors import TooLarge
-from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, program
 from substructures.expr.replay import replay
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, derive
 from substructures.part.topology import MOST_CHRISTOFFEL, entries_of
 from substructures.quantities.of_parts import OfParts, formed
-from substructures.tree.assembly import Assembly, assemble, joint_parents
+from substructures.tree.assembly import Assembly, joint_parents, unchecked
 from substructures.tree.coupling import couple_parts
-from substructures.tree.document import Instance, TreeSpec, require_full, require_ungiven
+from substructures.tree.document import Instance, TreeSpec, require_ungiven
+from substructures.tree.given.driven import all_coordinates, put_in
 from substructures.tree.given.ties import require_chains
 from substructures.tree.model_outputs import model_outputs
 
-#: the rates of the base, and the place of each among the joints of the host: x, y, z, yaw, pitch, roll
+#: the rates of the base
 BASE = ("vx", "vy", "vz", "wx", "wy", "wz")
-_PLACES = (0, 1, 2, 5, 4, 3)
 _HOST, _PLATFORM = "base", "platform"
-_ANGLES = ["x", "y", "z", "yaw", "pitch", "roll"]
 
 
 class FloatingTree(OfParts):
@@ -76,26 +70,20 @@ def _outputs(
     spec: TreeSpec, parts: Mapping[str, Part], christoffel: bool, assembly: Assembly
 ) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     require_ungiven(spec, "give what moves as a part of its own")
-    require_full(assembly.reduced, "ask again")
     require_chains(assembly.balls, "ask for 'metric' and 'christoffel'")
     host = _free_name(spec)
-    hosted = assemble(_hosted(spec, host), {**parts, host: _host_part()})
+    # closures say nothing of these
+    hosted = unchecked(_hosted(spec, host), {**parts, host: _host_part()})
     entries = entries_of(joint_parents(hosted.mounted))
     if christoffel and entries.is_large:
         raise TooLarge("the floating Christoffel symbols (in elements)", entries.christoffel, MOST_CHRISTOFFEL)
     graph = hosted.scope.graph
     coupled = couple_parts(over_formulas(graph), hosted.mounted, hosted.gravity, christoffel)
-    wanted = frozenset({"christoffel" if christoffel else "metric"})
-    found = model_outputs(hosted, coupled, [], [], wanted)
-    if christoffel:
-        outputs = {SYMBOLS: _symbols(found["christoffel"], found["metric"], graph)}
-    else:
-        outputs = {METRIC: _metric(found["metric"])}
-    at_zero = {f"{host}.{name}": assembly.scope.graph.number(0) for name in _ANGLES}
-    moved = program(graph, outputs, hosted.scope.symbols)
-    pairs = zip(assembly.instances, assembly.mounted, strict=True)
-    own = [f"{instance.name}.{name}'" for instance, m in pairs for name in m.part.coordinates]
-    return replay(moved, assembly.scope.graph, at_zero), (*BASE, *own)
+    quantity, name = ("christoffel", SYMBOLS) if christoffel else ("metric", METRIC)
+    found = put_in(hosted, model_outputs(hosted, coupled, [], [], frozenset({"metric", quantity})))
+    moved = program(graph, {name: found[quantity]}, hosted.scope.symbols)
+    own = [f"{coordinate}'" for coordinate in all_coordinates(assembly)]
+    return replay(moved, assembly.scope.graph, {}), (*BASE, *own)
 
 
 def _free_name(spec: TreeSpec) -> str:
@@ -108,7 +96,7 @@ def _free_name(spec: TreeSpec) -> str:
 
 @lru_cache(maxsize=1)
 def _host_part() -> Part:
-    joint = {"type": "free", "coordinate": _ANGLES}
+    joint = {"type": "floating", "velocities": list(BASE)}
     return derive({"name": _HOST, "bodies": [{"name": _PLATFORM, "parent": "base", "joint": joint}]})
 
 
@@ -118,36 +106,3 @@ def _hosted(spec: TreeSpec, host: str) -> TreeSpec:
     seated = [each.model_copy(update={"at": place}) if each.at == "world" else each for each in spec.instances]
     instances = (Instance(name=host, substructure=_HOST), *seated)
     return spec.model_copy(update={"instances": instances, "loads": (), "closures": (), "inputs": {}})
-
-
-def _place(index: tuple[int, ...]) -> tuple[int, ...]:
-    """Rates of the base in their order."""
-    return tuple(_PLACES[i] if i < len(_PLACES) else i for i in index)
-
-
-def _metric(metric: Formulas) -> Formulas:
-    found = {_place(index): x for index, x in metric.expanded().items()}
-    return Formulas(metric.shape, {(a, b): x for (a, b), x in found.items() if a <= b}, "symmetric")
-
-
-def _symbols(symbols: Formulas, metric: Formulas, graph: Graph) -> Formulas:
-    """Gamma~ from those of the tree on its host: r'' and (roll'', pitch'', yaw'') are not v' and w'."""
-    g = {_place(index): x for index, x in metric.expanded().items()}
-    found = {_place(index): graph.lift(x) for index, x in symbols.expanded().items()}
-    half = graph.number(Fraction(1, 2))
-    for a in range(metric.shape[0]):
-        for (b, c), i, sign in _TURNED:
-            if (a, i) in g:
-                index = (a, b, c)
-                found[index] = found.get(index, graph.number(0)) + graph.number(sign) * half * g[a, i]
-    return Formulas(symbols.shape, {(a, b, c): x for (a, b, c), x in found.items() if b <= c}, "connection")
-
-
-def _turned() -> Iterator[tuple[tuple[int, int], int, int]]:
-    """(b, c), i, sign: v^b v^c half of it g_ai stands in Gamma~_abc beside the symbols of the host; b < c."""
-    for j, k, i, sign in ((0, 1, 2, 1), (1, 2, 0, 1), (2, 0, 1, 1), (1, 0, 2, -1), (2, 1, 0, -1), (0, 2, 1, -1)):
-        yield (k, 3 + j), i, sign  # (w x v)_i = w_j v_k - ...
-    yield from (((4, 5), 3, 1), ((3, 5), 4, -1), ((3, 4), 5, 1))
-
-
-_TURNED = tuple(_turned())

@@ -92,7 +92,19 @@ def tree_name(instance: str, symbol: str) -> str:
 
 
 def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
-    """Read a tree. Raises InvalidDocument with a pointer to every fault."""
+    """Read a tree. Raises InvalidDocument with a pointer to every fault, and (``has-balls``) for what does not go with
+    ball and floating joints.
+    """
+    assembly = unchecked(spec, parts)
+    given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
+    for name, some in (given | {"closures": assembly.cuts}).items():
+        if some:
+            require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
+    return assembly
+
+
+def unchecked(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
+    """A tree of which it is not known that its ties go together. Raises InvalidDocument."""
     scope = Scope(Graph())
     order = _order(spec, parts, scope)
     _name_faults(spec, scope)
@@ -119,16 +131,7 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
     places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading
-    return _known_with_balls(spec, Assembly(scope, instances, *places))
-
-
-def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:
-    """The assembly. Raises InvalidDocument (``has-balls``) for what does not go with ball and floating joints."""
-    given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
-    for name, some in (given | {"closures": assembly.cuts}).items():
-        if some:
-            require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
-    return assembly
+    return Assembly(scope, instances, *places)
 
 
 def _name_faults(spec: TreeSpec, scope: Scope) -> None:

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -160,15 +161,33 @@ def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
         TreeSpec.read({"name": "t", "instances": [{"name": "a", "substructure": "acrobot"}]}),
         {"a": derive("acrobot")},
     )
-    turned = [*module._TURNED]
-    for k, (pair, i, sign) in enumerate(module._TURNED):
-        monkeypatch.setattr(module, "_TURNED", (*turned[:k], (pair, i, -sign), *turned[k + 1 :]))
-        with pytest.raises(VerificationFailed, match="floating Christoffel symbols"):
-            floating_christoffel(spec, parts)
-    monkeypatch.undo()
-    monkeypatch.setattr(module, "_PLACES", (0, 1, 2, 3, 4, 5))
-    with pytest.raises(VerificationFailed, match="floating metric"):
-        floating_metric(spec, parts)
+    right = module.model_outputs
+    made = {
+        "floating metric": ("metric", floating_metric),
+        "floating Christoffel symbols": ("christoffel", floating_christoffel),
+    }
+    for told, (name, make) in made.items():
+        seen: list[Any] = []
+
+        def noted(*given: Any, name: str = name, seen: list[Any] = seen) -> Any:
+            """Which elements of the base there are."""
+            found = right(*given)
+            seen.extend(index for index in found[name].entries if min(index) < 6)
+            return found
+
+        monkeypatch.setattr(module, "model_outputs", noted)
+        make(spec, parts)
+        for index in np.random.default_rng(0).choice(len(seen), 8, replace=False):
+
+            def wrong(*given: Any, name: str = name, index: Any = seen[index]) -> Any:
+                """By one too large."""
+                found = right(*given)
+                entries = {**found[name].entries, index: found[name].entries[index] + 1}
+                return {**found, name: replace(found[name], entries=entries)}
+
+            monkeypatch.setattr(module, "model_outputs", wrong)
+            with pytest.raises(VerificationFailed, match=told):
+                make(spec, parts)
 
 
 def test_given_motions_are_refused() -> None:

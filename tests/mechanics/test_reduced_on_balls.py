@@ -10,12 +10,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_trees import tree_model
+from closed_trees import tree_model, tree_parts
 from mechanics.reduced_parts import PARTS, on_a_hull
 from scipy.spatial.transform import Rotation
 
-from substructures import Model, equilibria, evaluate, linearise, simulate
+from substructures import Model, couple, equilibria, evaluate, linearise, simulate
 from substructures.analysis.closed.reduced import reduced_equations
+from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import of_parts
 
 NAMES = {each["name"]: each for each in PARTS}
 ANGLES = ["x", "y", "z", "yaw", "pitch", "roll"]
@@ -62,6 +64,21 @@ def test_on_a_floating_base_they_are_the_equations_with_multipliers(name: str) -
     away = evaluate(model, ["metric", "christoffel"], [5, 6, 7, 0, 0.6, 0, 0.8, *here[7:]])
     for each in ("metric", "christoffel"):
         np.testing.assert_array_equal(away[each], found[each])
+
+
+def test_a_linkage_that_floats_is_one_on_a_body_without_mass() -> None:
+    """`floating_metric` and `floating_christoffel` of a tree, and the metric of this tree on a floating base."""
+    name, names = "rod", ["floating_metric", "floating_christoffel"]
+    document = {"instances": [{"name": "x", "substructure": name}]}
+    light = {"name": "light", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "floating"}}]}
+    carried = [{"name": "h", "substructure": "light"}, {**document["instances"][0], "at": "h.b"}]
+    spec, parts = tree_parts(document, {name: NAMES[name]})
+    found = evaluate(Sources(couple(spec, parts), of_parts=of_parts(spec, parts)), names, [0.6])
+    assert list(found.labels["rates"]) == ["vx", "vy", "vz", "wx", "wy", "wz", "x.phi'"]
+    model = tree_model({"instances": carried}, {name: NAMES[name], "light": light})
+    other = evaluate(model, ["metric", "christoffel"], [1, 2, 3, 0.5, 0.5, -0.5, 0.5, 0.6])
+    for ours, theirs in zip(names, ("metric", "christoffel"), strict=True):
+        np.testing.assert_allclose(found[ours], other[theirs], rtol=0, atol=1e-14)
 
 
 def test_motions_on_a_floating_base_are_those_of_angles() -> None:

@@ -53,12 +53,12 @@ def floating_metric_outputs(
 def floating_christoffel_outputs(
     tree: Plain, definitions: Mapping[str, Plain], _: Sequence[str], values: Mapping[str, Ball]
 ) -> Outputs:
-    """Gamma~ of the documents."""
+    """Gamma~ of the documents; of trees with instances of the reduced level also g~, with which they are reduced."""
     bodies = built(tree, definitions, values)[1]
     carried = carried_by_joints(bodies, bodies.own)
     entries = dict(_symbols(_whole(bodies), carried))
     n, found = _contracted(bodies, entries, "connection")
-    result = Outputs()
+    result = floating_metric_outputs(tree, definitions, (), values) if tree.get("reduced") else Outputs()
     result.array(SYMBOLS, (n, n, n), "connection").update(found)
     return result
 

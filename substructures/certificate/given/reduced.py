@@ -28,6 +28,9 @@ from substructures.certificate.numbers import Bindings, Plain
 from substructures.certificate.outputs import Outputs, Values
 
 Index = tuple[int, ...]
+#: the Christoffel symbols of metrics, and how many rates there are before those of coordinates
+SYMBOLS = {"metric": ("christoffel", 0), "floating_metric": ("floating_christoffel", 6)}
+BEFORE = {name: first for metric, (symbols, first) in SYMBOLS.items() for name in (metric, symbols) if first}
 #: what has a term more where accelerations are those of the loop
 BENT = {"bias": "metric", "nonlinear_effects": "metric"}
 
@@ -72,20 +75,41 @@ def reduced_outputs(tree: Plain, definitions: Mapping[str, Plain], found: Reduce
     for name, values in opened.items():
         linear = BENT.get(name) or ("closure.jacobian" if name == "closure.acceleration" else None)
         more = _pulled(opened[linear] if linear else None, pull)
-        result[name] = _along_free(name, values, (pushed, [number[y] for y in free]), more)
+        first = BEFORE.get(name, 0)
+        left = [*range(first), *(first + number[y] for y in free)]
+        result[name] = _along_free(name, values, (_behind(first, pushed), left), more)
     if "position_rates" in result:
         left = [i for i, q in enumerate(positions_in(tree, definitions)) if not is_dependent(tree, definitions, q)]
         rates = result["position_rates"].entries
         result["position_rates"] = Values((len(left),), entries={(k,): rates[i,] for k, i in enumerate(left)})
-    if "christoffel" in result:
-        entries = result["christoffel"].entries
-        place = {y: i for i, y in enumerate(free)}
-        half = contracted(whole(outputs["metric"]), 0, pushed)
-        for (i, b), x in half.items():
-            for (y, other), bend in found.H.get(names[b], {}).items():
-                j, k = sorted((place[y], place[other]))
-                entries[i, j, k] = entries.get((i, j, k), arb(0)) + x * bend
+    for metric, (symbols, first) in SYMBOLS.items():
+        if symbols in result:
+            half = contracted(whole(outputs[metric]), 0, _behind(first, pushed))
+            bends = {first + a: found.H.get(name, {}) for a, name in enumerate(names)}
+            _bend(result[symbols].entries, half, bends, {y: first + i for i, y in enumerate(free)})
+            if first:
+                # which is there for these alone
+                del result[metric]
     return result
+
+
+def _bend(
+    entries: dict[Index, Ball],
+    half: Mapping[Index, Ball],
+    bends: Mapping[int, Mapping[tuple[str, str], Ball]],
+    place: Mapping[str, int],
+) -> None:
+    """Gamma with N_ai g_ab H_bjk more."""
+    for (i, b), x in half.items():
+        for pair, bend in bends.get(b, {}).items():
+            j, k = sorted(place[y] for y in pair)
+            entries[i, j, k] = entries.get((i, j, k), arb(0)) + x * bend
+
+
+def _behind(first: int, pushed: Sequence[dict[int, Ball]]) -> list[dict[int, Ball]]:
+    """The columns of N behind those of a base."""
+    base = ({i: arb(1)} for i in range(first))
+    return [*base, *({first + a: x for a, x in column.items()} for column in pushed)]
 
 
 def _pulled(linear: Values | None, pull: Mapping[int, Ball]) -> dict[Index, Ball]:
@@ -119,7 +143,7 @@ def _along_free(
     name: str, values: Values, level: tuple[list[dict[int, Ball]], list[int]], more: Mapping[Index, Ball]
 ) -> Values:
     """An output along the coordinates that do not depend on others."""
-    (pushed, free), axes = level, AXES.get(name, ())
+    (pushed, free), axes = level, AXES.get(name, tuple(range(len(values.shape))) if name in BEFORE else ())
     if values.along:
         # of what was found by integration its value at the start is not known
         return Values((), entries={(): arb("nan")})
