@@ -98,11 +98,11 @@ Each analysis and each formula of analyses was tried on a small tree of each kin
 coordinate that moves with another (`relations`), a free body below, a rod that closes a loop (`closures`), the same
 in the part, with `independent` coordinates (reduced level), a cart whose motion is given (`driven`) or whose momentum
 is (`ignored`), a linear velocity constraint, a point above the floor (`contacts`), a floating body below (`balls`).
-**no**: the request is refused with the code `has-closures`, `has-reduced`, `has-driven`, `has-ignored`,
-`has-velocity-constraints`, `has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree
+**no**: the request is refused with the code `has-closures`, `has-driven`, `has-ignored`, `has-velocity-constraints`,
+`has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree
 itself (`metric`, `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are
 those without velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the
-`no` of all.
+`no` of all; balls go with the reduced level, and with no other tie.
 """
 
 

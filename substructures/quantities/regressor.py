@@ -187,7 +187,8 @@ def _regrouping(assembly: Assembly) -> Program:
     # nothing that is constant depends on where the joints are
     resting = [replace(m, bindings={**m.bindings, **dict.fromkeys(m.part.coordinates, 0)}) for m in assembly.mounted]
     run = bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
-    rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed)
+    loops = [cut for cut in assembly.full().cuts if cut.rows.name in assembly.dependent.loops]
+    rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed, loops)
     entries: dict[tuple[int, ...], Scalar] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
     return program(graph, {"relations": Formulas((len(rows), columns), entries)}, assembly.scope.symbols)
 

@@ -4,7 +4,8 @@ A distribution of mass that a joint does not move against its parent may be coun
 
 * on the axis of a revolute joint: m at a point of the axis, s along it, J_33 along it;
 * without m and s, a prismatic joint, which does not turn: all of J;
-* what is fixed in its parent: all ten.
+* what is fixed in its parent: all ten;
+* where a loop of the reduced level is cut, at frames that coincide, in the same way by the joint that is cut.
 
 These are M. Gautier's and W. Khalil's rules of regrouping, from the leaves to the root (Direct calculation of minimum
 set of inertial parameters of serial robots, IEEE Transactions on Robotics and Automation 6(3), 1990), for trees with
@@ -23,7 +24,8 @@ from substructures.expr.graph import Expr, Graph
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, carrier_link, constant_rotation, from_body
 from substructures.mechanics.linear3 import Scalar, negate, transpose
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.closures import Cut
+from substructures.tree.mounted_part import WORLD, PlacedPart
 
 #: columns of one link
 TEN = 10
@@ -41,13 +43,18 @@ def named_frames(here: PlacedPart) -> dict[int, int]:
     return found
 
 
-def relations(graph: Graph, placed: Sequence[PlacedPart]) -> tuple[list[dict[int, Expr]], int]:
+def relations(
+    graph: Graph, placed: Sequence[PlacedPart], loops: Sequence[Cut] = ()
+) -> tuple[list[dict[int, Expr]], int]:
     """Coefficients by column, parents before what they carry, and the number of all columns.
 
-    ``placed``: the parts of a tree with all coordinates put to zero. Ten columns of every link, in the order of the
-    regressor; then ten of every carrier without mass, about its body frame origin, to be eliminated.
+    ``placed``: the parts of a tree with all coordinates put to zero; ``loops``: closures that hold. Ten columns of
+    every link, in the order of the regressor; then ten of every carrier without mass, about its body frame origin, to
+    be eliminated.
     """
-    return _Regrouping(graph, placed).result()
+    found = _Regrouping(graph, placed)
+    rows = [*found.result(), *(row for cut in loops for row in found.over(cut))]
+    return rows, TEN * len(found.first)
 
 
 class _Regrouping:
@@ -63,9 +70,24 @@ class _Regrouping:
         order = [*named, *(at for at in self.moving if at not in known)]
         self.first = {at: TEN * k for k, at in enumerate(order)}
 
-    def result(self) -> tuple[list[dict[int, Expr]], int]:
-        """All relations."""
-        return [row for at in self.moving for row in self._of(at)], TEN * len(self.first)
+    def result(self) -> list[dict[int, Expr]]:
+        """Those over joints."""
+        return [row for at in self.moving for row in self._of(at)]
+
+    def over(self, cut: Cut) -> Iterator[dict[int, Expr]]:
+        """Those over the joint of a closure."""
+        for own in MEETING.get(cut.rows.type, ()):
+            row: dict[int, Expr] = {}
+            for end, sign in ((cut.start, 1), (cut.end, -1)):
+                if end.part == WORLD:
+                    continue
+                here = self.placed[end.part]
+                link = here.frame_link(end.frame, end.E, end.position)
+                inertia = _unit(own).in_parent(link.rotation, from_body(here.links, link))
+                if (end.part, link.parent) in self.first:
+                    some = self._coefficients((end.part, link.parent), inertia, sign)
+                    row |= {j: row[j] + x if j in row else x for j, x in some.items()}
+            yield row
 
     def _of(self, at: _Place) -> Iterator[dict[int, Expr]]:
         """Those over the joint of one carrier."""
@@ -95,6 +117,15 @@ class _Regrouping:
             inertia = inertia.shifted(negate(r)).turned_back(constant_rotation(transpose(E)))
         lifted = (self.graph.lift(x) for x in (inertia.m, *inertia.s, *inertia.J))
         return {first + j: x * sign for j, x in enumerate(lifted) if not x.is_zero}
+
+
+#: what the joint of a closure does not move, by its type: m, s_3 and J_33 on an axis, m at a point, J, or all
+MEETING = {
+    **dict.fromkeys(("pin", "revolute"), (0, 3, 6)),
+    **dict.fromkeys(("ball", "spherical", "universal"), (0,)),
+    **dict.fromkeys(("slider", "prismatic"), tuple(range(4, TEN))),
+    **dict.fromkeys(("weld", "fixed"), tuple(range(TEN))),
+}
 
 
 def _unmoved(k: int, s: int) -> list[Inertia]:

@@ -319,5 +319,6 @@ def test_refusals(monkeypatch: pytest.MonkeyPatch) -> None:
         base_parameters(regressor(*tree("planar-2r")), ("stiction",))
     assert error.value.faults[0].pointer == "/drives/0"
     monkeypatch.setattr(dependencies, "MAX_SAMPLES", 0)
+    monkeypatch.setattr(dependencies, "SMALL", 0)
     with pytest.raises(TooLarge):
         base_parameters(regressor(*tree("puma560")))

@@ -49,7 +49,7 @@ from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.closures import require_open
-from substructures.tree.document import require_full, require_undriven
+from substructures.tree.document import require_undriven
 
 DRIVES = ("armature", "viscous", "coulomb", "offset")
 #: unit of a drive's parameter, for revolute and prismatic joints
@@ -61,6 +61,8 @@ DRIVE_UNITS = {
 }
 #: primes that are tried until one has all square roots
 MAX_FIELDS = 10_000
+#: points of a field that are tried until it has the square roots there
+MAX_POINTS = 200
 #: terms of a coefficient that is written in its canonical form
 READABLE = 50
 #: bits of numbers that are written
@@ -145,7 +147,6 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     (size, limit). Source: M. Gautier and W. Khalil, 1990 (see above).
     """
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
-    require_full(Y.reduced, "identify on closures")
     require_undriven(Y.driven, "take the tree without 'driven', or the regressor")
     for i, name in enumerate(drives):
         if name not in DRIVES:
@@ -233,7 +234,13 @@ class _Columns:
         raise TooLarge("the search for a field with all square roots (in primes)", MAX_FIELDS + 1, MAX_FIELDS)
 
     def _random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
-        """Rows at a random point of the field."""
+        """Rows at a random point of the field that has the square roots of positions. Raises NoSquareRoot."""
+        for _ in range(MAX_POINTS):
+            with suppress(NoSquareRoot):
+                return self._at_random(field, symbols)
+        raise NoSquareRoot
+
+    def _at_random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
         at = {**symbols, **{name: field.draw() for name in self.Y.coordinates}}
 
         def regressor(motion: Mapping[str, int]) -> dict[tuple[int, ...], int]:
