@@ -13,6 +13,7 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
+from itertools import count
 from typing import Any
 
 import numpy as np
@@ -135,11 +136,11 @@ class Loops:
 
     def _position(self, blocks: Sequence[_Block]) -> dict[str, Ball] | None:
         """z on the branch of the start, in balls."""
-        floats: dict[str, float] = dict.fromkeys(self.z, 0.0)
-        with ctx.workprec(64):
-            for block in blocks:
-                if not self._close(block, floats):
-                    return None
+        numbers = [(name, float(x)) for name, x in self.values.items()]
+        # the same ones at all precisions of a state
+        floats = _closed(_Start(f"{self.name} {self.definition} {blocks} {numbers}", self), blocks)
+        if floats is None:
+            return None
         at = {q: arb(x) for q, x in floats.items()}
         rows, names = [k for block in blocks for k in block.rows], list(self.kinds)
         precision = ctx.prec
@@ -163,7 +164,7 @@ class Loops:
         start = Numbers({}).read(self.definition.get("start", {}).get(q.partition(".")[2], 0))
         return x - 2 * arb.pi() * round(float((x - start) / (2 * arb.pi())))
 
-    def _close(self, block: _Block, at: dict[str, float]) -> bool:
+    def close(self, block: _Block, at: dict[str, float]) -> bool:
         """Newton's method for the coordinates of one closure, from several starts: many where it closes at all."""
         source = random.Random(1)  # noqa: S311 -- the same for everybody
         first = [float(Numbers({}).read(self.definition.get("start", {}).get(q.partition(".")[2], 0))) for q in block.z]
@@ -238,6 +239,15 @@ class _Start:
 
 
 @lru_cache(maxsize=64)
+def _closed(known: _Start, blocks: Sequence[_Block]) -> dict[str, float] | None:
+    """z of closed positions, to the digits of floats."""
+    found: dict[str, float] = dict.fromkeys(known.loops.z, 0.0)
+    with ctx.workprec(64):
+        is_closed = all(known.loops.close(block, found) for block in blocks)
+    return found if is_closed else None
+
+
+@lru_cache(maxsize=64)
 def _blocks_at_start(start_of: _Start) -> tuple[_Block, ...]:
     """The closures in an order in which each tells coordinates, at the start of the definition."""
     loops, definition = start_of.loops, start_of.loops.definition
@@ -251,12 +261,8 @@ def _blocks_at_start(start_of: _Start) -> tuple[_Block, ...]:
 
 def _told(loops: Loops, at: dict[str, float]) -> Iterator[_Block]:
     """Closures one after the other, at the closed position near the start."""
-    waiting: list[tuple[tuple[int, str], ...]] = []
-    first = 0
-    for closure in loops.definition["closures"]:
-        names_of = ROWS[closure["type"]]
-        waiting.append(tuple((first + i, row) for i, row in enumerate(names_of)))
-        first += len(names_of)
+    number = count()
+    waiting = [tuple((next(number), row) for row in ROWS[each["type"]]) for each in loops.definition["closures"]]
     left, names = list(loops.z), list(loops.kinds)
     with ctx.workprec(64):
         while waiting and left:
