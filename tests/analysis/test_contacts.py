@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
-from contact_models import BALL, PLACED, G, block, box, of, plane_body, walker
+from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, walker
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.trajectory import Trajectory
@@ -253,6 +253,21 @@ def test_a_box_tumbles_to_rest() -> None:
     assert len([event for event in motion.events if event.kind == "impact"]) > 20
     assert np.abs(motion.qd[-1]).max() < 1e-9
     assert motion.q[-1, 2] == pytest.approx(0.1, abs=1e-9)
+
+
+def test_a_disc_stays_where_it_falls_on_sixteen_points() -> None:
+    """Flat, after 0.1 s: as many points alike hold it as their number, with impulses of which only sums are known."""
+    rim = [Contact(f"p{k}", f"b.p{k}", friction=0.4) for k in range(16)]
+    fall = 0.1
+    start = [0, 0, 0.05 + G * fall**2 / 2, 0, 0, 0]
+    motion = move(
+        of("b", disc(16), [0, 0, -G]), start, [0.2, 0.1, 0, 0, 0, 0], 0.2, rim, count=None, times=[0, 0.15, 0.2]
+    )
+    assert motion.is_right, motion.checks
+    assert [event.t for event in motion.events if event.kind == "impact"] == pytest.approx([fall] * 16)
+    np.testing.assert_allclose(motion.q[1:], [[0.2 * fall, 0.1 * fall, 0.05, 0, 0, 0]] * 2, atol=1e-9)
+    assert np.abs(motion.qd[1:]).max() < 1e-12
+    np.testing.assert_allclose(motion.series["contact_forces"][-1, :, 0], 2 * G / 16, rtol=1e-6)
 
 
 def test_a_rod_that_jams_is_told() -> None:
