@@ -53,12 +53,19 @@ class Prover:
         self._high = np.array([_up(x.high) for x in ranges], dtype=np.float64)
         self._waves: dict[tuple[int, int], dict[float, complex]] = {}
         self._products: dict[tuple[tuple[tuple[Fraction, ...], ...], bytes], float] = {}
+        self._bounds: dict[tuple[object, ...], Bound] = {}
         self._report = report
 
     def bound(self, sums: AngleSums, enough: float = 0.0) -> Bound:
         """A bound of an element; none below ``enough`` is looked for, and no more once one cannot be proven."""
         if not sums.starts or not math.isfinite(sums.rest):
             return Bound(sums.rest, sums.rest)
+        key = sums.starts, sums.multiples, sums.weights.tobytes(), sums.rest, enough
+        if key not in self._bounds:
+            self._bounds[key] = self._bound(sums, enough)
+        return self._bounds[key]
+
+    def _bound(self, sums: AngleSums, enough: float) -> Bound:
         alone = [self._alone(sums.product(m)) for m in range(len(sums.starts))]
         flat = np.array(alone)
         together = (float(flat.sum()) + sums.rest) * (1 + 2**-40)
