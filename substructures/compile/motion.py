@@ -28,7 +28,7 @@ _Words = ctypes.c_int64 * len(RUN)
 class SaddlePoint:
     """[g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c] of arrays that kernels write: ``metric`` (n, n), ``jacobian``
     (m, n), ``acceleration`` c (m,), ``forces``, ``bias`` (n,). ``rows`` (r,): the independent ones of G and c, others
-    at the next call where they have changed.
+    at the next call where they have changed. ``moving`` (k,): the coordinates that are not held, of which q'' is zero.
     """
 
     metric: Array
@@ -37,14 +37,15 @@ class SaddlePoint:
     forces: Array
     bias: Array
     rows: NDArray[np.int64]
+    moving: NDArray[np.int64]
 
     def words(self, width: int) -> tuple[NDArray[np.int64], Scratch]:
         """The table SADDLE, and the memory of its matrix."""
-        n = len(self.forces)
-        size = n + len(self.rows)
+        free = len(self.moving)
+        size = free + len(self.rows)
         matrix = Scratch.zeros(size, -(-(size + 1) // width) * width)
-        arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows
-        table = [*map(address, arrays), matrix.address, n, size, matrix.array.shape[1]]
+        arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows, self.moving
+        table = [*map(address, arrays), matrix.address, len(self.forces), free, size, matrix.array.shape[1]]
         return np.array(table, dtype=np.int64), matrix
 
 
@@ -133,6 +134,12 @@ class CompiledRun:
         self._run[-1] = min(most, len(self._steps))
         self._advance(self._run)
         return self._steps[: self._words[0]]
+
+    def rates(self, t: float, x: Array) -> Array:
+        """x' of x (size,) at t, in place of a run."""
+        self.begin(t, x, t, 1.0)
+        self.advance(0)
+        return self._rows.array[2, : x.size].copy()
 
     @property
     def status(self) -> int:
