@@ -272,11 +272,11 @@ def _reachable_nodes(graph: Graph, roots: Iterable[Expr]) -> list[Expr]:
     needed = bytearray(len(graph))
     for node in roots:
         needed[node.index] = 1
-    for node in reversed(graph.nodes):
-        if needed[node.index]:
-            for operand in node.args:
+    for i in range(len(needed) - 1, -1, -1):
+        if needed[i]:
+            for operand in graph.nodes[i].args:
                 needed[operand.index] = 1
-    return [node for node in graph.nodes if needed[node.index]]
+    return [graph.nodes[i] for i, flag in enumerate(needed) if flag]
 
 
 def _operation(node: Expr, position: Sequence[int], number: Mapping[str, int]) -> Operation:
