@@ -15,10 +15,10 @@ from substructures.compile.assembler import AssemblyWriter
 
 #: words of a saddle point: addresses of g (n, n), G (m, n), c (m,), Q, Gamma q'q' (n,), of the numbers of the r rows
 #: and of the k coordinates that move, and of a matrix (k + r, stride), whose rows are filled up to whole vectors;
-#: n, k, k + r and stride
+#: n, k, k + r, stride, and the place of q'' in what is written
 SADDLE = (
     *("metric", "jacobian", "acceleration", "forces", "bias", "rows", "moving", "matrix"),
-    *("n", "free", "size", "stride"),
+    *("n", "free", "size", "stride", "first"),
 )
 
 
@@ -32,7 +32,7 @@ class _SaddlePoint:
         self.w = w = AssemblyWriter(width)
         c = w.words("%table", SADDLE)
         self.at = {name: w.pointer(c[name]) for name in SADDLE[:8]}
-        self.n, self.free, self.size, self.stride = c["n"], c["free"], c["size"], c["stride"]
+        self.n, self.free, self.size, self.stride, self.first = (c[name] for name in SADDLE[8:])
         #: where the largest number of a column is
         self.place = w.do("alloca i64, align 8")
 
@@ -48,10 +48,11 @@ class _SaddlePoint:
                 factor = w.do(f"fdiv double {self._load(self._entry(i, k))}, {pivot}")
                 self._subtract(i, k, factor, first)
         self._substitute()
+        found = w.offset("%x", self.first, "double")
         with w.loop("0", self.n) as i:
-            self._store("0.0", w.offset("%x", i, "double"))
+            self._store("0.0", w.offset(found, i, "double"))
         with w.loop("0", self.free) as i:
-            self._store(self._load(self._entry(i, self.size)), w.offset("%x", self._number("moving", i), "double"))
+            self._store(self._load(self._entry(i, self.size)), w.offset(found, self._number("moving", i), "double"))
         return w.function("saddle_point", "ptr %table, ptr %x")
 
     def _fill(self) -> None:
