@@ -146,12 +146,13 @@ class Model:
         return found | ({"numbers": {name: str(x) for name, x in self.numbers.items()}} if self.numbers else {})
 
     @classmethod
-    def load(cls, summary: Mapping[str, Any], program_bytes: bytes) -> Model:
-        """A stored model, with its numbers put in. Raises InvalidProgram when the bytes are damaged."""
+    def load(cls, summary: Mapping[str, Any], stored: bytes | Program) -> Model:
+        """A stored model, with its numbers put in; ``stored``: its program, read or not. Raises InvalidProgram."""
         names = tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"])
         described = summary["parameters"], summary["certificate"]
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
+        read = Program.from_bytes(stored) if isinstance(stored, bytes) else stored
+        program = read.marked(not_judged(summary["certificate"]))
         more: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in ("limited", *LISTED)}
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
