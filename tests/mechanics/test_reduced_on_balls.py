@@ -10,10 +10,13 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tied_combinations
 from closed_trees import tree_model, tree_parts
 from mechanics.reduced_parts import PARTS, on_a_hull
 from scipy.spatial.transform import Rotation
 
+from service.models.formulas import QUANTITIES
+from service.models.numbers import ANALYSES
 from substructures import Model, couple, equilibria, evaluate, linearise, simulate
 from substructures.analysis.closed.reduced import reduced_equations
 from substructures.quantities.numbers.evaluation import Sources
@@ -163,3 +166,15 @@ def test_a_linkage_on_a_ball_swings_as_on_angles() -> None:
     ours, theirs = linearise(ball, [*state[3:], still[3]]), linearise(chain, still)
     wanted = np.sort_complex(np.linalg.eigvals(theirs.A))
     np.testing.assert_allclose(np.sort_complex(np.linalg.eigvals(ours.A)), wanted, rtol=0, atol=1e-6)
+
+
+@pytest.mark.parametrize("name", [*ANALYSES, *QUANTITIES])
+def test_what_takes_balls_takes_linkages_on_them(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Each analysis, and each formula of analyses, of the tree of the table of what goes together."""
+    hull = tied_combinations.TREES["balls"]["instances"][0]
+    linkage = {"name": "x", "definition": tied_combinations.LINKAGE, "at": "hull.deck"}
+    both = {"gravity": [0, 0, 0], "instances": [hull, linkage]}
+    monkeypatch.setitem(tied_combinations.TREES, "both", both)
+    wanted = {"": "", "has-balls": "has-balls"}
+    if name != "reduced-equations":
+        assert tied_combinations.refusal(name, "both") == wanted[tied_combinations.refusal(name, "balls")]
