@@ -5,7 +5,8 @@ python -m benchmarks.shapes [--quick] [--json FILE]
 POST: a server in a process of its own with one worker, on an SQLite file; median wall time. A new shape has its hand
 where another expression says; a known one has an arm with other numbers. Items: CPU time of the work of an item of the
 kind ``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the
-items; and of as many with numbers bound in instances, with the hand elsewhere, and with other names of instances.
+items; and of as many with numbers bound in instances, with the hand elsewhere, with gravity in other directions, and
+with other names of instances.
 """
 
 from __future__ import annotations
@@ -120,6 +121,16 @@ def elsewhere(items: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     return found
 
 
+def tilted(items: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
+    """The first item on mounts that are tilted, as many as there are items."""
+    found = []
+    for k in range(len(items)):
+        item = deepcopy(items[0])
+        item["tree"] |= {"name": f"tilted-{k}", "gravity": [round(0.1017 + 0.0013 * k, 5), 0, "-9.7"]}
+        found.append(item)
+    return found
+
+
 def named(items: Sequence[dict[str, Any]]) -> list[dict[str, Any]]:
     """The first item with other names of its instances, as many as there are items."""
     found = []
@@ -140,7 +151,8 @@ def jobs(count: int, figures: dict[str, float]) -> None:
     fast, _ = worked(items, blobs, **{SHARE: "benchmark"})
     bound, _ = worked(bound_items(items, parts[1][0]), blobs, **{SHARE: "benchmark"})
     figures |= {"item_slow_ms": slow, "item_ms": fast, "item_bound_ms": bound, "item_bytes": size, "items": len(items)}
-    for name, others in (("elsewhere", elsewhere(items)), ("named", named(items))):
+    ways = {"elsewhere": elsewhere(items), "tilted": tilted(items), "named": named(items)}
+    for name, others in ways.items():
         figures[f"item_{name}_ms"], _ = worked(others, blobs, **{SHARE: "benchmark"})
         print(f"as many {name}: an item {figures[f'item_{name}_ms']:.2f} ms")
     total = f"{fast * len(items) / 1e3:.1f} s of CPU, slow {slow * len(items) / 1e3:.0f} s"

@@ -130,7 +130,7 @@ def create_app(store: Store) -> FastAPI:
     return app
 
 
-def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None) -> FastAPI:
+def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None) -> openapi.DocumentedApp:
     """Routes and conventions without a store; enough for the OpenAPI document."""
     app = openapi.DocumentedApp(
         title="substructures",
@@ -150,6 +150,7 @@ def bare_app(allowed_hosts: tuple[str, ...] = (), metrics: Metrics | None = None
     known = [
         route for router in [models.evaluations, *routers] for route in router.routes if isinstance(route, APIRoute)
     ]
+    app.described = known
     problems.install(app, known, error_page)
     app.add_middleware(Compression)
     app.add_middleware(DerivesFirst)

@@ -164,9 +164,10 @@ def _engine(url: URL, key: bytes, *, writer: bool) -> Engine:
     event.listen(engine, "connect", lambda _, record: record.info.update({KEY: key}))
     if not writer:
         event.listen(engine, "connect", lambda connection, _: connection.execute("PRAGMA query_only=ON"))
-    # A deferred transaction that reads and then writes fails with "database is locked" under load.
+    # A deferred transaction that reads and then writes fails with "database is locked" under load. Of the driver, since
+    # an event of the engine would be looked for with every statement.
     begin = "BEGIN IMMEDIATE" if writer else "BEGIN"
-    event.listen(engine, "begin", lambda connection: connection.exec_driver_sql(begin))
+    engine.dialect.do_begin = lambda connection: connection.execute(begin)  # type: ignore[assignment, method-assign]
     return engine
 
 

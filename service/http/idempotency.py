@@ -66,9 +66,13 @@ class IdempotencyClaim:
         lifetime = timedelta(hours=self._store.settings.limits.idempotency_hours)
         with self._database.write(durable=False) as connection:  # a claim need not outlive the request
             self._store.usage.take(connection, "answer", self._principal, 0)
-            # who takes a claim over too early is fenced off: the first to finish is the only one
-            idempotency.forget(connection, lifetime, LEASE)
+            if self._store.claims.is_time_to_forget():
+                idempotency.forget(connection, lifetime, LEASE)
             entry = idempotency.claim(connection, self._wanted, self._fingerprint)
+            if entry is not None:  # maybe too old to count
+                # who takes a claim over too early is fenced off: the first to finish is the only one
+                idempotency.forget(connection, lifetime, LEASE)
+                entry = idempotency.claim(connection, self._wanted, self._fingerprint)
         self._is_claimed = entry is None
         if self._is_claimed:
             self._store.claims.hold(self._wanted)

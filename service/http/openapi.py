@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from typing import Any
 
 import orjson
 from fastapi import FastAPI, Request, Response
+from fastapi.encoders import jsonable_encoder
+from fastapi.openapi.models import Components
 from fastapi.openapi.utils import get_openapi
 from fastapi.routing import APIRoute
 from pydantic import BaseModel
@@ -70,13 +73,16 @@ def operation_id(route: APIRoute) -> str:
     return route.name
 
 
-def document(app: FastAPI) -> dict[str, Any]:
+def document(app: DocumentedApp) -> dict[str, Any]:
     """The document of an app."""
     result = get_openapi(title=app.title, version=app.version, description=app.description, routes=app.routes)
+    written = dict.fromkeys(model for route in app.described for model in getattr(route, "models", ()))
+    _, answers = models_json_schema([(model, "serialization") for model in written], ref_template=TEMPLATE)
     read_by_us = (*_READ_BY_US, *dict.fromkeys(analysis.schema for analysis in ANALYSES.values()))
     _, extra = models_json_schema([(model, "validation") for model in read_by_us], ref_template=TEMPLATE)
     schemas = result.setdefault("components", {}).setdefault("schemas", {})
-    schemas.update(extra["$defs"])
+    told = jsonable_encoder(Components(schemas=answers["$defs"]), by_alias=True, exclude_none=True)
+    schemas.update(told["schemas"] | extra["$defs"])
     for schema in schemas.values():
         if "d" in (fields := schema.get("properties", {})):
             fields["d"] = fields.pop("d")  # last: openapi-python-client reads from a variable of this name
@@ -99,7 +105,7 @@ def _describe_job(operation: dict[str, Any]) -> None:
         operation.setdefault("parameters", []).append(PREFER)
 
 
-def text(app: FastAPI) -> str:
+def text(app: DocumentedApp) -> str:
     """The document as it is committed."""
     return json.dumps(document(app), indent=1, ensure_ascii=False) + "\n"
 
@@ -123,3 +129,5 @@ class DocumentedApp(FastAPI):
         return self.openapi_schema
 
     _bytes: bytes | None = None
+    #: the routes whose answers are described by models of their own
+    described: Sequence[APIRoute] = ()

@@ -28,6 +28,7 @@ from substructures.formats import arrays, arrow
 SUBMISSIONS = "/v1/jobs"  # longer bodies
 IMPORTS = "/v1/imports"  # zips of files with meshes
 SESSION = "substructures_session"  # cookie
+SHORT = 2**12  # bytes of JSON that are read in less time than another thread takes to begin
 
 
 def store_of(request: Request) -> Store:
@@ -193,15 +194,19 @@ def require_json(request: Request) -> None:
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept": JSON})
 
 
-def json_body(request: Request, raw: RawBody) -> Any:
-    """The request body as plain data, numbers exact. Runs in a worker thread."""
+async def json_body(request: Request, raw: RawBody) -> Any:
+    """The request body as plain data, numbers exact; a long one is read in a worker thread."""
     require_json(request)
+    return _read(raw) if len(raw) <= SHORT else await run_in_threadpool(_read, raw)
+
+
+def _read(raw: bytes) -> Any:
     return read_json(forms.unpacked(raw))
 
 
-def optional_json_body(request: Request, raw: RawBody) -> Any:
+async def optional_json_body(request: Request, raw: RawBody) -> Any:
     """Like :func:`json_body`; an empty body is an empty object."""
-    return json_body(request, raw) if raw else {}
+    return await json_body(request, raw) if raw else {}
 
 
 JsonBody = Annotated[Any, Depends(json_body)]

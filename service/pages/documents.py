@@ -5,18 +5,21 @@ from __future__ import annotations
 import re
 from collections.abc import Iterator
 from functools import cache
+from importlib import import_module
 from pathlib import Path, PurePosixPath
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Query, Request, Response
-from markdown_it import MarkdownIt
-from markdown_it.token import Token
 from starlette.responses import FileResponse
 
 from service.messages.refusals import not_found
 from service.pages.html import Html, html, link, tag
 from service.pages.layout import answer, document
 from substructures.errors import among
+
+if TYPE_CHECKING:
+    from markdown_it import MarkdownIt
+    from markdown_it.token import Token
 
 #: beside the package in a clone, in it where it was installed
 _BESIDE, _INSIDE = Path(__file__).parents[2] / "docs", Path(__file__).with_name("docs")
@@ -107,9 +110,15 @@ def _around(text: str, word: str) -> Html:
 
 
 @cache
+def _reader() -> MarkdownIt:
+    """Imported when a document is asked for."""
+    found: MarkdownIt = import_module("markdown_it").MarkdownIt("commonmark", {"html": False})
+    return found.enable("table")
+
+
+@cache
 def _tokens(name: str) -> tuple[Token, ...]:
-    reader = MarkdownIt("commonmark", {"html": False}).enable("table")
-    return tuple(reader.parse((FOLDER / f"{name}.md").read_text(encoding="utf-8")))
+    return tuple(_reader().parse((FOLDER / f"{name}.md").read_text(encoding="utf-8")))
 
 
 @cache
@@ -130,13 +139,10 @@ def _rendered(name: str) -> tuple[str, Html, tuple[tuple[int, str, str], ...]]:
             if child.type == "image":
                 child.attrSet("src", f"/docs/{_resolved(name, str(child.attrGet('src')))}")
                 child.attrSet("class", "drawing")
-    content = MarkdownIt("commonmark", {"html": False}).enable("table").renderer.render(tokens, _OPTIONS, {})
+    content = _reader().renderer.render(tokens, _reader().options, {})
     content = content.replace("<table>", f"{SCROLLS}<table>").replace("</table>", "</table></div>")
     title = next((text for _, text, _ in headings), name)
     return title, Html(content.replace("<pre>", '<pre tabindex="0">')), tuple(headings)
-
-
-_OPTIONS: Any = MarkdownIt("commonmark", {"html": False}).options
 
 
 def _sections(name: str) -> Iterator[tuple[str, str, str]]:

@@ -86,11 +86,9 @@ def names_like(connection: Connection, viewer: Viewer, kind: Kind, name: str) ->
 
 def claim(connection: Connection, kind: Kind, name: str, wanted: Ownership) -> Ownership:
     """Whose a name is, that of ``wanted`` if it was free; locks it until the transaction ends."""
-    insert_missing(
-        connection,
-        _TABLES[kind],
-        [{"name": name, "owner": wanted.owner, "visibility": wanted.visibility, **_FIRST[kind]}],
-    )
+    row = {"name": name, "owner": wanted.owner, "visibility": wanted.visibility, **_FIRST[kind]}
+    if insert_missing(connection, _TABLES[kind], [row]):
+        return wanted
     return Ownership(*connection.execute(_LOCKED[kind], {"name": name}).one())
 
 

@@ -9,6 +9,8 @@ from __future__ import annotations
 import logging
 import threading
 from collections import deque
+from collections.abc import Callable
+from importlib import import_module
 from time import monotonic
 from typing import Any
 
@@ -16,7 +18,6 @@ from service.jobs.engines.engine import AttemptReport, Engine, Outcome, Work
 from service.jobs.kinds import failed
 from service.jobs.kinds.mirror import MIRROR_KIND
 from service.messages.refusals import Refused, known_refusal
-from service.operations.sharing.mirrors import Mirror, Stopped, Told
 from service.queries.attempts import job_of
 from service.queries.jobs.jobs import submitters
 from service.sources import SETTING, source_of
@@ -24,6 +25,10 @@ from service.store.store import Store
 
 PATIENCE = 10.0  # seconds for threads to end, which wait for other instances
 _log = logging.getLogger(__name__)
+
+
+class Stopped(Exception):
+    """Nobody wants the mirror any more."""
 
 
 class WithMirrors:
@@ -99,7 +104,7 @@ class WithMirrors:
             self._news.append(AttemptReport(work.id, 1.0, outcome))
 
 
-def _mirrored(store: Store, work: Work, told: Told) -> dict[str, Any]:
+def _mirrored(store: Store, work: Work, told: Callable[[float], None]) -> dict[str, Any]:
     """The summary of a mirror. Raises as :meth:`service.operations.sharing.mirrors.Mirror.run`."""
     address = work.item["source"]
     source = source_of(address, store.settings.mirror_sources)
@@ -109,4 +114,6 @@ def _mirrored(store: Store, work: Work, told: Told) -> dict[str, Any]:
     job = job_of(work.id)
     with store.database.read() as connection:
         viewer = submitters(connection, {job})[job]
-    return Mirror(store, viewer, source, work.item["nodes"], told).run()
+    mirrors = import_module("service.operations.sharing.mirrors")  # with a client, which no other server needs
+    found: dict[str, Any] = mirrors.Mirror(store, viewer, source, work.item["nodes"], told).run()
+    return found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Response
+from fastapi import Header, Response
 
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import response_of
@@ -12,7 +12,7 @@ from service.messages.answers import REVALIDATE, json_answer
 from service.messages.refusals import not_found
 from service.operations import catalogue
 from service.queries import aliases
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.schemas.resources import AliasList, AliasRequest, AliasView
 from service.views.resources import alias_view, dump
 from substructures.documents import read_model

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Awaitable, Callable
 
-from fastapi import APIRouter, Request, Response
+from fastapi import Request, Response
 
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
@@ -13,7 +13,7 @@ from service.messages.negotiation import choose_media_type
 from service.models.numbers import OFFERED, Offered
 from service.models.results import JSON
 from service.operations.analyses import FORMATS, analyse, velocity_equations
-from service.routes.bodies import binary, body_of, printed
+from service.routes.bodies import APIRouter, binary, body_of, printed
 from service.routes.deferred import ACCEPTED, deferred
 from service.routes.style import StyleOf
 from service.schemas.numbers import AnalysisResult

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.requests import StoreOf, needs
 from service.http.responses import link_header, next_link, response_of
 from service.messages.answers import json_answer
 from service.messages.paging import limited, read_token, write_token
 from service.queries import audit
+from service.routes.bodies import APIRouter
 from service.schemas.resources import AuditPage
 from service.views.resources import audit_view, dump
 

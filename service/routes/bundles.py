@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.content.bundles import MEDIA_TYPE, read_bundle, write_bundle
 from service.content.integrity import digest_of
@@ -18,7 +18,7 @@ from service.messages.references import is_pinned
 from service.messages.refusals import Refused
 from service.operations.sharing import bundles
 from service.operations.sharing.bundles import Imported
-from service.routes.bodies import binary
+from service.routes.bodies import APIRouter, binary
 from service.schemas.bundles import BundleView
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility
 from service.views.resources import dump

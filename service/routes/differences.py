@@ -7,7 +7,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -17,6 +17,7 @@ from service.messages.addresses import version_path
 from service.messages.answers import REVALIDATE, Answer, etag, json_answer
 from service.messages.references import is_pinned
 from service.operations import differences
+from service.routes.bodies import APIRouter
 from service.schemas.versions import DifferenceView, LevelList
 from service.views.resources import dump
 from service.views.versions import level_view

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.messages.answers import Answer, json_answer
 from service.operations import equivalences
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.schemas.equivalences import EquivalenceRequest, EquivalenceView
 from substructures.documents import read_model, write_json
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -20,7 +20,7 @@ from service.messages.viewer import Viewer
 from service.models import printing
 from service.operations import catalogue, models
 from service.queries.searching import formulas as index
-from service.routes.bodies import printed
+from service.routes.bodies import APIRouter, printed
 from service.routes.style import StyleOf
 from service.schemas.resources import FormulaIndex
 from service.store.store import Store

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.content import bundles
 from service.database.connections import Connection
@@ -18,7 +18,7 @@ from service.messages.answers import Answer, json_answer
 from service.messages.refusals import Refused
 from service.operations import catalogue, imports
 from service.operations.imports import IMPORTED
-from service.routes.bodies import binary
+from service.routes.bodies import APIRouter, binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility
 from service.schemas.imports import ImportView

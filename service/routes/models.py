@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import Act, Commit, SpooledAct, SpooledActOf, in_time
 from service.http.one_state import OneStateRoute
@@ -27,7 +27,7 @@ from service.operations.exchange import TreeEvaluation, choose_media_type, read_
 from service.operations.jobs import uploads
 from service.operations.sharing.sources import engine_of, part_programs, sources_of
 from service.queries.trees import Tree
-from service.routes.bodies import binary, body_of, printed
+from service.routes.bodies import APIRouter, binary, body_of, printed
 from service.routes.deferred import ACCEPTED, committed, deferred
 from service.routes.options import OptionsOf
 from service.routes.programs.exports import ADVICE, EXPORTED, ExportOf, export_job

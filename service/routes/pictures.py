@@ -6,7 +6,7 @@ from collections.abc import Callable
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -18,6 +18,7 @@ from service.operations import catalogue, modules, pictures, trees
 from service.operations.modules import Subject
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
+from service.routes.bodies import APIRouter
 from service.schemas.scenes import SceneView
 from substructures.export import interface_of_part
 

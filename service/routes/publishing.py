@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from service.database.connections import Connection
 from service.http.acting import ActOf, Commit, timed
@@ -10,7 +10,7 @@ from service.http.requests import OptionalJsonBody, StoreOf, needs
 from service.messages.addresses import version_path
 from service.messages.answers import Answer, json_answer
 from service.operations import catalogue, publishing
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.routes.deferred import deferred, made
 from service.routes.substructures import whole_view
 from service.schemas.publishing import PublishedView, PublishRequest

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Depends, Header, Query, Request, Response
+from fastapi import Depends, Header, Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -15,7 +15,7 @@ from service.messages.answers import etag
 from service.messages.negotiation import choose_format
 from service.operations import catalogue, reports, trees
 from service.operations.sharing.sources import part_programs
-from service.routes.bodies import reference
+from service.routes.bodies import APIRouter, reference
 from service.schemas.reports import ReportView
 
 router = APIRouter(prefix="/v1", dependencies=[needs("read")])

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.content.integrity import missing
 from service.database.connections import Connection
@@ -24,7 +24,7 @@ from service.queries.catalogue import Version
 from service.queries.searching.part_search import CatalogueSearch
 from service.queries.searching.words import words_of
 from service.queries.uses import Withdrawn
-from service.routes.bodies import body_of, content_of
+from service.routes.bodies import APIRouter, body_of, content_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf, PortName
 from service.schemas.entries import PartEntry

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from service.http.requests import StoreOf, needs
 from service.http.responses import response_of
@@ -11,6 +11,7 @@ from service.messages.refusals import Refused, not_found
 from service.metrics import CONTENT_TYPE
 from service.queries import folders
 from service.queries.jobs.jobs import counts
+from service.routes.bodies import APIRouter
 from service.schemas.folder import FolderView
 from service.schemas.resources import Health, LimitsView
 from service.views.resources import dump

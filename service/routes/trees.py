@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated
 
-from fastapi import APIRouter, Header, Query, Request, Response
+from fastapi import Header, Query, Request, Response
 
 from service.database.connections import Connection
 from service.http.acting import Act, ActOf, Commit, timed
@@ -19,7 +19,7 @@ from service.operations import modules, searches, trees
 from service.operations.jobs.job_results import BASE_REVISION, IS_EXACT
 from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf
 from service.schemas.entries import Entry

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
@@ -14,6 +14,7 @@ from service.messages.paging import limited, read_token, write_token
 from service.operations import owners, versions
 from service.queries import uses
 from service.queries import versions as rows
+from service.routes.bodies import APIRouter
 from service.schemas.versions import RevisionList, UsePage, VersionList
 from service.views.resources import dump
 from service.views.versions import revision_item, use_view, version_item

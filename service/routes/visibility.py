@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import response_of
 from service.messages.answers import json_answer
 from service.operations import owners
 from service.queries.owners import Kind, Ownership
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.schemas.entries import OwnershipView, VisibilityRequest
 from service.views.resources import dump
 from substructures.documents import read_model

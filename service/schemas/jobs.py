@@ -88,10 +88,11 @@ class SubmittedSweep(Submitted, SweepDocument):
     kind: Literal["sweep"]
 
 
-class JobRequest(RootModel[Annotated[SubmittedItems | SubmittedSweep, Field(discriminator="kind")]]):
+class JobRequest(RootModel[Any]):
     """What is to be computed: items, or a sweep."""
 
-    model_config = ConfigDict(json_schema_extra={"examples": list(EXAMPLES)})
+    model_config = ConfigDict(json_schema_extra={"examples": list(EXAMPLES)}, defer_build=True)
+    root: Annotated[SubmittedItems | SubmittedSweep, Field(discriminator="kind")]
 
 
 class SkippedFault(Shape):

@@ -28,7 +28,7 @@ class Warned(BaseModel):
 class Shape(BaseModel):
     """Base: no unknown fields."""
 
-    model_config = ConfigDict(extra="forbid")
+    model_config = ConfigDict(extra="forbid", defer_build=True)
 
 
 def refused(code: str, message: str, below: str = "") -> PydanticCustomError:

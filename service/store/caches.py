@@ -22,14 +22,15 @@ PICTURES, BLOBS, PRINTED = 8, 32, 16
 
 @dataclass(frozen=True)
 class Caches:
-    """Decoded values: ``parts`` by digests of definition and program, ``models`` by those of the tree, ``derived`` by
-    model and quantity, ``of_parts`` by digest of the tree, name and parts, ``numeric_trees`` and ``plausibilities`` by
-    digest of the tree, ``evaluations`` that are at hand by reference and quantities, ``pictures`` in the standard pose
-    and formulas of pages by digest, ``blobs`` by digest, ``printed`` formulas by their ETag, and what browsers
-    compute with, ``facets`` of searches by the last act that was noted.
+    """Decoded values: ``parts`` by digests of definition and program, ``programs`` of trees by digest, ``models`` by
+    those of the tree, ``derived`` by model and quantity, ``of_parts`` by digest of the tree, name and parts,
+    ``numeric_trees`` and ``plausibilities`` by digest of the tree, ``evaluations`` that are at hand by reference and
+    quantities, ``pictures`` in the standard pose and formulas of pages by digest, ``blobs`` by digest, ``printed``
+    formulas by their ETag, and what browsers compute with, ``facets`` of searches by the last act that was noted.
     """
 
     parts: Cache[Part]
+    programs: Cache[Program]
     models: Cache[Model]
     derived: Cache[Program]
     of_parts: Cache[Any]  # of substructures.quantities.of_parts
@@ -46,6 +47,7 @@ class Caches:
         """Caches that together hold programs of about so many operations, and what was made of these."""
         return cls(
             parts=Cache(nodes // 4, lambda part: len(part.program)),
+            programs=Cache(nodes // 8, len),
             models=Cache(nodes // 4, lambda model: len(model.program)),
             derived=Cache(nodes // 4, len),
             of_parts=Cache(nodes // 8, lambda found: len(found.program)),

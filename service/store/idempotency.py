@@ -5,12 +5,14 @@ from __future__ import annotations
 import logging
 import threading
 from datetime import timedelta
+from time import monotonic
 
 from service.database.connections import Database
 from service.queries.idempotency import Claim, renew
 
 LEASE = timedelta(seconds=5)  # after which a claim that is not renewed belongs to whoever asks
 RENEWAL = 1.25  # seconds
+FORGET = 1.0  # seconds between looks for what is too old
 _log = logging.getLogger(__name__)
 
 
@@ -23,6 +25,14 @@ class Claims:
         self._held: set[Claim] = set()
         self._closed = threading.Event()
         self._thread: threading.Thread | None = None
+        self._forgotten = -FORGET
+
+    def is_time_to_forget(self) -> bool:
+        """Whether what is too old is to be forgotten now: now and then, and not with each request."""
+        with self._lock:
+            is_due = monotonic() - self._forgotten >= FORGET
+            self._forgotten = monotonic() if is_due else self._forgotten
+        return is_due
 
     def hold(self, claim: Claim) -> None:
         """Renew a claim until it is answered or given up."""

@@ -116,17 +116,26 @@ class Store:
         model = self.caches.models.get((tree.digest, tree.program))
         self.metrics.cache("model", model is not None)
         if model is None:
-            program = content.get_program(connection, tree.program)
-            what = f"the program of tree {tree.name}@{tree.revision}"
-            if program is None:
-                raise missing(what, tree.program)
-            with reading(what, tree.program):
+            with reading(f"the summary of tree {tree.name}@{tree.revision}", tree.summary_digest):
                 summary = read_json(tree.summary.encode())
                 if "inputs" not in summary:
                     summary |= self.declared(connection, tree)
-                model = Model.load(summary, program)
+                model = Model.load(summary, self._program_of(connection, tree))
             self.caches.models.put((tree.digest, tree.program), model)
         return model
+
+    def _program_of(self, connection: Connection, tree: Tree) -> Program:
+        """The program of a revision, which trees of one shape have in common. Raises Refused as :meth:`model`."""
+        program = self.caches.programs.get(tree.program)
+        if program is None:
+            what = f"the program of tree {tree.name}@{tree.revision}"
+            stored = content.get_program(connection, tree.program)
+            if stored is None:
+                raise missing(what, tree.program)
+            with reading(what, tree.program):
+                program = Program.from_bytes(stored)
+            self.caches.programs.put(tree.program, program)
+        return program
 
     def declared(self, connection: Connection, tree: Tree) -> dict[str, Any]:
         """All parameters and inputs of a tree that was stored when only those in its formulas were noted."""

@@ -7,23 +7,29 @@ import ctypes.util
 import sys
 from dataclasses import dataclass
 from functools import cache
+from importlib import import_module
 from typing import Any
 
 from substructures.compile.setting import NONE, setting
-
-try:
-    import llvmlite
-    import llvmlite.binding as llvm
-except ImportError:  # no wheel for this platform: the reference interpreter answers
-    llvmlite = llvm = None
 
 #: of LLVM's code generator: 1 gives the same code as 2 and 3 for straight lines, in half of the time
 LEVEL = 1
 
 
+@cache
+def library() -> Any:
+    """llvmlite.binding, imported where something is compiled; None where this platform has no wheel of it: the
+    reference interpreter answers there.
+    """
+    try:
+        return import_module("llvmlite.binding")
+    except ImportError:
+        return None
+
+
 def available() -> bool:
     """Whether machine code can be made here, and is wanted. Raises ValueError for a setting that is unknown."""
-    return llvm is not None and setting().cpu != NONE
+    return setting().cpu != NONE and library() is not None
 
 
 @dataclass(frozen=True)
@@ -55,13 +61,15 @@ def host() -> Host:
 
     Raises ValueError where this CPU cannot run what the setting asks for.
     """
+    llvm = library()
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
     try:
         features = llvm.get_host_cpu_features()
     except RuntimeError:  # LLVM does not know them on this platform: what every such CPU has
         features = llvm.FeatureMap()
-    compiler = f"llvmlite {llvmlite.__version__}, LLVM {'.'.join(map(str, llvm.llvm_version_info))}, level {LEVEL}"
+    version = import_module("llvmlite").__version__
+    compiler = f"llvmlite {version}, LLVM {'.'.join(map(str, llvm.llvm_version_info))}, level {LEVEL}"
     triple, wanted = llvm.get_process_triple(), setting()
     level = wanted.level([name for name, there in features.items() if there])
     if level is not None:
@@ -72,7 +80,7 @@ def host() -> Host:
 
 def new_machine() -> Any:
     """A target machine for the host; an engine takes its own over."""
-    target = llvm.Target.from_triple(host().triple)
+    target = library().Target.from_triple(host().triple)
     return target.create_target_machine(
         cpu=host().cpu, features=host().features, opt=LEVEL, reloc="pic", codemodel="small", jit=True
     )
@@ -85,6 +93,7 @@ def assemble(text: str) -> bytes:
     """Object code of a module in LLVM assembly."""
     if not host().contraction:  # the word is a flag only: names and numbers of the assembly do not contain it
         text = text.replace(" contract ", " ")
+    llvm = library()
     with llvm.create_context() as context, llvm.parse_assembly(text, context) as module:
         module.triple = host().triple
         return bytes(machine().emit_object(module))
@@ -100,6 +109,7 @@ class Loaded:
     @classmethod
     def load(cls, code: bytes, names: list[str]) -> Loaded:
         """The addresses of the named functions. Raises RuntimeError when one is missing."""
+        llvm = library()
         # in LLVM's global context: the collector of garbage could dispose of another one before the engine
         empty = llvm.parse_assembly(f'target triple = "{host().triple}"')
         # in one area of memory: LLVM's own manager looks for a place for each section, and code that finds its

@@ -23,7 +23,7 @@ MOST_LISTED = 200
 class DocumentPart(BaseModel):
     """Base of all parts of documents: frozen, unknown fields refused."""
 
-    model_config = ConfigDict(frozen=True, extra="forbid")
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 class Document(DocumentPart):

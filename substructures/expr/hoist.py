@@ -19,7 +19,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from substructures.expr.operations import Operation, Output
+from substructures.expr.operations import BINARY, Operation, Output
 from substructures.expr.program import Program, operands, renumbered
 
 
@@ -96,8 +96,12 @@ def uses_of(source: Program) -> list[int]:
     """How often each operation is an operand or an entry of an output."""
     found = [0] * len(source)
     for operation in source.operations:
-        for x in operands(operation):
-            found[x] += 1
+        if operation[0] in BINARY:
+            found[operation[1]] += 1
+            found[operation[2]] += 1
+        else:
+            for x in operands(operation):
+                found[x] += 1
     for output in source.outputs.values():
         for x in output.entries:
             found[x] += 1

@@ -18,7 +18,7 @@ import numpy as np
 
 from substructures.errors import InvalidProgram
 from substructures.expr.construction.exact import MAX_BITS
-from substructures.expr.operations import ARITHMETIC, Operation, Output, operands
+from substructures.expr.operations import ARITHMETIC, BINARY, Operation, Output, operands
 
 GROUPS = 1024  #: groups of entries that are counted in one pass
 ROWS = 4096  #: masks that are unpacked at a time
@@ -31,7 +31,11 @@ def needed(operations: Sequence[Operation], entries: Iterable[int]) -> list[int]
         is_needed[entry] = 1
     for i in range(len(operations) - 1, -1, -1):
         if is_needed[i]:
-            for operand in operands(operations[i]):
+            operation = operations[i]
+            if operation[0] in BINARY:
+                is_needed[operation[1]] = is_needed[operation[2]] = 1
+                continue
+            for operand in operands(operation):
                 is_needed[operand] = 1
     return [i for i, flag in enumerate(is_needed) if flag]
 
@@ -87,7 +91,13 @@ def check_demands(operations: Sequence[Operation], outputs: Iterable[Output]) ->
     exponents: list[int] = []
     sizes: list[int | None] = []  # bits of what is a number
     for i, operation in enumerate(operations):
-        exponent, size = _exponent(operation, exponents), _size(operation, sizes)
+        if operation[0] in BINARY:
+            op, a, b = operation
+            exponent = exponents[a] + exponents[b] if op in ("mul", "div") else max(exponents[a], exponents[b])
+            m, n = sizes[a], sizes[b]
+            size = None if m is None or n is None else m + n + (op in ("add", "sub"))
+        else:
+            exponent, size = _exponent(operation, exponents), _size(operation, sizes)
         if exponent > MAX_POWER:
             raise InvalidProgram(f"an exponent of more than {MAX_BITS} bits", i)
         if size is not None and size > MAX_BITS:
@@ -97,26 +107,17 @@ def check_demands(operations: Sequence[Operation], outputs: Iterable[Output]) ->
 
 
 def _exponent(operation: Operation, known: Sequence[int]) -> int:
+    """Of all but sums, products and quotients."""
     op = operation[0]
-    if op in ("add", "sub"):
-        return max(known[operation[1]], known[operation[2]])
-    if op in ("mul", "div"):
-        return known[operation[1]] + known[operation[2]]
     if op == "powi":
         return known[operation[1]] * abs(operation[2])
     return known[operation[1]] if op == "neg" else int(op not in ("int", "rat"))
 
 
 def _size(operation: Operation, known: Sequence[int | None]) -> int | None:
+    """Likewise."""
     op = operation[0]
     if op in ("int", "rat"):
         return max(int(text).bit_length() for text in operation[1:])
-    if op not in ("add", "sub", "mul", "div", "neg", "powi"):
-        return None
-    total = 0
-    for i in operands(operation):
-        size = known[i]
-        if size is None:
-            return None
-        total += size
-    return total * abs(operation[2]) if op == "powi" else total + (op in ("add", "sub"))
+    size = known[operation[1]] if op in ("neg", "powi") else None
+    return size * abs(operation[2]) if size is not None and op == "powi" else size

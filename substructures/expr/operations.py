@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from math import prod
@@ -9,6 +10,7 @@ from typing import Any
 
 from substructures.errors import InvalidProgram
 from substructures.expr.construction.exact import MAX_BITS, MAX_EXPONENT
+from substructures.expr.garbage import without_collections
 
 FORMAT = "substructures.program"
 VERSION = 1
@@ -18,6 +20,8 @@ ARITY = {
     **dict.fromkeys(("add", "sub", "mul", "div", "atan2"), 2),
     **dict.fromkeys(("neg", "sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt", "abs", "sign"), 1),
 }
+#: sums, products and quotients: most of what a program consists of
+BINARY = ("add", "sub", "mul", "div")
 #: operations that count in the literature
 ARITHMETIC = ("add", "sub", "mul", "div", "powi")
 #: kinds of symbols that are the same in all states
@@ -98,6 +102,7 @@ def operands(operation: Operation) -> tuple[int, ...]:
     return operation[1:2] if op == "powi" else ()
 
 
+@without_collections
 def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...], dict[str, Output]]:
     """Symbols, operations and outputs of a JSON document. Raises InvalidProgram."""
     if not isinstance(document, dict) or document.get("format") != FORMAT:
@@ -107,7 +112,8 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
         raise InvalidProgram(f"version {str(version)[:40]!r} is unknown; this reader knows {VERSION}")
     try:
         symbols = tuple(_read_symbol(s) for s in document["symbols"])
-        operations = tuple(_read_operation(op) for op in document["operations"])
+        # what is no list of an operation and more is refused by _check, at its position
+        operations = tuple([tuple(op) if isinstance(op, list) else () for op in document["operations"]])
         outputs = {n: _read_output(n, o, len(operations)) for n, o in document["outputs"].items()}
     except KeyError as error:
         raise InvalidProgram(f"{error} is missing") from None
@@ -116,6 +122,10 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
     if len({s.name for s in symbols}) != len(symbols):
         raise InvalidProgram("a symbol occurs twice")
     for i, operation in enumerate(operations):
+        if len(operation) == 3 and operation[0] in BINARY:  # nearly all of them, without another call
+            _, a, b = operation
+            if type(a) is int and type(b) is int and 0 <= a < i and 0 <= b < i:
+                continue
         _check(i, operation, len(symbols))
     return symbols, operations, outputs
 
@@ -128,11 +138,6 @@ def _read_symbol(document: Any) -> Symbol:
     raise ValueError(f"symbol {str(document)[:80]}: it has a name, a unit and one of the kinds {', '.join(KINDS)}")
 
 
-def _read_operation(document: Any) -> Operation:
-    # what is no list of an operation and more is refused by _check, at its position
-    return tuple(document) if isinstance(document, list) else ()
-
-
 def _read_output(name: str, document: Any, size: int) -> Output:
     if set(document) != {"shape", "symmetry", "index", "entries"}:
         raise ValueError(f"output {name[:80]!r}: shape, symmetry, index and entries are needed, nothing else")
@@ -142,7 +147,7 @@ def _read_output(name: str, document: Any, size: int) -> Output:
         raise ValueError(f"output {name[:80]!r}: shape {str(shape)[:80]}")
     if symmetry not in SYMMETRIES or len(output.index) != len(entries) or not _fits(symmetry, shape):
         raise ValueError(f"output {name[:80]!r}: symmetry or number of entries")
-    if not all(_in_range(e, size) for e in entries):
+    if entries and not _are_in_range(entries, size):
         raise ValueError(f"output {name[:80]!r}: entry outside of the program")
     _check_elements(name, output)
     return output
@@ -155,25 +160,26 @@ def _fits(symmetry: str, shape: tuple[int, ...]) -> bool:
 
 def _check_elements(name: str, output: Output) -> None:
     """Every element is inside of the shape and determined once."""
-    rank, seen = len(output.shape), set()
-    for i in output.index:
-        if len(i) != rank or not all(_in_range(x, n) for x, n in zip(i, output.shape, strict=True)):
-            raise ValueError(f"output {name[:80]!r}: index {str(i)[:80]} outside of shape {output.shape}")
-    for i, _, _ in output.expanded():
-        if i in seen:
-            raise ValueError(f"output {name[:80]!r}: element {i} is given twice")
-        seen.add(i)
+    rank = len(output.shape)
+    axes = list(zip(*output.index, strict=True)) if all(len(i) == rank for i in output.index) else None
+    if axes is None or not all(map(_are_in_range, axes, output.shape)):
+        wrong = next(i for i in output.index if len(i) != rank or not all(map(_in_range, i, output.shape)))
+        raise ValueError(f"output {name[:80]!r}: index {str(wrong)[:80]} outside of shape {output.shape}")
+    elements = [i for i, _, _ in output.expanded()]
+    if len(set(elements)) < len(elements):
+        twice = next(i for i, count in Counter(elements).items() if count > 1)
+        raise ValueError(f"output {name[:80]!r}: element {twice} is given twice")
 
 
 def _check(i: int, operation: Operation, symbols: int) -> None:
     op = operation[0] if operation and isinstance(operation[0], str) else None
-    if op in ("int", "rat"):
+    if op in ARITY or op == "powi":
+        _check_operands(i, op, operation)
+    elif op in ("int", "rat"):
         _check_number(i, operation)
     elif op == "sym":
         if len(operation) != 2 or not _in_range(operation[1], symbols):
             raise InvalidProgram("unknown symbol", i)
-    elif op in ARITY or op == "powi":
-        _check_operands(i, op, operation)
     else:
         raise InvalidProgram(f"unknown operation {str(op)[:80]!r}", i)
 
@@ -190,14 +196,19 @@ def _check_operands(i: int, op: str, operation: Operation) -> None:
     arity = ARITY.get(op, 1)
     if len(operation) != 1 + arity + (op == "powi"):
         raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
-    if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
-        raise InvalidProgram("an operand does not refer to an earlier entry", i)
+    for x in operation[1 : 1 + arity]:
+        if type(x) is not int or not 0 <= x < i:
+            raise InvalidProgram("an operand does not refer to an earlier entry", i)
     if op == "powi" and not (_is_index(operation[2], signed=True) and abs(operation[2]) <= MAX_EXPONENT):
         raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
 
 
+def _are_in_range(numbers: Sequence[Any], n: int) -> bool:
+    return set(map(type, numbers)) <= {int} and all(0 <= x < n for x in (min(numbers), max(numbers)))
+
+
 def _in_range(x: Any, n: int) -> bool:
-    return _is_index(x) and 0 <= x < n
+    return type(x) is int and 0 <= x < n
 
 
 def _is_index(x: Any, signed: bool = False) -> bool:

@@ -23,6 +23,7 @@ from substructures.expr.needs import check_demands, needed, totals
 from substructures.expr.operations import (
     ARITHMETIC,
     ARITY,
+    BINARY,
     CONSTANT,
     FORMAT,
     KINDS,
@@ -177,8 +178,11 @@ class Program:
         constant = [symbol.kind in CONSTANT for symbol in self.symbols]
         result: list[bool] = []
         for operation in self.operations:
-            is_symbol = operation[0] == "sym"
-            result.append(not constant[operation[1]] if is_symbol else any(result[i] for i in operands(operation)))
+            if operation[0] in BINARY:
+                result.append(result[operation[1]] or result[operation[2]])
+            else:
+                is_symbol = operation[0] == "sym"
+                result.append(not constant[operation[1]] if is_symbol else any(result[i] for i in operands(operation)))
         return result
 
     def totals(self) -> dict[str, int]:
@@ -240,7 +244,8 @@ def array(shape: tuple[int, ...], value: Callable[..., Any]) -> Formulas:
 
 def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str, Symbol]) -> Program:
     """Collect the nodes that the outputs need into a program; ``symbols`` describes the symbols by name."""
-    entries = {name: {i: graph.lift(e) for i, e in f.entries.items() if not _is_zero(e)} for name, f in outputs.items()}
+    given = {name: {i: graph.lift(e) for i, e in formulas.entries.items()} for name, formulas in outputs.items()}
+    entries = {name: {i: e for i, e in some.items() if not e.is_zero} for name, some in given.items()}
     nodes = _reachable_nodes(graph, (e for some in entries.values() for e in some.values()))
     position = [0] * len(graph)
     for i, node in enumerate(nodes):
@@ -249,7 +254,7 @@ def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str,
     number = {name: i for i, name in enumerate(names)}
     return Program(
         tuple(symbols[name] for name in names),
-        tuple(_operation(n, position, number) for n in nodes),
+        tuple([_operation(n, position, number) for n in nodes]),
         {
             name: Output(
                 outputs[name].shape,
@@ -262,21 +267,16 @@ def program(graph: Graph, outputs: Mapping[str, Formulas], symbols: Mapping[str,
     )
 
 
-def _is_zero(e: Expr | int) -> bool:
-    return e.is_zero if isinstance(e, Expr) else e == 0
-
-
 def _reachable_nodes(graph: Graph, roots: Iterable[Expr]) -> list[Expr]:
     """Needed nodes in the order of their creation, operands first."""
     needed = bytearray(len(graph))
     for node in roots:
         needed[node.index] = 1
-    nodes = graph.nodes
-    for node in reversed(nodes):
-        if needed[node.index]:
-            for operand in node.args:
+    for i in range(len(needed) - 1, -1, -1):
+        if needed[i]:
+            for operand in graph.nodes[i].args:
                 needed[operand.index] = 1
-    return [node for node in nodes if needed[node.index]]
+    return [graph.nodes[i] for i, flag in enumerate(needed) if flag]
 
 
 def _operation(node: Expr, position: Sequence[int], number: Mapping[str, int]) -> Operation:

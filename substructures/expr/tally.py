@@ -56,10 +56,10 @@ class Tally:
 
     def _found(self) -> list[Expr]:
         """Nodes that are needed now and were not before, operands last."""
-        uses, seen, found = self._uses, self._seen, list[Expr]()
-        for node in reversed(self.graph.nodes):
-            i = node.index
+        uses, seen, nodes, found = self._uses, self._seen, self.graph.nodes, list[Expr]()
+        for i in range(len(nodes) - 1, -1, -1):
             if uses[i] and not seen[i]:
+                node = nodes[i]
                 found.append(node)
                 for x in node.args:
                     uses[x.index] += 1

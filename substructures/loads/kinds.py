@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any
 
-from pydantic import Field, RootModel
+from pydantic import ConfigDict, Field, RootModel
 
 from substructures.documents.fields import BY_TYPE
 from substructures.loads.bushing import Bushing, BushingLoad
@@ -34,8 +34,11 @@ LoadOfTree = Annotated[
 ]
 
 
-class AnyTreeLoad(RootModel[LoadOfTree]):
+class AnyTreeLoad(RootModel[Any]):
     """One load of a tree, by its type."""
+
+    model_config = ConfigDict(defer_build=True)
+    root: LoadOfTree
 
 
 def acts_on(given: Mapping[str, Any]) -> list[str]:

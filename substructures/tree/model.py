@@ -13,7 +13,7 @@ from substructures.errors import VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
-from substructures.mechanics.state_names import ball_rows, positions_of, state_units
+from substructures.mechanics.state_names import ball_rows, effort_units, positions_of, state_units
 from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, told_operations
@@ -35,7 +35,6 @@ from substructures.tree.shape import CertifiedProgram, KnownShapes, limited, of_
 from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
-EFFORTS = {"R": "N m", "P": "N"}
 LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls", "reduced")
 
 
@@ -91,6 +90,11 @@ class Model:
         return (*self.driven, *self.ignored)
 
     @property
+    def dependent(self) -> tuple[str, ...]:
+        """The coordinates that loops in the formulas make functions of others (reduced level)."""
+        return tuple(name for level in self.reduced for name in level["dependent"])
+
+    @property
     def dof(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
@@ -102,10 +106,10 @@ class Model:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """The SI units of parameters and inputs by name; empty where none was given."""
-        efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
-        declared = {**self.parameters, **self.inputs}
-        return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
+        """The SI units of parameters and inputs by name, actuators last; empty where none was given."""
+        declared, own = {**self.parameters, **self.inputs}, effort_units(self.coordinates, self.joints)
+        own |= {s.name: s.unit for s in self.program.symbols if s.name.removeprefix("tau.") in self.dependent}
+        return {name: str(given.get("unit", "")) for name, given in declared.items()} | own
 
     @cached_property
     def state_units(self) -> dict[str, dict[str, str]]:
@@ -121,7 +125,7 @@ class Model:
     def input_names(self) -> tuple[str, ...]:
         """All inputs: those in the formulas in the order of the program's symbols, then those without effect."""
         named = [s.name for s in self.program.symbols if s.kind == "input"]
-        return tuple(dict.fromkeys([*named, *self.inputs, *(f"tau.{name}" for name in self.coordinates)]))
+        return tuple(dict.fromkeys([*named, *self.inputs, *effort_units(self.coordinates, self.joints)]))
 
     def described(self) -> dict[str, Any]:
         """What the axes of the outputs are, as plain data."""
@@ -142,12 +146,13 @@ class Model:
         return found | ({"numbers": {name: str(x) for name, x in self.numbers.items()}} if self.numbers else {})
 
     @classmethod
-    def load(cls, summary: Mapping[str, Any], program_bytes: bytes) -> Model:
-        """A stored model, with its numbers put in. Raises InvalidProgram when the bytes are damaged."""
+    def load(cls, summary: Mapping[str, Any], stored: bytes | Program) -> Model:
+        """A stored model, with its numbers put in; ``stored``: its program, read or not. Raises InvalidProgram."""
         names = tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"])
         described = summary["parameters"], summary["certificate"]
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
-        program = Program.from_bytes(program_bytes).marked(not_judged(summary["certificate"]))
+        read = Program.from_bytes(stored) if isinstance(stored, bytes) else stored
+        program = read.marked(not_judged(summary["certificate"]))
         more: dict[str, Any] = {name: tuple(summary.get(name, ())) for name in ("limited", *LISTED)}
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}

@@ -2,9 +2,10 @@
 
 g, Gamma, Q and all other outputs are identities in the symbols and are compared with the documents at random values of
 all symbols, so that neither depends on the values of parameters (notation.md, section 6). What does, plausibility and
-warnings, is found for every tree. Numbers that parameters of instances are bound to, and numbers of placements, are
-values, too: symbols of the shape, in whose place they are put exactly. Only 0, 1 and -1 belong to the shape, as they
-make formulas shorter. Names of instances are names of symbols alone: a program is that of other names, too.
+warnings, is found for every tree. Numbers that parameters of instances are bound to, those of placements, and those of
+gravity that is not the usual one, are values, too: symbols of the shape, in whose place they are put exactly. Only 0, 1
+and -1 belong to the shape, as they make formulas shorter. Names of instances are names of symbols alone: a program is
+that of other names, too.
 """
 
 from __future__ import annotations
@@ -34,6 +35,10 @@ from substructures.tree.given.loops.closed_form import dependent
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128
+#: what the components of gravity are called where they are values; no instance can be called so
+GRAVITY = "world.gravity"
+#: m/s^2: gravity that belongs to the shape: nothing is to be put in where the usual tree is read
+USUAL = frozenset((Fraction("9.81"), Fraction("9.80665")))
 #: members of a tree whose formulas have names of instances in their symbols alone
 NAMELESS = frozenset(("gravity", "parameters", "inputs", "instances"))
 #: operations that have a value whatever their operands are
@@ -137,7 +142,8 @@ def _found(
 
 def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
     """The tree in which parameters that are bound to numbers are free and numbers of placements are parameters of its
-    own, and these numbers in SI by name: ``instance.parameter``, ``instance.position.x``, ``instance.rpy.x``.
+    own, and these numbers in SI by name: ``instance.parameter``, ``instance.position.x``, ``instance.rpy.x``, and
+    ``world.gravity.x`` of gravity that is not the usual one.
 
     >>> p = {"name": "p", "substructure": "x", "parameters": {"l": 2, "m": "m0", "k": 0}}
     >>> free, numbers = without_numbers(TreeSpec.read({"name": "t", "instances": [p]}))
@@ -153,8 +159,20 @@ def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
         own |= {name: x for name, place in places.items() if (x := _value(place.value)) is not None}
         numbers |= {f"{each.name}.{name}": x for name, x in own.items()}
         instances.append(each.model_copy(update={"parameters": left, "placement": placement}) if own else each)
-    made = {"instances": tuple(instances), "parameters": parameters}
+    gravity, pulls = _gravity_of(spec)
+    numbers |= pulls
+    parameters |= {name: Parameter(value=x, unit="m/s^2") for name, x in pulls.items()}
+    made = {"instances": tuple(instances), "parameters": parameters, "gravity": gravity}
     return (spec.model_copy(update=made) if numbers else spec), numbers
+
+
+def _gravity_of(spec: TreeSpec) -> tuple[tuple[Any, ...], dict[str, Fraction]]:
+    """Gravity with names in the places of its numbers, and these numbers; as it is where all are usual."""
+    given = {f"{GRAVITY}.{axis}": x for axis, x in zip("xyz", spec.gravity, strict=True)}
+    numbers = {name: number for name, x in given.items() if (number := _value(x)) is not None}
+    if {abs(x) for x in numbers.values()} <= USUAL:
+        return spec.gravity, {}
+    return tuple(name if name in numbers else x for name, x in given.items()), numbers
 
 
 def places_of(instance: Instance) -> tuple[Placement, dict[str, Parameter]]:

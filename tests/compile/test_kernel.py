@@ -158,7 +158,7 @@ def test_columns_packed_and_into(mixture: Program) -> None:
 def test_blocks(mixture: Program, monkeypatch: pytest.MonkeyPatch) -> None:
     kernel = compile_program(mixture, list(mixture.outputs))
     expected = kernel.evaluate(VALUES, packed=True)
-    monkeypatch.setattr(target, "llvm", None)
+    monkeypatch.setattr(target, "library", lambda: None)
     for some in (kernel, compile_program(mixture, list(mixture.outputs))):
         blocks = some.blocks(VALUES)
         again = some.blocks(VALUES, out=np.empty_like(blocks.array), threads=2)
@@ -214,7 +214,7 @@ def test_many_callers_at_once(mixture: Program) -> None:
 @NEEDS_MACHINE_CODE
 def test_without_llvmlite(mixture: Program, monkeypatch: pytest.MonkeyPatch) -> None:
     compiled = compile_program(mixture, list(mixture.outputs))
-    monkeypatch.setattr(target, "llvm", None)
+    monkeypatch.setattr(target, "library", lambda: None)
     kernel = compile_program(mixture, list(mixture.outputs))
     assert (compiled.compiled, kernel.compiled) == (True, False)
     agree(kernel, mixture, VALUES, rtol=0)

@@ -28,7 +28,7 @@ DYNAMICS = ("metric", "christoffel", "forces")
 
 def machine_text(program: Program, names: Sequence[str], fused: bool) -> str:
     """The compiler's listing of the functions of a kernel."""
-    llvm = target.llvm
+    llvm = target.library()
     text = assembly(lower(program, names, fused=fused), program.operations, target.host().width)
     text = text if fused else text.replace(" contract ", " ")
     with llvm.create_context() as context, llvm.parse_assembly(text, context) as module:

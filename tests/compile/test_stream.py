@@ -23,7 +23,7 @@ def test_results_of_batches_in_the_same_memory(
 ) -> None:
     model = tree(*ARM)
     if not compiled:
-        monkeypatch.setattr(target, "llvm", None)
+        monkeypatch.setattr(target, "library", lambda: None)
     kernel = compile_program(model.program, ["metric", "forces"])
     assert kernel.compiled <= compiled
     given = [states(model, count, count) for count in (40, 100, 7, 0, 100)]

@@ -211,6 +211,41 @@ def test_names_of_instances_that_mean_another_tree_belong_to_the_shape() -> None
     assert (known.hits, len(known)) == (0, len(trees))
 
 
+@pytest.mark.parametrize(("arm", "hand"), [("scara", "parallel-gripper"), ("planar-2r", "simple-pendulum")])
+def test_gravity_that_is_not_the_usual_one_is_put_in_as_documents_say(arm: str, hand: str) -> None:
+    """The moon and Mars; a mount that is tilted by two angles, one of them given in another unit."""
+    parts, known = {"arm": shipped_part(arm), "hand": shipped_part(hand)}, Shapes()
+    definitions = {name: part.definition for name, part in parts.items()}
+    pairs = (["-1.62", "-3.71"], [["4.905", "-8.4957"], [{"value": 310, "unit": "cm/s^2"}, -9.3]])
+    for first, *others in ([[0, 0, z] for z in pairs[0]], [[x, 0, z] for x, z in pairs[1]]):
+        for gravity in (first, *others):
+            spec = TreeSpec.read({**_tree(), "gravity": gravity})
+            stored = couple_shape(spec, parts, known=known)
+            assert stored.numbers.keys() == {
+                f"world.gravity.{axis}" for axis, x in zip("xyz", gravity, strict=True) if x
+            }
+            model = stored.with_numbers()
+            assert not stored.numbers.keys() & {*stored.parameters, *model.effective}
+            certify_tree(spec, definitions, model.summary(), model.program)
+            assert _said(model) == _said(couple(spec, parts))
+    assert (known.hits, len(known)) == (2, 2)
+
+
+def test_usual_gravity_belongs_to_the_shape() -> None:
+    """So that nothing is to be put in; and what is no number does, as before."""
+    parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
+    for gravity in ([0, 0, -9.81], [0, "-9.80665", 0], [0, 0, "-g"], [0, "-g/2", "-g"], [0, 0, 0], [0, 1, 0]):
+        assert couple_shape({**_tree(), "gravity": gravity}, parts).numbers == {}
+
+
+def test_wrong_gravity_put_in_is_found() -> None:
+    parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
+    spec = TreeSpec.read({**_tree(), "gravity": [0, "-1.62", 0]})
+    wrong = replace(couple_shape(spec, parts), numbers={"world.gravity.y": Fraction(-163, 100)}).with_numbers()
+    with pytest.raises(VerificationFailed):
+        certify_tree(spec, {name: part.definition for name, part in parts.items()}, wrong.summary(), wrong.program)
+
+
 def test_a_wrong_place_put_in_is_found() -> None:
     parts = {"arm": shipped_part("planar-2r"), "hand": shipped_part("simple-pendulum")}
     spec = TreeSpec.read(_placed(0.2, 0.3))

@@ -47,6 +47,7 @@ def test_a_server_starts_without_what_few_requests_need() -> None:
     late |= {"substructures.analysis.closed", "substructures.ensembles.ensemble", "service.models.numbers.analysis"}
     late |= {f"service.jobs.kinds.{kind}" for kind in ("analyse", "evaluate", "export", "verify")}
     late |= {"substructures.interchange.importing", "substructures.interchange.kinds"}
+    late |= {"httpx2", "llvmlite", "markdown_it"}
     program = "import sys, service.cli.commands.server; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
     assert not late & set(done.stdout.split())

@@ -17,6 +17,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.operations.sharing import mirrors
+from service.queue import mirroring
 from service.server import background
 from service.settings import Settings, SettingsError, from_environment
 from service.sources import read_source, source_of
@@ -149,7 +150,7 @@ def test_it_goes_on_after_the_server_died(
 
     def dying(self: mirrors.Mirror, part: Any) -> None:
         if len(stored) == 3:
-            raise mirrors.Stopped  # as good as killed: nothing more is heard of it
+            raise mirroring.Stopped  # as good as killed: nothing more is heard of it
         original(self, part)
         stored.append(part.name)
 

@@ -185,6 +185,8 @@ class WorkerPool:
 
     def _turns(self) -> list[str]:
         """The shares whose turn may come: those that have not all runners but one already."""
+        if not self._waiting:
+            return []
         busy = Counter(each.share for each in self._running.values())
         return [share for share in self._waiting if busy[share] < self._most - 1]
 

@@ -34,6 +34,7 @@ ITEMS = 2000  # after so many items a runner is replaced
 #: wall-clock time that an item may take: so much, and so many times its CPU time
 GRACE, SLOWNESS = 60.0, 10.0
 PATIENCE = 0.1  # seconds
+PAGE = os.sysconf("SC_PAGE_SIZE")  # bytes
 #: Where memory runs out, libraries crash in many ways: a crash of a process that had so much of its budget is that, and
 #: so is one whose last words are about memory (it may have taken the rest since we looked).
 CLOSE = 0.7
@@ -82,6 +83,9 @@ class Process:
         self.work, self.output = self._input.fileno(), self._output.fileno()
         for descriptor in (self.reports, self.work, self.output):
             os.set_blocking(descriptor, False)
+        self._sizes = -1
+        with contextlib.suppress(OSError):
+            self._sizes = os.open(f"/proc/{self._child.pid}/statm", os.O_RDONLY | os.O_CLOEXEC)
         self._reader = MessageReader()
         self._outgoing: deque[memoryview] = deque()
         self._blobs: OrderedDict[str, int] = OrderedDict()
@@ -184,10 +188,9 @@ class Process:
     def measure(self) -> None:
         """Note how much memory is resident, and the most that the kernel counted towards the budget since the work
         began (data, resident or not), where the system says so."""
-        with contextlib.suppress(OSError, IndexError, ValueError):
-            sizes = [int(pages) for pages in Path(f"/proc/{self.pid}/statm").read_text().split()]
-            page = os.sysconf("SC_PAGE_SIZE")
-            self._resident, self._most = sizes[1] * page, max(self._most, sizes[5] * page)
+        with contextlib.suppress(OSError, IndexError):
+            sizes = os.pread(self._sizes, 200, 0).split()
+            self._resident, self._most = int(sizes[1]) * PAGE, max(self._most, int(sizes[5]) * PAGE)
 
     def excess(self) -> AttemptReport | None:
         """The last report about a work that takes more than it may: memory, or far too long."""
@@ -235,6 +238,8 @@ class Process:
         for stream in (self._input, self._output):
             stream.close()
         os.close(self.reports)
+        if self._sizes >= 0:
+            os.close(self._sizes)
 
 
 def lacked_memory(most: int, budget: int, printed: str) -> bool:

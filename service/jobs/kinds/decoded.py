@@ -79,6 +79,7 @@ def model_of(item: Mapping[str, Any], blobs: Mapping[str, bytes]) -> Model:
     model = _models.get(key)
     if model is None:
         with reading("the program of a tree", item["program"]):
-            model = Model.load({"certificate": {}, **item["model"]}, blobs[item["program"]])
+            program = _programs.once(item["program"], lambda: Program.from_bytes(blobs[item["program"]]))
+            model = Model.load({"certificate": {}, **item["model"]}, program)
         _models.put(key, model)
     return model

@@ -42,10 +42,6 @@ DENIED = (401, 403)  # for the key, or for want of one
 Told = Callable[[float], None]
 
 
-class Stopped(Exception):
-    """Nobody wants the mirror any more."""
-
-
 @dataclass
 class Mirrored:
     """What became of the parts that were offered: references here, and of those that were refused why; ``differing``:
@@ -75,7 +71,7 @@ Offer = tuple[str, str]  # name, digest
 
 
 class Mirror:
-    """One run for one source. ``told``: is told the share that is done, and raises Stopped where it is to end."""
+    """One run for one source. ``told``: is told the share that is done, and raises where it is to end."""
 
     def __init__(self, store: Store, viewer: Viewer, source: Source, max_nodes: int, told: Told) -> None:
         self._store, self._viewer, self._max_nodes, self._told = store, viewer, max_nodes, told

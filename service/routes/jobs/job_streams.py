@@ -8,7 +8,7 @@ from collections.abc import AsyncIterator, Iterator
 from time import monotonic
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Header, Request, Response
+from fastapi import Header, Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
@@ -18,7 +18,7 @@ from service.operations.jobs import jobs
 from service.queries import content
 from service.queries.jobs import job_events, results
 from service.queries.jobs import jobs as rows
-from service.routes.bodies import binary
+from service.routes.bodies import APIRouter, binary
 from service.store.store import Store
 from service.views.jobs import event_text, file_name, item_view
 from service.views.resources import dump

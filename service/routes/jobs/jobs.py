@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.database.connections import Connection
 from service.http.acting import ActOf, Commit
@@ -17,7 +17,7 @@ from service.messages.refusals import not_found
 from service.operations.jobs import jobs
 from service.queries.jobs import jobs as rows
 from service.queries.jobs import results
-from service.routes.bodies import binary, body_of
+from service.routes.bodies import APIRouter, binary, body_of
 from service.routes.deferred import FRESH, answer, committed
 from service.schemas.jobs import CancelRequest, ItemPage, ItemState, JobKind, JobPage, JobState, JobView, RetryRequest
 from service.views.jobs import BINARY, item_view, job_view, media_type

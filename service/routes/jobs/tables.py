@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import ActOf, timed
 from service.http.requests import OptionalJsonBody, StoreOf, ViewerOf, needs
@@ -15,7 +15,7 @@ from service.messages.viewer import Viewer
 from service.operations import trees
 from service.operations.jobs import jobs, tables
 from service.operations.jobs.tables import Table
-from service.routes.bodies import binary, body_of
+from service.routes.bodies import APIRouter, binary, body_of
 from service.routes.deferred import FRESH, deferred, made
 from service.routes.trees import revision
 from service.schemas.entries import Entry

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import asdict
 from typing import Annotated, Any, Literal
 
-from fastapi import APIRouter, Depends, Query, Request, Response
+from fastapi import Depends, Query, Request, Response
 
 from service.http.acting import Act, Commit, in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -17,7 +17,7 @@ from service.messages.references import is_pinned
 from service.messages.viewer import Viewer
 from service.models.exporting import ALL_TARGETS, ZIP, ExportRequest
 from service.operations import analyses, catalogue
-from service.routes.bodies import binary
+from service.routes.bodies import APIRouter, binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.store.store import Store
 from substructures.errors import InvalidInput

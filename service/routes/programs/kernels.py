@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 from time import perf_counter
 
-from fastapi import APIRouter, Response
+from fastapi import Response
 
 from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, needs
 from service.messages.answers import Answer, json_answer
 from service.operations import trees
 from service.operations.sharing.sources import sources_of
-from service.routes.bodies import body_of
+from service.routes.bodies import APIRouter, body_of
 from service.schemas.numbers import EvaluationRequest, KernelsView
 from service.views.resources import dump
 from substructures.quantities.numbers.evaluation import read_quantities, steps

@@ -6,7 +6,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from typing import Annotated, Any
 
-from fastapi import APIRouter, Query, Request, Response
+from fastapi import Query, Request, Response
 
 from service.http.acting import in_time
 from service.http.requests import StoreOf, ViewerOf, needs
@@ -15,7 +15,7 @@ from service.jobs.worker import Worker
 from service.messages.answers import JSON, Answer, etag
 from service.operations import modules
 from service.operations.modules import Subject
-from service.routes.bodies import binary
+from service.routes.bodies import APIRouter, binary
 from service.schemas.modules import OriginsView, ProgramView
 
 WASM = "application/wasm"
