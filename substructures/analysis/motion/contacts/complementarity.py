@@ -18,6 +18,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy
 from numpy.typing import NDArray
 
 from substructures.array import Array
@@ -278,8 +279,11 @@ def _leaving(T: Array, basis: NDArray[np.int64], entering: int) -> int:
 def least(A: Array, b: Array, yields: Array) -> Array:
     """x with A x = b; where many do, that of rows that yield a little, as in :func:`coulomb`."""
     x, left, soft = np.zeros(len(b)), b, A + np.diag(SOFT * np.maximum(yields, LEAST))
+    lu, order, singular = scipy.linalg.lapack.dgetrf(soft) if len(b) else (soft, b, 0)
+    if singular:
+        raise np.linalg.LinAlgError("nothing moves a contact")
     for _ in range(ROUNDS if len(b) else 0):
-        x += np.linalg.solve(soft, left)
+        x += scipy.linalg.lapack.dgetrs(lu, order, left)[0]
         left = b - A @ x
         if np.abs(left).max() <= ROUNDING * (np.abs(A) @ np.abs(x) + np.abs(b)).max():
             break

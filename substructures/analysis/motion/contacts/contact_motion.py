@@ -149,15 +149,16 @@ class ContactMotion(RightHandSide):
         if not len(closed):
             return free, pivots, power
         self.look(t, x)
-        v = self.velocities(x)
-        ways = self._ways(v)
-        # rows J q'' = -bias; forces F = (G_N - mu d . G_T)^T, G_T^T
-        pressed = self.G[closed, 0] - np.einsum("i,ia,ian->in", self.friction[closed], ways[closed], self.G[closed, 1:])
+        ways, G = self._ways(self.velocities(x)), self.G[closed]
         of, tangent = np.nonzero(self.tangents & (self.modes[:, :1] == STICK))
-        J = np.concatenate([self.G[closed, 0], self.G[of, 1 + tangent]])
-        F = np.linalg.solve(self.g, np.concatenate([pressed, self.G[of, 1 + tangent]]).T)
+        at = np.searchsorted(closed, of)
+        # rows J q'' = -bias; forces F = (G_N - mu d . G_T)^T, G_T^T, over g
+        W = np.linalg.solve(self.g, G.reshape(-1, self.n).T).reshape(self.n, -1, 3)
+        pressed = W[:, :, 0] - (self.friction[closed, None] * ways[closed] * W[:, :, 1:]).sum(axis=2)
+        J, F = np.concatenate([G[:, 0], G[at, 1 + tangent]]), np.hstack([pressed, W[:, at, 1 + tangent]])
         bias = np.concatenate([self.bias[closed, 0], self.bias[of, 1 + tangent]])
-        found = least(J @ F, -(J @ free + bias), self.yields(np.concatenate([closed, of])))
+        yields = np.maximum(np.einsum("ia,ai->i", G[:, 0], W[:, :, 0]), LEAST)
+        found = least(J @ F, -(J @ free + bias), np.concatenate([yields, yields[at]]))
         self.force[closed, 0] = found[: len(closed)]
         self.force[:, 1:] = -self.friction[:, None] * self.force[:, :1] * ways
         self.force[of, 1 + tangent] = found[len(closed) :]
@@ -208,8 +209,7 @@ class ContactMotion(RightHandSide):
 
     def yields(self, some: NDArray[np.int64]) -> Array:
         """G_N g^-1 G_N^T of each of these contacts, of the state that was looked at."""
-        G = self.G[some, 0]
-        return np.maximum(np.einsum("ia,ai->i", G, np.linalg.solve(self.g, G.T)), LEAST)
+        return np.maximum(np.einsum("ia,ai->i", self.G[some, 0], np.linalg.solve(self.g, self.G[some, 0].T)), LEAST)
 
     def stepper(self, plain: Stepper) -> Stepper:
         """Steps that land on closed contacts where they have drifted from them."""
