@@ -4,7 +4,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -15,6 +17,7 @@ from random_trees import GRAVITY, Kind, Plain, model_of, random_definition
 from scipy.integrate import solve_ivp
 
 from substructures import Definition, Model, TreeSpec, couple, derive
+from substructures.part.topology import topology
 
 Array = Any
 HINGES = ("revolute", "revolute", "prismatic")
@@ -22,18 +25,32 @@ HINGES = ("revolute", "revolute", "prismatic")
 
 @dataclass
 class Case:
-    """A model of one part x and its mechanism; ``names``: numbers of inputs and parameters without instance, and t."""
+    """A model of one part x and its mechanism; ``names``: numbers of inputs and parameters without instance, and t.
 
-    model: Model
+    ``make``: the model, which is made when it is asked for: many cases are drawn to find one.
+    """
+
+    make: Callable[[], Model]
     plain: Mechanism
     q: Array
     qd: Array
     names: Plain
     closures: list[Plain] = field(default_factory=list)
 
+    @cached_property
+    def model(self) -> Model:
+        model = self.make()
+        assert list(model.coordinates) == self.coordinates
+        return model
+
+    @property
+    def coordinates(self) -> list[str]:
+        """As the model names them."""
+        return [f"x.{c}" for c in self.plain.coordinates]
+
     @property
     def n(self) -> int:
-        return self.model.dof
+        return len(self.plain.coordinates)
 
     @property
     def inputs(self) -> Plain:
@@ -64,21 +81,19 @@ def random_case(seed: int, kind: Kind, closures: Any = None, gravity: Any = GRAV
     if change is not None:
         definition = change(definition)
     given = closures(rng, [b["name"] for b in definition["bodies"]]) if closures else []
-    if not given:
-        return case_of(model_of(definition, gravity), definition, rng, given, gravity)
     one = {"name": "x", "definition": definition}
     document = {"name": "t", "gravity": list(gravity), "instances": [one], "closures": given}
-    model = couple(TreeSpec.read(document), {"x": derive(Definition.read(definition))})
-    return case_of(model, definition, rng, given, gravity)
 
+    def made() -> Model:
+        if not given:
+            return model_of(definition, gravity)
+        return couple(TreeSpec.read(document), {"x": derive(Definition.read(definition))})
 
-def case_of(model: Model, definition: Plain, rng: Any, closures: Any = (), gravity: Any = GRAVITY) -> Case:
-    """A random state and random inputs."""
-    plain = Mechanism(definition, [c.removeprefix("x.") for c in model.coordinates], gravity)
+    plain = Mechanism(definition, topology(Definition.read(definition)).coordinates, gravity)
     names = {k: round(float(rng.uniform(-1, 1)), 3) for k in ("u1", "u2", *(f"tau.{c}" for c in plain.coordinates))}
     names |= {k: read(p["value"]) for k, p in definition.get("parameters", {}).items()} | {"t": 0.3}
-    q, qd = rng.uniform(-0.9, 0.9, (2, model.dof))
-    return Case(model, plain, q, qd, names, list(closures))
+    q, qd = rng.uniform(-0.9, 0.9, (2, len(plain.coordinates)))
+    return Case(made, plain, q, qd, names, list(given))
 
 
 # --- frames and closures by the words of the contract

@@ -55,6 +55,19 @@ def box() -> dict[str, Any]:
     }
 
 
+def disc(count: int) -> dict[str, Any]:
+    """A disc of 2 kg that is free in space, with so many points alike on its lower rim of 0.1 m, 0.05 m below."""
+    joint = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
+    inertia = {"xx": 0.02, "yy": 0.02, "zz": 0.03}
+    angles = [f"{k}*2*pi/{count}" for k in range(count)]
+    places = {f"p{k}": [f"cos({angle})/10", f"sin({angle})/10", -0.05] for k, angle in enumerate(angles)}
+    return {
+        "name": "disc",
+        "bodies": [{"name": "body", "parent": "base", "joint": joint, "mass": 2, "inertia": inertia}],
+        "ports": [{"name": name, "body": "body", "position": place} for name, place in places.items()],
+    }
+
+
 def point() -> dict[str, Any]:
     """A mass that moves in space."""
     axes = {"x": [1, 0, 0], "y": [0, 1, 0], "z": [0, 0, 1]}

@@ -40,7 +40,7 @@ SHAPES = ("1", "cos({})", "(2 + sin({}))", "({}/3 - 1)", "{}^2")
 
 def random_linear(rng: Any, case: Case, shapes: Sequence[str] = SHAPES) -> str:
     """Linear in all velocities."""
-    names = case.model.coordinates
+    names = case.coordinates
     terms = (str(rng.choice(shapes)).format(rng.choice(names)) for _ in names)
     return " + ".join(f"{rng.uniform(0.5, 2):.2f}*{x}*{name}'" for x, name in zip(terms, names, strict=True))
 

@@ -20,8 +20,9 @@ from substructures.errors import Fault, InvalidArgument
 from substructures.expr.syntax import ExpressionError, read
 from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference, Inferred
 from substructures.expr.units.unit_check import UnitCheck, dimension_of
+from substructures.mechanics.state_names import EFFORTS
 from substructures.quantities.measured import PlaceUnits, si_values
-from substructures.tree.model import EFFORTS, Model
+from substructures.tree.model import Model
 
 Plain = Mapping[str, Any]
 #: of the model, the fields of the request that were read before, and what was given: what stands there

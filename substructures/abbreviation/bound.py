@@ -53,12 +53,19 @@ class Prover:
         self._high = np.array([_up(x.high) for x in ranges], dtype=np.float64)
         self._waves: dict[tuple[int, int], dict[float, complex]] = {}
         self._products: dict[tuple[tuple[tuple[Fraction, ...], ...], bytes], float] = {}
+        self._bounds: dict[tuple[object, ...], Bound] = {}
         self._report = report
 
     def bound(self, sums: AngleSums, enough: float = 0.0) -> Bound:
         """A bound of an element; none below ``enough`` is looked for, and no more once one cannot be proven."""
         if not sums.starts or not math.isfinite(sums.rest):
             return Bound(sums.rest, sums.rest)
+        key = sums.starts, sums.multiples, sums.weights.tobytes(), sums.rest, enough
+        if key not in self._bounds:
+            self._bounds[key] = self._bound(sums, enough)
+        return self._bounds[key]
+
+    def _bound(self, sums: AngleSums, enough: float) -> Bound:
         alone = [self._alone(sums.product(m)) for m in range(len(sums.starts))]
         flat = np.array(alone)
         together = (float(flat.sum()) + sums.rest) * (1 + 2**-40)
@@ -135,10 +142,10 @@ class _Element:
         self.used = np.any(self.k != 0, axis=0)
         terms, coordinates = self.k.shape
         self.rounding = (terms + 8 * coordinates + 64) * 2.0**-50
-        columns = zip(*sums.multiples, strict=True) if sums.multiples else []
+        columns = list(zip(*sums.multiples, strict=True))
         #: by coordinate, its multiples and which of them every term has
-        self.tables = [(list(dict.fromkeys(column)), column) for column in columns]
-        self.which = [np.array([values.index(x) for x in column]) for values, column in self.tables]
+        self.tables = [{x: number for number, x in enumerate(dict.fromkeys(column))} for column in columns]
+        self.which = [np.array([table[x] for x in column]) for table, column in zip(self.tables, columns, strict=True)]
         self.steep = self.size @ self.reach
 
     def bounds(self, low: Array, high: Array) -> tuple[Array, Array, Array]:
@@ -146,18 +153,16 @@ class _Element:
         centre = (low + high) / 2
         half = np.maximum(high - centre, centre - low) * (1 + 2**-50)
         terms = np.broadcast_to(self.sums.weights, (len(low), len(self.size))).copy()
-        for j, (values, _) in enumerate(self.tables):
-            if values != [0]:
-                terms *= self.wave(values, centre[:, j])[:, self.which[j]]
+        for j in np.flatnonzero(self.used):
+            terms *= self.wave(list(self.tables[j]), centre[:, j])[:, self.which[j]]
         at_centre = np.abs(self._summed(terms.real))
-        slope = np.zeros_like(at_centre)
-        for j in range(self.k.shape[1]):
-            if np.any(self.k[:, j]):
-                slope += half[:, j, None] * np.abs(self._summed(terms.imag * self.k[:, j]))
+        slope, imag = np.zeros_like(at_centre), np.ascontiguousarray(terms.imag)
+        for j in np.flatnonzero(self.used):
+            slope += half[:, j, None] * np.abs(self._summed(imag * self.k[:, j]))
         reach = half @ self.reach.T
-        curved = self._summed(self.size * reach * reach) / 2
-        found = np.minimum(at_centre + slope + curved, self.flat).sum(axis=1)
-        slack = self.rounding * (self.size * (1 + reach + reach * reach)).sum(axis=1)
+        squares = self.size * reach * reach
+        found = np.minimum(at_centre + slope + self._summed(squares) / 2, self.flat).sum(axis=1)
+        slack = self.rounding * (self.size.sum() + reach @ self.size + squares.sum(axis=1))
         points = at_centre.sum(axis=1)
         rest = self.sums.rest
         return (found + slack + rest) * (1 + 2**-48), points + rest, np.argmax(half * self.steep, axis=1)

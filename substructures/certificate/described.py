@@ -87,6 +87,15 @@ def coordinates_in(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, s
     }
 
 
+def positions_in(tree: Plain, definitions: Mapping[str, Plain]) -> Iterable[str]:
+    """What a state q consists of, dependent coordinates among it."""
+    for instance in hosts_first(tree):
+        definition = definitions[instance["name"]]
+        for body in in_order(definition):
+            own = positions_of(body) or [q for q in coordinates_of(body) if mover(definition, q) == q]
+            yield from (f"{instance['name']}.{name}" for name in own)
+
+
 def is_dependent(tree: Plain, definitions: Mapping[str, Plain], name: str) -> bool:
     """Whether a coordinate is a function of others: of an instance of ``tree["reduced"]``, not independent."""
     instance, _, own = name.partition(".")

@@ -41,14 +41,35 @@ def tangents(program: Stored, found: Sequence[Ball], direction: Mapping[str, Bal
     """
     changes: dict[int, Ball] = {}
     for i, operation in enumerate(program.operations):
-        if operation[0] == "sym":
-            name = program.symbols[operation[1]].name
-            if name in direction:
-                changes[i] = direction[name]
-        elif operation[0] not in ("int", "rat") and not changes.keys().isdisjoint(operands(operation)):
+        op = operation[0]
+        if op in _PRODUCT_OR_SUM:
+            change = _of_two(operation, found, changes)
+        elif op == "sym":
+            change = direction.get(program.symbols[operation[1]].name)
+        elif op in ("int", "rat") or changes.keys().isdisjoint(operands(operation)):
+            continue
+        else:
             terms = [factor * changes[k] for k, factor in _partials(operation, found, i) if k in changes]
-            changes[i] = sum(terms[1:], terms[0])
+            change = sum(terms[1:], terms[0])
+        if change is not None:
+            changes[i] = change
     return changes
+
+
+_PRODUCT_OR_SUM = frozenset(("mul", "add", "sub"))
+
+
+def _of_two(operation: Operation, found: Sequence[Ball], changes: Mapping[int, Ball]) -> Ball | None:
+    """The change of a product, a sum or a difference, which nearly all operations are; None: it has none."""
+    op, a, b = operation
+    x, y = changes.get(a), changes.get(b)
+    if op == "mul":
+        x, y = (None if x is None else x * found[b]), (None if y is None else found[a] * y)
+    elif op == "sub" and y is not None:
+        y = -y
+    if x is None or y is None:
+        return y if x is None else x
+    return x + y
 
 
 def _partials(operation: Operation, found: Sequence[Ball], i: int) -> list[tuple[int, Ball]]:

@@ -13,12 +13,18 @@ from substructures.certificate.bodies import (
     Bodies,
     Frame,
     coordinates_of,
-    in_order,
     massless,
 )
 from substructures.certificate.by_coordinate import of_coordinates, rates
 from substructures.certificate.closures import closure_outputs
-from substructures.certificate.described import closures_in, coordinates_in, free_coordinates, hosts_first
+from substructures.certificate.described import (
+    closures_in,
+    coordinates_in,
+    free_coordinates,
+    hosts_first,
+    is_dependent,
+    positions_in,
+)
 from substructures.certificate.dynamics import Carried, carried_by_joints, velocity_forces
 from substructures.certificate.given.driven import driven_outputs, driven_symbols, of_free, with_driven
 from substructures.certificate.given.ignored import ignored_outputs, ignored_symbols, with_ignored
@@ -80,6 +86,8 @@ def _at_level(
         return _outputs(tree, definitions, stored, values)
     found = level_at(tree, definitions, with_driven(tree, values))
     outputs = reduced_outputs(tree, definitions, found, _outputs(all_free(tree), definitions, stored, found.values))
+    z = [q for q in coordinates_in(tree, definitions) if is_dependent(tree, definitions, q)]
+    outputs.array("dependent", (len(z),)).update({(k,): found.values[q] for k, q in enumerate(z)})
     driven, free = tree.get("driven", ()), list(free_coordinates(tree, definitions))
     more = driven_level(outputs, free, found.values, driven) if driven else {}
     outputs.update(more)
@@ -143,15 +151,11 @@ def _outputs(
 
 def _position_rates(result: Outputs, tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> None:
     """The changes of what a state consists of: q', and what the rates of ball joints do."""
-    found, order = dict[str, Ball](), list[str]()
+    found = dict[str, Ball]()
     for rate, way in _ways(tree, definitions, values).items():
         for name, x in way.items():
             found[name] = found.get(name, arb(0)) + x * values[f"{rate}'"]
-    for instance in hosts_first(tree):
-        definition = definitions[instance["name"]]
-        for body in in_order(definition):
-            own = positions_of(body) or [q for q in coordinates_of(body) if mover(definition, q) == q]
-            order += [f"{instance['name']}.{name}" for name in own]
+    order = list(positions_in(tree, definitions))
     rates = [found[name] if name in found else values[f"{name}'"] for name in order]
     result.array("position_rates", (len(order),)).update({(i,): x for i, x in enumerate(rates)})
 

@@ -123,7 +123,7 @@ class MachineKernel(Kernel):
 
     def _bound(self, request: KernelCall) -> Callable[[], None]:
         job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
-        return BoundCall((self, job, request), self.runtime.call, self._prepared(job), job.counter)
+        return BoundCall((self, job, request), self.runtime.call, self._prepared(job, False), job.counter)
 
     def _job(
         self,
@@ -188,13 +188,15 @@ class MachineKernel(Kernel):
 
     def _work(self, job: _Job) -> None:
         """Runs the driver, with scratch of its own."""
-        prepared = self._prepared(job)
+        prepared = self._prepared(job, job.blocks is None)
         self.runtime.drive(*prepared.words)
         if len(self._scratch) < KEPT:
             self._scratch.append(prepared.scratch)
 
-    def _prepared(self, job: _Job) -> _Prepared:
-        """Scratch with the numbers of the batch, and the words of the driver's context."""
+    def _prepared(self, job: _Job, is_told: bool) -> _Prepared:
+        """Scratch with the numbers of the batch, and the words of the driver's context; ``is_told``: that results are
+        finite is asked.
+        """
         try:
             own = self._scratch.pop()
         except IndexError:
@@ -213,7 +215,7 @@ class MachineKernel(Kernel):
         else:
             # the array has no zero
             words += (address(job.blocks) - 8 * width, job.blocks.strides[0], job.blocks.strides[0])
-        n_results = self._stages.results[-1]
+        n_results = self._stages.results[-1] if is_told else 0
         tables = (*job.inputs[:2], *self._stages.steps(done), *job.outputs[:2])
         return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group, n_results))
 

@@ -28,7 +28,8 @@ _Words = ctypes.c_int64 * len(RUN)
 class SaddlePoint:
     """[g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c] of arrays that kernels write: ``metric`` (n, n), ``jacobian``
     (m, n), ``acceleration`` c (m,), ``forces``, ``bias`` (n,). ``rows`` (r,): the independent ones of G and c, others
-    at the next call where they have changed.
+    at the next call where they have changed. ``moving`` (k,): the coordinates that are not held, of which q'' is zero.
+    ``first``: place of q'' in what is written.
     """
 
     metric: Array
@@ -37,14 +38,17 @@ class SaddlePoint:
     forces: Array
     bias: Array
     rows: NDArray[np.int64]
+    moving: NDArray[np.int64]
+    first: int = 0
 
     def words(self, width: int) -> tuple[NDArray[np.int64], Scratch]:
         """The table SADDLE, and the memory of its matrix."""
-        n = len(self.forces)
-        size = n + len(self.rows)
+        free = len(self.moving)
+        size = free + len(self.rows)
         matrix = Scratch.zeros(size, -(-(size + 1) // width) * width)
-        arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows
-        table = [*map(address, arrays), matrix.address, n, size, matrix.array.shape[1]]
+        arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows, self.moving
+        sizes = len(self.forces), free, size, matrix.array.shape[1], self.first
+        table = [*map(address, arrays), matrix.address, *sizes]
         return np.array(table, dtype=np.int64), matrix
 
 
@@ -52,8 +56,8 @@ class SaddlePoint:
 class CompiledRates:
     """x' = (q', q'', power) as calls of kernels, one after the other, that share memory: they read ``t`` (1,) and ``x``
     (1, 2n), and write ``written`` (1, n) and ``power`` (1,), None where W is no part of x. ``folder``: a cache of code.
-    ``saddle``: q'' is its solution, in place of what kernels write. Where q' is no part of x it is ``written``, too:
-    those as many as x has are all but the power. ``tables``: of the time, which the calls read.
+    ``saddle``: q'' is its solution, in place of what kernels write. Where q' is no part of x it is ``written`` before:
+    as many as x has are all but the power. ``tables``: of the time, which the calls read.
     """
 
     calls: tuple[BoundCall, ...]
@@ -133,6 +137,12 @@ class CompiledRun:
         self._run[-1] = min(most, len(self._steps))
         self._advance(self._run)
         return self._steps[: self._words[0]]
+
+    def rates(self, t: float, x: Array) -> Array:
+        """x' of x (size,) at t, in place of a run."""
+        self.begin(t, x, t, 1.0)
+        self.advance(0)
+        return self._rows.array[2, : x.size].copy()
 
     @property
     def status(self) -> int:

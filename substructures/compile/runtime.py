@@ -43,6 +43,9 @@ def runtime(width: int) -> str:
     return declared + "\n".join(body) + attributes(width)
 
 
+#: results that are looked at together, a power of 2, and sums in which they are
+LOOKED, CHAINS = 16, 4
+
 BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
 
 
@@ -108,15 +111,30 @@ def _load(width: int) -> str:
 
 
 def _look(width: int) -> str:
-    """Sets the word ``seen`` when one of the ``count`` results at o is not finite, for which x - x is not a number."""
+    """Sets the word ``seen`` when one of the ``count`` results at o is not finite, for which 0 x is not a number."""
     w = AssemblyWriter(width)
-    with w.loop("1", w.arithmetic("add", "%count", 1)) as i:  # behind the zero
-        x = w.do(f"load {w.kind}, ptr {w.offset('%o', w.arithmetic('mul', i, 8 * width))}, align 8")
-        difference = w.real("fsub", x, x)
-        bad = w.do(f"fcmp uno {w.kind} {difference}, {difference}")
+
+    def look(i: str, count: int) -> None:
+        """At so many results at once, in CHAINS sums of 0 x."""
+        zero, sums = literal(0.0, width), [literal(0.0, width)] * min(CHAINS, count)
+        for k in range(count):
+            place = w.offset("%o", w.arithmetic("mul", w.arithmetic("add", i, k), 8 * width))
+            x = w.do(f"load {w.kind}, ptr {place}, align 8")
+            sums[k % CHAINS] = w.fused("fadd", w.fused("fmul", x, zero), sums[k % CHAINS])
+        while len(sums) > 1:
+            sums.append(w.real("fadd", sums.pop(0), sums.pop(0)))
+        bad = w.do(f"fcmp uno {w.kind} {sums[0]}, {sums[0]}")
         mask = w.do(f"bitcast <{width} x i1> {bad} to i{width}")
         with w.when(w.do(f"icmp ne i{width} {mask}, 0")):
             w.put("store i64 1, ptr %seen, align 8")
+
+    # behind the zero
+    end = w.arithmetic("add", "%count", 1)
+    several = w.arithmetic("sub", end, w.arithmetic("and", "%count", LOOKED - 1))
+    with w.loop("1", several, LOOKED) as i:
+        look(i, LOOKED)
+    with w.loop(several, end) as i:
+        look(i, 1)
     return w.function("look", "ptr %o, i64 %count, ptr %seen")
 
 

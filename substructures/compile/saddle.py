@@ -2,8 +2,9 @@
 
     [g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c]
 
-for independent rows of G and c. It is backward stable also where g alone is singular, as the LU factors of LAPACK are
-(N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2002, chapter 9); without a solution q'' is not finite.
+for independent rows of G and c, and the columns of the coordinates that move: all others have q'' = 0. It is backward
+stable also where g alone is singular, as the LU factors of LAPACK are (N. J. Higham, Accuracy and Stability of
+Numerical Algorithms, 2002, chapter 9); without a solution q'' is not finite.
 """
 
 from __future__ import annotations
@@ -13,8 +14,12 @@ from contextlib import AbstractContextManager
 from substructures.compile.assembler import AssemblyWriter
 
 #: words of a saddle point: addresses of g (n, n), G (m, n), c (m,), Q, Gamma q'q' (n,), of the numbers of the r rows
-#: and of a matrix (n + r, stride), whose rows are filled up to whole vectors; and these sizes
-SADDLE = ("metric", "jacobian", "acceleration", "forces", "bias", "rows", "matrix", "n", "size", "stride")
+#: and of the k coordinates that move, and of a matrix (k + r, stride), whose rows are filled up to whole vectors;
+#: n, k, k + r, stride, and the place of q'' in what is written
+SADDLE = (
+    *("metric", "jacobian", "acceleration", "forces", "bias", "rows", "moving", "matrix"),
+    *("n", "free", "size", "stride", "first"),
+)
 
 
 def saddle_point(width: int) -> str:
@@ -26,8 +31,8 @@ class _SaddlePoint:
     def __init__(self, width: int) -> None:
         self.w = w = AssemblyWriter(width)
         c = w.words("%table", SADDLE)
-        self.at = {name: w.pointer(c[name]) for name in SADDLE[:7]}
-        self.n, self.size, self.stride = c["n"], c["size"], c["stride"]
+        self.at = {name: w.pointer(c[name]) for name in SADDLE[:8]}
+        self.n, self.free, self.size, self.stride, self.first = (c[name] for name in SADDLE[8:])
         #: where the largest number of a column is
         self.place = w.do("alloca i64, align 8")
 
@@ -43,26 +48,29 @@ class _SaddlePoint:
                 factor = w.do(f"fdiv double {self._load(self._entry(i, k))}, {pivot}")
                 self._subtract(i, k, factor, first)
         self._substitute()
+        found = w.offset("%x", self.first, "double")
         with w.loop("0", self.n) as i:
-            self._store(self._load(self._entry(i, self.size)), w.offset("%x", i, "double"))
+            self._store("0.0", w.offset(found, i, "double"))
+        with w.loop("0", self.free) as i:
+            self._store(self._load(self._entry(i, self.size)), w.offset(found, self._number("moving", i), "double"))
         return w.function("saddle_point", "ptr %table, ptr %x")
 
     def _fill(self) -> None:
         """The matrix, and the right-hand side in the column behind it."""
         w, at = self.w, self.at
-        with w.loop("0", self.n) as i:
-            with w.loop("0", self.n) as j:
-                self._store(self._load(self._element(at["metric"], i, j)), self._entry(i, j))
-            Q, bias = (self._load(w.offset(at[name], i, "double")) for name in ("forces", "bias"))
+        with w.loop("0", self.free) as i:
+            a = self._number("moving", i)
+            with w.loop("0", self.free) as j:
+                self._store(self._load(self._element(at["metric"], a, self._number("moving", j))), self._entry(i, j))
+            Q, bias = (self._load(w.offset(at[name], a, "double")) for name in ("forces", "bias"))
             self._store(w.do(f"fsub double {Q}, {bias}"), self._entry(i, self.size))
-        with w.loop(self.n, self.size) as i:
-            place = w.offset(at["rows"], w.arithmetic("sub", i, self.n), "i64")
-            row = w.do(f"load i64, ptr {place}, align 8")
-            with w.loop("0", self.n) as j:
-                number = self._load(self._element(at["jacobian"], row, j))
+        with w.loop(self.free, self.size) as i:
+            row = self._number("rows", w.arithmetic("sub", i, self.free))
+            with w.loop("0", self.free) as j:
+                number = self._load(self._element(at["jacobian"], row, self._number("moving", j)))
                 self._store(number, self._entry(i, j))
                 self._store(number, self._entry(j, i))
-            with w.loop(self.n, self.size) as j:
+            with w.loop(self.free, self.size) as j:
                 self._store("0.0", self._entry(i, j))
             c = self._load(w.offset(at["acceleration"], row, "double"))
             self._store(w.do(f"fneg double {c}"), self._entry(i, self.size))
@@ -117,6 +125,10 @@ class _SaddlePoint:
         """Of a matrix with n columns."""
         w = self.w
         return w.offset(base, w.arithmetic("add", w.arithmetic("mul", i, self.n), j), "double")
+
+    def _number(self, name: str, k: str) -> str:
+        """The k-th of the rows or of the coordinates."""
+        return self.w.do(f"load i64, ptr {self.w.offset(self.at[name], k, 'i64')}, align 8")
 
     def _pivot(self) -> str:
         return self.w.do(f"load i64, ptr {self.place}, align 8")

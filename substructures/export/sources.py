@@ -10,18 +10,18 @@ from collections.abc import Mapping, Sequence
 from typing import Any
 
 from substructures.export.interface import TIME, Interface, Vector, has_time
-from substructures.mechanics.state_names import BallRow, ball_rows, positions_of, state_units
+from substructures.mechanics.state_names import BallRow, ball_rows, effort_units, positions_of, state_units
 from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
 from substructures.quantities.numbers.states import default_number, input_defaults
-from substructures.tree.model import EFFORTS, Model
+from substructures.tree.model import Model
 
 _PRIMES = {"q": "", "qd": "'", "qdd": "''"}
 
 
 def interface_of_model(model: Model, reference: str = "", digest: str = "") -> Interface:
     """The vectors of a tree: its coordinates, inputs (of loads, then actuators), all its parameters."""
-    efforts = [f"tau.{name}" for name in model.coordinates]
+    efforts = [name for name in model.units if name.startswith("tau.")]
     inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
     states = _states(model.coordinates, model.joints, model.balls)
     vectors = states | _others(model.parameters, inputs, model.units, input_defaults(model))
@@ -33,7 +33,7 @@ def interface_of_model(model: Model, reference: str = "", digest: str = "") -> I
 
 def interface_of_part(part: Part, reference: str = "", digest: str = "") -> Interface:
     """The vectors of a part as it stands alone."""
-    efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(part.coordinates, part.joints, strict=True)}
+    efforts = effort_units(part.coordinates, part.joints)
     given = part.definition.inputs
     told = described_inputs(given)
     defaults = {name: default_number(x["default"]) for name, x in told.items() if "default" in x}

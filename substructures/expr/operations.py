@@ -173,13 +173,13 @@ def _check_elements(name: str, output: Output) -> None:
 
 def _check(i: int, operation: Operation, symbols: int) -> None:
     op = operation[0] if operation and isinstance(operation[0], str) else None
-    if op in ("int", "rat"):
+    if op in ARITY or op == "powi":
+        _check_operands(i, op, operation)
+    elif op in ("int", "rat"):
         _check_number(i, operation)
     elif op == "sym":
         if len(operation) != 2 or not _in_range(operation[1], symbols):
             raise InvalidProgram("unknown symbol", i)
-    elif op in ARITY or op == "powi":
-        _check_operands(i, op, operation)
     else:
         raise InvalidProgram(f"unknown operation {str(op)[:80]!r}", i)
 
@@ -196,8 +196,9 @@ def _check_operands(i: int, op: str, operation: Operation) -> None:
     arity = ARITY.get(op, 1)
     if len(operation) != 1 + arity + (op == "powi"):
         raise InvalidProgram(f"'{op}' has {len(operation) - 1} operands", i)
-    if not all(_in_range(x, i) for x in operation[1 : 1 + arity]):
-        raise InvalidProgram("an operand does not refer to an earlier entry", i)
+    for x in operation[1 : 1 + arity]:
+        if type(x) is not int or not 0 <= x < i:
+            raise InvalidProgram("an operand does not refer to an earlier entry", i)
     if op == "powi" and not (_is_index(operation[2], signed=True) and abs(operation[2]) <= MAX_EXPONENT):
         raise InvalidProgram(f"exponent beyond {MAX_EXPONENT}", i)
 
@@ -207,7 +208,7 @@ def _are_in_range(numbers: Sequence[Any], n: int) -> bool:
 
 
 def _in_range(x: Any, n: int) -> bool:
-    return _is_index(x) and 0 <= x < n
+    return type(x) is int and 0 <= x < n
 
 
 def _is_index(x: Any, signed: bool = False) -> bool:

@@ -8,8 +8,15 @@ from substructures.mechanics.balls import BallJoint
 
 #: SI units of revolute and of prismatic coordinates, by the field of states
 _UNITS = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "qdd": ("rad/s^2", "m/s^2")}
+#: SI units of actuators by the kind of joint
+EFFORTS = {"R": "N m", "P": "N"}
 #: of a ball joint: ``positions``, place (x, y, z) of a floating one and quaternion (w, x, y, z), and ``velocities``
 BallRow = Mapping[str, Sequence[str]]
+
+
+def effort_units(coordinates: Sequence[str], joints: str) -> dict[str, str]:
+    """The SI units of the actuators of coordinates, ``tau.<coordinate>``."""
+    return {f"tau.{name}": EFFORTS[kind] for name, kind in zip(coordinates, joints, strict=True)}
 
 
 def ball_rows(balls: Iterable[BallJoint], joints: Sequence[str]) -> tuple[BallRow, ...]:

@@ -6,8 +6,8 @@ and lists of names all come from here. Nothing is imported: clients and printers
 
 Axes are named by the member of an answer that lists their places: ``coordinates``, ``frames`` (bodies and ports),
 ``columns`` (inertial parameters), ``links``, ``joints``, ``loads``, ``rows`` (of closures), ``driven`` (coordinates
-whose motion is given), ``ignored`` (whose momentum is), ``positions`` (of ball joints); those of FIXED have the same
-names everywhere, and digits are a length.
+whose motion is given), ``ignored`` (whose momentum is), ``positions`` (of balls), ``dependent`` ones; those of
+FIXED have the same names everywhere, and digits are a length.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ VELOCITY_DYNAMICS = "velocity_dynamics"
 #: formulas that follow from a model by an analysis, and outputs of a part: not numbers of a tree
 ANALYSIS, PART = "analysis", "part"
 COORDINATES, FRAMES, DRIVEN, IGNORED = "coordinates", "frames", "driven", "ignored"
-POSITIONS = "positions"
+POSITIONS, DEPENDENT = "positions", "dependent"
 #: axes whose places have the same names in every tree
 FIXED = {"axes": ("x", "y", "z"), "momenta": ("px", "py", "pz", "Lx", "Ly", "Lz")}
 #: of what is not in the table: all but further symbols
@@ -176,6 +176,7 @@ _ROWS = (
     _stored("friction", "p", "coordinates 4", only="no joint has dry friction"),
     _stored("friction_load", "p", "coordinates 2", only="no joint has friction that its load adds to"),
     _stored("position_rates", "q qd p", POSITIONS, only="no joint is a ball joint or floating: they are q'"),
+    _stored("dependent", "q p", DEPENDENT, only="no instance is of the reduced level"),
     _loops("closure.residual", "q p", "rows"),
     _loops("closure.jacobian", "q p", "rows coordinates"),
     _loops("closure.acceleration", "q qd p", "rows"),

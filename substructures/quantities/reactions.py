@@ -21,20 +21,27 @@ from functools import lru_cache
 from substructures.certificate.derived.reactions import reaction_outputs
 from substructures.errors import InvalidArgument, meant
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, program
+from substructures.expr.program import Formulas, array, program
 from substructures.expr.replay import replay
+from substructures.expr.walk import transfer
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
 from substructures.mechanics.newton_euler import Wrench, inertial_load
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
+from substructures.part.relations import of_coordinates
 from substructures.quantities.of_parts import OfParts, formed
 from substructures.quantities.regressor import DYNAMIC, bare
 from substructures.tree.applied_wrenches import applied_wrenches
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import OWN, couple_parts
-from substructures.tree.document import TreeSpec, require_full
+from substructures.tree.document import TreeSpec
+from substructures.tree.given.driven import every_coordinate
+from substructures.tree.given.loops.dependent import Dependent
+from substructures.tree.given.loops.multipliers import PREFIX, loop_multipliers
+from substructures.tree.given.projection import changed
 from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
+from substructures.tree.model import loaded_outputs
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
 
@@ -42,6 +49,7 @@ from substructures.tree.mounted_part import PlacedPart
 OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
 #: their names in an answer
 FIELDS = ("force", "moment", "force_world", "moment_world")
+NEEDED = "inverse_dynamics"
 #: outputs of parts that neither move nor load anything
 _LEFT_OUT = tuple(name for name in DYNAMIC if name not in ("load.at", "load.vector"))
 
@@ -107,7 +115,8 @@ def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
 
 def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     """OUTPUTS, and the names of their rows."""
-    require_full(assembly.reduced, "ask again: they are found with the multipliers of its closures")
+    loops = assembly.dependent
+    assembly = assembly.full()
     run = over_formulas(assembly.scope.graph)
     placed = couple_parts(bare(run, _LEFT_OUT), assembly.mounted, assembly.gravity, christoffel=False).placed
     rates, accelerations = rate_symbols(assembly)
@@ -115,7 +124,7 @@ def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
     for part, carrier, wrench in applied_wrenches(assembly, placed, rates):
         # a force that acts is one that the joints need not transmit
         loads[part][carrier] += Wrench(negate(wrench.f), negate(wrench.n))
-    pass_back(placed, loads, len(rates))
+    transmitted = pass_back(placed, loads, len(rates))
     joints: list[tuple[str, Wrench, Matrix]] = []
     seats: list[tuple[str, Wrench, Matrix]] = []
     for instance, here, own in zip(assembly.instances, placed, loads, strict=True):
@@ -129,7 +138,28 @@ def _outputs(assembly: Assembly) -> tuple[dict[str, Formulas], tuple[str, ...]]:
         for name, vector in zip(OUTPUTS, shown, strict=True):
             found[name] |= {(k, i): vector[i] for i in range(3)}
     rows = tuple(name for name, *_ in (*joints, *seats))
-    return {name: Formulas((len(rows), 3), some) for name, some in found.items()}, rows
+    outputs = {name: Formulas((len(rows), 3), some) for name, some in found.items()}
+    return _with_loops(assembly, loops, transmitted, outputs), rows
+
+
+def _with_loops(
+    assembly: Assembly, loops: Dependent, transmitted: Sequence[Scalar], outputs: dict[str, Formulas]
+) -> dict[str, Formulas]:
+    """With the forces of loops of the reduced level in place of their multipliers."""
+    if not loops.values:
+        return outputs
+    graph, coordinates = assembly.scope.graph, list(every_coordinate(assembly))
+    coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel=False)
+    needed = loaded_outputs(assembly, coupled, frozenset({NEEDED}))[NEEDED]
+    through = array((len(transmitted),), lambda a: transmitted[a])
+    rows = (needed, of_coordinates({NEEDED: through}, coupled.ratios)[NEEDED])
+    own, passed = (
+        {q: graph.lift(each.entries.get((a,), 0)) for a, q in enumerate(coordinates) if q in loops.values}
+        for each in rows
+    )
+    names = [name for name in assembly.scope.symbols if name.startswith(PREFIX)]
+    forces = loop_multipliers(loops, names, own, passed)
+    return changed(graph, outputs, lambda every: transfer(every, graph, forces))
 
 
 def _needed(

@@ -19,6 +19,7 @@ from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
 from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.quantity import (
     CONDITION,
+    DEPENDENT,
     DRIVEN,
     FORWARD,
     FRAMES,
@@ -147,6 +148,8 @@ class Sources:
             return self.model.frames
         if axis == POSITIONS:
             return self.model.positions
+        if axis == DEPENDENT:
+            return self.model.dependent
         if axis in (DRIVEN, IGNORED):
             return self.model.driven if axis == DRIVEN else self.model.ignored
         return tuple(f"{closure.name}.{row}" for closure in self.model.closures for row in closure.rows)
@@ -197,7 +200,7 @@ def numbers_per_state(quantities: Sequence[str], dof: int, frames: int) -> int:
     # tree may have a thousand beside those of its parts; rows of closures, six at most between two frames
     sizes = {"coordinates": n, "frames": frames, "axes": 3, "links": frames, "columns": 10 * frames}
     sizes |= {"joints": n + frames, "loads": 2 * n + 2000, "rows": 6 * (n + frames), "rates": 6 + n}
-    sizes |= dict.fromkeys((DRIVEN, IGNORED), frames) | {POSITIONS: 2 * n}
+    sizes |= dict.fromkeys((DRIVEN, IGNORED, DEPENDENT), n + frames) | {POSITIONS: 2 * n}
     return sum(TABLE[name].size(sizes) for name in quantities)
 
 

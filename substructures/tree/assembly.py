@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from substructures.errors import InvalidDocument, among
@@ -45,7 +45,16 @@ class Assembly:
     friction: dict[int, tuple[Expr, Expr, Expr, Expr]]  #: F_c, F_s, v_s (0: none), v_0 of coordinates, by joint
     friction_load: dict[int, tuple[Expr, Expr]]  #: by joint: of the force beside the axis, and along it
     reading: Reading  #: for what is read when the parts have their places
-    reduced: frozenset[str]  #: the instances whose dependent coordinates are functions of the independent ones
+
+    @property
+    def reduced(self) -> frozenset[str]:
+        """The instances whose dependent coordinates are functions of the independent ones."""
+        return self.reading.reduced
+
+    def full(self) -> Assembly:
+        """With all closures of the parts, and none that is reduced; in the same graph."""
+        reading = replace(self.reading, reduced=frozenset())
+        return replace(self, cuts=tuple(reading.cuts()), reading=reading)
 
     @cached_property
     def dependent(self) -> Dependent:
@@ -92,8 +101,8 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
-    reduced = reduced_instances(spec, parts, scope)
-    reading = Reading(spec, parts, scope, place, bound, frozenset(parameters), reduced)
+    level = reduced_instances(spec, parts, scope)
+    reading = Reading(spec, parts, scope, place, bound, frozenset(parameters), level)
     mounted: list[MountedPart] = []
     first = 0
     for i in order:
@@ -109,14 +118,14 @@ def assemble(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     scope.finish()
     left = {name: value for name, value in parameters.items() if name not in bound.values}
     instances = tuple(spec.instances[i] for i in order)
-    places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading, reduced
+    places = tuple(mounted), gravity, left, cuts, inputs, limits, friction, loaded, reading
     return _known_with_balls(spec, Assembly(scope, instances, *places))
 
 
 def _known_with_balls(spec: TreeSpec, assembly: Assembly) -> Assembly:
     """The assembly. Raises InvalidDocument (``has-balls``) for what does not go with ball and floating joints."""
     given = {name: getattr(spec, name) for name in ("driven", "ignored", "velocity_constraints", "contacts")}
-    for name, some in (given | {"closures": assembly.cuts or assembly.reduced}).items():
+    for name, some in (given | {"closures": assembly.cuts}).items():
         if some:
             require_chains(assembly.balls, f"take the tree without '{name}'", f"/{name}")
     return assembly
@@ -270,12 +279,11 @@ class Reading:
         """The dependent coordinates of a reduced instance in the graph of the tree."""
         own = dependent(part)
         assert isinstance(own, Dependent)  # noqa: S101 -- it is among those that are reduced
-        names = {q: f"{instance}.{q}" for q in part.coordinates}
-        bindings = {q: self.scope.graph.symbol(name) for q, name in names.items()}
+        bindings = {q: self.scope.graph.symbol(f"{instance}.{q}") for q in part.coordinates}
         for name in part.parameters:
             bound = self.bound.lookup(f"{instance}.{name}")
             bindings[name] = self.scope.graph.symbol(f"{instance}.{name}") if bound is None else bound
-        return own.moved(self.scope.graph, names, bindings)
+        return own.moved(self.scope.graph, instance, bindings)
 
     def parameter(self, name: str) -> Expr | None:
         """A parameter by its name in the tree, with its binding put in; None of what is none."""

@@ -107,7 +107,7 @@ def certify_rows(
     def expected(tree: Plain, values: Mapping[str, Any]) -> Outputs:
         """Of free coordinates, at motions or momenta of the others as they are given."""
         level = level_at(tree, parts, with_given(tree, parts, values))
-        found = reduced_outputs(tree, parts, level, outputs(plain(spec), parts, rows, level.values))
+        found = reduced_outputs(tree, parts, level, outputs(tree, parts, rows, level.values))
         return of_free(found, every, tree.get("driven", ()))
 
     try:

@@ -13,7 +13,7 @@ from substructures.errors import VerificationFailed, listed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
-from substructures.mechanics.state_names import ball_rows, positions_of, state_units
+from substructures.mechanics.state_names import ball_rows, effort_units, positions_of, state_units
 from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part, told_operations
@@ -35,7 +35,6 @@ from substructures.tree.shape import CertifiedProgram, KnownShapes, limited, of_
 from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
-EFFORTS = {"R": "N m", "P": "N"}
 LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls", "reduced")
 
 
@@ -91,6 +90,11 @@ class Model:
         return (*self.driven, *self.ignored)
 
     @property
+    def dependent(self) -> tuple[str, ...]:
+        """The coordinates that loops in the formulas make functions of others (reduced level)."""
+        return tuple(name for level in self.reduced for name in level["dependent"])
+
+    @property
     def dof(self) -> int:
         """Number of coordinates."""
         return len(self.coordinates)
@@ -102,10 +106,10 @@ class Model:
 
     @cached_property
     def units(self) -> dict[str, str]:
-        """The SI units of parameters and inputs by name; empty where none was given."""
-        efforts = {f"tau.{name}": EFFORTS[kind] for name, kind in zip(self.coordinates, self.joints, strict=True)}
-        declared = {**self.parameters, **self.inputs}
-        return {name: str(given.get("unit", "")) for name, given in declared.items()} | efforts
+        """The SI units of parameters and inputs by name, actuators last; empty where none was given."""
+        declared, own = {**self.parameters, **self.inputs}, effort_units(self.coordinates, self.joints)
+        own |= {s.name: s.unit for s in self.program.symbols if s.name.removeprefix("tau.") in self.dependent}
+        return {name: str(given.get("unit", "")) for name, given in declared.items()} | own
 
     @cached_property
     def state_units(self) -> dict[str, dict[str, str]]:
@@ -121,7 +125,7 @@ class Model:
     def input_names(self) -> tuple[str, ...]:
         """All inputs: those in the formulas in the order of the program's symbols, then those without effect."""
         named = [s.name for s in self.program.symbols if s.kind == "input"]
-        return tuple(dict.fromkeys([*named, *self.inputs, *(f"tau.{name}" for name in self.coordinates)]))
+        return tuple(dict.fromkeys([*named, *self.inputs, *effort_units(self.coordinates, self.joints)]))
 
     def described(self) -> dict[str, Any]:
         """What the axes of the outputs are, as plain data."""

@@ -21,6 +21,7 @@ position_rates         m            of a state q with ball joints: q', p' = R v 
 limits                 n 2          lowest and highest value of the coordinates that have limits
 friction               n 4          F_c, F_s, v_s (0: none) and v_0 of the coordinates that have dry friction
 friction_load          n 2          what the force that a joint transmits adds to F_c: beside its axis, along it
+dependent              z            of a tree with loops in its formulas (reduced level): its dependent coordinates
 =====================  ===========  ==========================================================================
 
 A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
@@ -106,6 +107,8 @@ def model_outputs(
         outputs["position_rates"] = _position_rates(assembly, rates)
     if assembly.cuts and names is None:
         outputs |= closure_formulas(placed, assembly.cuts, rates)
+    if assembly.dependent.values and wanted("dependent"):
+        outputs["dependent"] = _dependent(assembly)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
     return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
 
@@ -121,8 +124,17 @@ def _position_rates(assembly: Assembly, rates: Sequence[Scalar]) -> Formulas:
     for ball in assembly.balls:
         moved = position_rates(graph, ball.positions, [graph.lift(rates[a]) for a in ball.joints])
         found |= zip(ball.positions, moved, strict=True)
-    order = positions_of([names[a] for a in movers], ball_rows(assembly.balls, names))
+    left = [names[a] for a in movers if names[a] not in assembly.dependent.values]
+    order = positions_of(left, ball_rows(assembly.balls, names))
     return array((len(order),), lambda i: found[order[i]])
+
+
+def _dependent(assembly: Assembly) -> Formulas:
+    """The symbols of dependent coordinates, in the order of the coordinates."""
+    pairs = zip(assembly.instances, assembly.mounted, strict=True)
+    every = [f"{i.name}.{q}" for i, m in pairs for q in m.part.coordinates]
+    symbols = [assembly.scope.graph.symbol(q) for q in every if q in assembly.dependent.values]
+    return array((len(symbols),), lambda i: symbols[i])
 
 
 def _joint_laws(assembly: Assembly, n: int) -> dict[str, Formulas]:

@@ -16,11 +16,16 @@ from simulated import simulated
 from substructures import InvalidInput, Model, catalogue
 from substructures.analysis.closed import dry_friction
 from substructures.analysis.closed.constrained import Constrained
-from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
+from substructures.analysis.closed.dry_friction import ClosedDryMotion
+from substructures.analysis.closed.dry_state import DryConstrained
+from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.closed.sticking_forces import bounded
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 
 Laws = dict[str, tuple[str, str]]
 
@@ -212,6 +217,27 @@ def test_blocks_in_line_are_one_block(method: str) -> None:
     np.testing.assert_allclose(two.series["friction"].sum(axis=1), one.series["friction"][:, 0], atol=1e-7)
 
 
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+@pytest.mark.parametrize("ways", [[1, -1, -1], [0, 0, 0], *deep([0, -1, 1], [1, 0, 0])])
+def test_steps_are_machine_code_whoever_sticks(ways: list[int]) -> None:
+    """Accelerations and power of a state as in Python, of whatever joints slip; what sticks has no acceleration."""
+    model, a = slider_crank(LAWS), 0.8
+    q = np.array([a, np.arcsin(-0.04 * np.sin(a) / 0.14) - a, piston(np.array(a))[0]])
+    s = DryConstrained(model, Start(q), (0, 1))
+    s.signs = np.array(ways)
+    rate = 3.0 * all(ways)
+    x = np.concatenate((q, rate * levers(a), [0.0]))
+    s.move(0.0, *np.split(x[:-1], 2))
+    reduction = Projected(s, 2)
+    rates = reduction.compiled()
+    assert rates is not None
+    found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.0, x)
+    np.testing.assert_allclose(found, reduction.rates(0.0, x), rtol=1e-12, atol=1e-12)
+    assert not found[3:6][s.signs == 0].any()
+    # by the angle of the crank alone where all slip; else all of them rest
+    assert found[3] == pytest.approx(sliding(a, rate) if all(ways) else 0.0, rel=1e-9, abs=1e-12)
+
+
 def test_friction_of_prescribed_motions() -> None:
     """A crank that is driven to and fro: the drive has the friction of all joints, its own by the smooth law."""
     model = slider_crank(LAWS)
@@ -331,6 +357,7 @@ def test_faults_are_seen(fault: str, monkeypatch: pytest.MonkeyPatch) -> None:
         monkeypatch.setattr(dry_friction, "EDGE", 0.5)
     else:
         monkeypatch.setattr(DryConstrained, "lost_power", Constrained.lost_power)
+        monkeypatch.setattr(DryConstrained, "compiled", lambda *_: None)
     model = slider_crank(LAWS)
     x = float(piston(np.array(0.8))[0])
     request: Plain = {"q": at(model, crank=0.8, piston=x), "fixed": ["x.crank"], "inputs": {"tau.x.crank": "t/10"}}

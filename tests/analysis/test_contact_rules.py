@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 import scipy
 from contact_models import BALL, G, block, of
+from in_depth import deep
 
 from substructures import (
     Contact,
@@ -116,6 +117,23 @@ def test_forces_meet_coulombs_law(spatial: bool) -> None:
             assert np.hypot(*drag) <= 0.6 * p[i, 0] + 1e-8 * force
             if np.hypot(*slip) > 1e-6 * size and p[i, 0] > 1e-6 * force:
                 assert drag == pytest.approx(-0.6 * p[i, 0] * slip / np.hypot(*slip), abs=1e-6 * force)
+
+
+@pytest.mark.parametrize("count", [6, 8, 16, *deep(3, 12, 24)])
+@pytest.mark.parametrize("way", [(0.4, 0, -1.4, 0, 0, 0), (0.3, 0.1, -1, 0.5, 0.2, 0), (0.5, 0.2, -0.5, 1, -2, 10)])
+def test_points_alike_on_a_ring_find_their_impulses(count: int, way: tuple[float, ...]) -> None:
+    """A disc (m = 2, J = 0.02, 0.02, 0.03) that comes down flat, tilting, and spinning: 3 count unknowns, of rank 6."""
+    angle = 2 * np.pi * np.arange(count) / count
+    arms = np.stack([np.cos(angle) / 10, np.sin(angle) / 10, np.full(count, -0.05)], axis=1)
+    # v + omega x r of unit velocities, the normal first
+    turns = np.cross(np.eye(3), arms[:, None]).transpose(0, 2, 1)
+    rows = np.concatenate([np.broadcast_to(np.eye(3), turns.shape), turns], axis=2)[:, [2, 0, 1]]
+    moved = np.einsum("ian,n,jbn->iajb", rows, 1 / np.array([2, 2, 2, 0.02, 0.02, 0.03]), rows)
+    yields = np.einsum("iaia->ia", moved)[:, 0]
+    cones = Cones(moved, rows @ np.array(way), np.full(count, 0.4), np.ones((count, 2), dtype=bool), yields)
+    p = coulomb(cones)
+    assert cones.violation(p) < 1e-12
+    assert p[:, 0].sum() == pytest.approx(-2 * way[2])
 
 
 def test_pivoting_solves_or_ends_on_a_ray() -> None:

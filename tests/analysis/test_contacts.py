@@ -8,11 +8,18 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
-from contact_models import BALL, PLACED, G, block, box, of, plane_body, walker
+from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, walker
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
+from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK
+from substructures.analysis.motion.contacts.deciding import DecidedContacts
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 
 SLIDING = [Contact(name, f"b.{name}", type="point_line", friction=0.3) for name in "lr"]
 
@@ -253,6 +260,52 @@ def test_a_box_tumbles_to_rest() -> None:
     assert len([event for event in motion.events if event.kind == "impact"]) > 20
     assert np.abs(motion.qd[-1]).max() < 1e-9
     assert motion.q[-1, 2] == pytest.approx(0.1, abs=1e-9)
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+@pytest.mark.parametrize(("modes", "is_made"), [([0, 0], True), ([STICK, 0], True), ([SLIP, 0], False)])
+def test_steps_of_contacts_are_machine_code_where_none_rubs(modes: list[int], is_made: bool) -> None:
+    """Of a block in the air, and on a corner that sticks: x' as in Python, and the corner stays where it is."""
+    feet = [Contact(name, f"b.{name}", type="point_line", friction=2) for name in "lr"]
+    model, q = of("b", block(0.2, 0.5), [0, 0, -G]), tilted(0.2, 0.2, 0.5)
+    conditions = read_conditions(model, Start(q), (0, 1), ["metric", "bias", "forces"])
+    f = DecidedContacts(model, conditions.values, conditions.zero, conditions, feet)
+    f.begin()
+    f.look(0.0, np.concatenate([q, np.zeros(4)]))
+    place = int(np.abs(f.gap).argmin())
+    # turning about the corner on which it stands
+    x = np.concatenate([q, np.linalg.svd(f.G[place, :2])[2][2], [0.0]])
+    f.modes[place], f.modes[1 - place] = [modes[0], 1, 0], 0
+    rates = f.compiled()
+    assert (rates is not None) == is_made
+    if rates is not None:
+        found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.0, x)
+        np.testing.assert_allclose(found, f(0.0, x), rtol=1e-11, atol=1e-11)
+        stays = f.G[place, :2] @ found[3:6] + f.bias[place, :2]
+        assert (np.abs(stays).max() < 1e-11) == (modes[0] == STICK)
+
+
+def test_what_rests_is_right_however_long() -> None:
+    """Nothing moves, so that there is no energy with which rounding could be compared."""
+    feet = [Contact(name, f"b.{name}", type="point_line", friction=0.5) for name in "lr"]
+    motion = move(of("b", block(0.2, 0.5), [3, 0, -G]), [0.3, 0.5, 0], [0, 0, 0], 10, feet)
+    assert motion.is_right, motion.checks
+    assert np.abs(motion.qd).max() < 1e-14
+
+
+def test_a_disc_stays_where_it_falls_on_sixteen_points() -> None:
+    """Flat, after 0.1 s: as many points alike hold it as their number, with impulses of which only sums are known."""
+    rim = [Contact(f"p{k}", f"b.p{k}", friction=0.4) for k in range(16)]
+    fall = 0.1
+    start = [0, 0, 0.05 + G * fall**2 / 2, 0, 0, 0]
+    motion = move(
+        of("b", disc(16), [0, 0, -G]), start, [0.2, 0.1, 0, 0, 0, 0], 0.2, rim, count=None, times=[0, 0.15, 0.2]
+    )
+    assert motion.is_right, motion.checks
+    assert [event.t for event in motion.events if event.kind == "impact"] == pytest.approx([fall] * 16)
+    np.testing.assert_allclose(motion.q[1:], [[0.2 * fall, 0.1 * fall, 0.05, 0, 0, 0]] * 2, atol=1e-9)
+    assert np.abs(motion.qd[1:]).max() < 1e-12
+    np.testing.assert_allclose(motion.series["contact_forces"][-1, :, 0], 2 * G / 16, rtol=1e-6)
 
 
 def test_a_rod_that_jams_is_told() -> None:

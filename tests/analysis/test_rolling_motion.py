@@ -12,7 +12,12 @@ from scipy.integrate import solve_ivp
 from simulated import simulated
 
 from substructures import InvalidArgument, InvalidInput
-from substructures.analysis.motion.reduced_motion import FORMS
+from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
+from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
+from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.reduced_motion import FORMS, ReducedMotion
+from substructures.analysis.motion.rolling import NEEDS
 from substructures.analysis.simulate import (
     Closed,
     ConstrainedMotion,
@@ -24,6 +29,8 @@ from substructures.analysis.simulate import (
     Table,
     simulate,
 )
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -247,6 +254,22 @@ def test_velocities_that_were_chosen_are_changed_on_the_way(method: str) -> None
         np.testing.assert_allclose(motion.series["multipliers"], given.series["multipliers"], atol=1e-7)
         np.testing.assert_allclose(motion.series["kinetic_energy"], given.series["kinetic_energy"], rtol=1e-8)
         assert given.message == ""
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+@pytest.mark.parametrize("form", FORMS)
+def test_steps_in_quasi_velocities_are_machine_code(form: str) -> None:
+    """y' of a disc as in Python, with a torque that depends on time, place and velocity."""
+    model = disc()
+    inputs = {f"tau.{model.coordinates[4]}": "sin(3*t) + s.th*s.ph'/10"}
+    conditions = read_conditions(model, Start([0, 0, 0.9 * R, 0.2, 1.2, 0], inputs=inputs), (0, 1), NEEDS)
+    motion = ReducedMotion(quasi_velocity_equations(model, [FLOOR]), conditions, form, None)
+    y = np.array([0.1, 0.2, 0.9 * R, 0.3, 1.1, 0.4, 1.0, 0.5, 6.0, 0.0])
+    rates = motion.compiled()
+    assert rates is not None
+    found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.7, y)
+    np.testing.assert_allclose(found, motion.rates(0.7, y), rtol=1e-12, atol=1e-12)
+    assert np.abs(found[-4:]).min() > 0
 
 
 def test_events_are_found_in_changed_velocities() -> None:

@@ -29,11 +29,11 @@ def cases(kind: str) -> list[tuple[Array, Array, Array]]:
 @pytest.mark.parametrize("kind", ["any", "alike", "equal", "apart"])
 def test_few_vertices_tell_what_a_linear_program_does(kind: str, monkeypatch: pytest.MonkeyPatch) -> None:
     """Shares are unique: the largest is least, then the next largest, and so on."""
-    direct = [holding(*case, least=True) for case in cases(kind)]
+    direct = [holding(*case) for case in cases(kind)]
     monkeypatch.setattr(sticking_forces, "MANY", -1)
     for case, (force, used) in zip(cases(kind), direct, strict=True):
         levers, a, most = case
-        right, share = holding(*case, least=True)
+        right, share = holding(*case)
         np.testing.assert_allclose(force, right, atol=1e-12 * max(1.0, np.abs(right).max()))
         np.testing.assert_allclose(levers @ (levers.T @ force), -a, atol=1e-12 * max(1.0, np.abs(a).max()))
         assert used == pytest.approx(share, rel=1e-12, abs=1e-15)
@@ -43,7 +43,7 @@ def test_few_vertices_tell_what_a_linear_program_does(kind: str, monkeypatch: py
 def test_one_degree_of_freedom() -> None:
     """What moves by p is held by the same share p / sum_i |b_i| F_s,i of all joints with levers b_i."""
     levers, most, push = np.array([[2.0], [-1.0], [0.5]]), np.array([1.0, 3.0, 2.0]), 3.0
-    force, used = holding(levers, levers[:, 0] * push, most, least=True)
+    force, used = holding(levers, levers[:, 0] * push, most)
     share = push / float(np.abs(levers[:, 0]) @ most)
     assert used == pytest.approx(share, rel=1e-14)
     np.testing.assert_allclose(force, -share * most * np.sign(levers[:, 0]), rtol=1e-14)

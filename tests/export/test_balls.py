@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from exported_models import LIMIT, write
+from mechanics.reduced_parts import on_a_hull
 from run_code import STRICT, agree, by_output, call_c, load_python, shared, state
 from simulated import simulated
 
@@ -103,6 +104,23 @@ def test_an_fmu_moves_as_here(model: Model, made: dict[str, Path], target: str, 
     np.testing.assert_allclose(shown, np.hstack([ours.q, ours.qd]), rtol=0, atol=1e-8)
     if kind == "CoSimulation":
         np.testing.assert_allclose(np.linalg.norm(shown[:, 3:7], axis=1), 1, atol=1e-15)
+
+
+def test_an_fmu_of_a_linkage_on_a_floating_base_moves_as_here(tmp_path: Path) -> None:
+    """On the reduced level: the states are those of the base and of the crank."""
+    model = on_a_hull("crank-rocker", {"type": "floating"}, is_handed=False)
+    (tmp_path / "demo.fmu").write_bytes(files(exported_of(model), "fmu", 10**6)["demo.fmu"])
+    rates = [name if name not in model.positions else f"{name}_d" for name in model.coordinates]
+    q, qd = [0.1, 0.2, 0.3, 0.5, 0.5, -0.5, 0.5, 1.0], [0.1, 0, 0.2, 0.5, -1, 0.7, 3]
+    start = dict(zip([*model.positions, *rates], [*q, *qd], strict=True))
+    found = fmpy.simulate_fmu(
+        str(tmp_path / "demo.fmu"), fmi_type="ModelExchange", start_values=start, stop_time=0.4, output_interval=0.2,
+        output=list(start), relative_tolerance=1e-12,
+    )  # fmt: skip
+    fine = {"relative_tolerance": 1e-12, "absolute_tolerance": 1e-12, "method": "DOP853"}
+    ours = simulated(model, q=q, qd=qd, span=(0, 0.4), times=found["time"], **fine)
+    shown = np.stack([found[name] for name in start], axis=1)
+    np.testing.assert_allclose(shown, np.hstack([ours.q, ours.qd]), rtol=0, atol=1e-8)
 
 
 def test_an_fmu_says_what_its_states_are(made: dict[str, Path]) -> None:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_model
-from contact_models import BALL, PLACED, G, block, box, of, on_moving_plate, point
+from contact_models import BALL, PLACED, G, block, box, disc, of, on_moving_plate, point
 from run_code import require_clean_sources
 
 from substructures import Model, couple, derive, simulate
@@ -78,6 +78,12 @@ def corners(friction: str, restitution: str = "0") -> Model:
     return of("b", box(), [0, 0, -G], contacts=[{"name": c, "point": f"b.{c}", **law} for c in CORNERS])
 
 
+def rim(friction: str) -> Model:
+    """A disc in space with eight points below, of which all are alike."""
+    contacts = [{"name": f"p{k}", "point": f"b.p{k}", "friction": friction} for k in range(8)]
+    return of("b", disc(8), [0, 0, -G], contacts=contacts)
+
+
 def tilted(turn: float, width: float, height: float) -> list[float]:
     """A block on its right lower corner."""
     radius, alpha = math.hypot(width, height), math.atan2(width, height)
@@ -108,6 +114,7 @@ MOTIONS: dict[str, tuple[Any, list[float], list[float], float, float]] = {
     # four forces that are not unique; where a corner passes its own centre of slip its way turns at once
     "spun": (lambda: corners("0.3"), [0, 0, 0.15, 0, 0, 0], [1, 0.5, 0, 4, 0, 0], 0.8, 1e-7),
     "falling": (lambda: corners("0.3", "0.3"), [0, 0, 0.3, 0.3, 0.2, 0.4], [1, 0.5, 0, 0, 0, 0], 0.32, 1e-6),
+    "ring": (lambda: rim("0.4"), [0, 0, 0.1, 0, 0, 0], [0.4, 0, 0, 0, 0, 0], 0.3, 1e-7),
     "rolling": (lambda: corners("0.8"), [0, 0, 0.3, 0.3, 0.2, 0.4], [1, 0.5, 0, 0, 0, 0], 0.53, 1e-6),
 }
 

@@ -4,6 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
+from closed_trees import tree_model
+
+from substructures import Model
+
 Plain = dict[str, Any]
 INERTIA = {"xx": "0.01", "yy": "0.02", "zz": "0.02"}
 FLAT = {"axis": [1, 0, 0], "placement": {}}
@@ -106,3 +110,26 @@ ARM: Plain = {
     "bodies": [body("a", "base", "a"), body("b", "a", "b", theta="pi/2", d="0.5")],
     "ports": [{"name": "tip", "body": "b", "position": ["0.3", 0, "0.1"]}],
 }
+
+
+def hull(joint: dict[str, Any]) -> dict[str, Any]:
+    """A body with a port; ``joint``: that it moves by."""
+    inertia = {"xx": 1, "yy": 2, "zz": 1.5, "xy": "0.1"}
+    body = {"name": "hull", "parent": "base", "mass": 3, "com": [0.1, 0.2, 0], "inertia": inertia, "joint": joint}
+    return {
+        "name": "hull",
+        "bodies": [body],
+        "ports": [{"name": "deck", "body": "hull", "position": ["0.1", 0, "0.2"]}],
+    }
+
+
+def on_a_hull(name: str, joint: dict[str, Any], level: str | None = None, is_handed: bool = True) -> Model:
+    """A linkage on a body, and two links on the last body of the linkage."""
+    named = {each["name"]: each for each in PARTS}
+    linkage = {"name": "x", "substructure": name, "at": "hull.deck", "placement": {"rpy": ["0.3", 0, "0.1"]}}
+    hand = {"name": "hand", "substructure": "arm", "at": f"x.{named[name]['bodies'][-1]['name']}"}
+    instances = [{"name": "hull", "substructure": "hull"}, linkage | ({"level": level} if level else {})]
+    return tree_model(
+        {"gravity": [1, "-9.81", 2], "instances": [*instances, hand] if is_handed else instances},
+        {"hull": hull(joint), "arm": ARM, name: named[name]},
+    )

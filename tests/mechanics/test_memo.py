@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from analysis_models import catalogue_model
 from exported_models import derived_anew
 
 from substructures import Model
 from substructures.expr.program import Program
 from substructures.quantities.formulas import derived, kept
-from substructures.quantities.numbers.memo import ProgramCache
+from substructures.quantities.numbers.memo import ProgramCache, known_model
 
 
 def test_equal_models_share_what_follows_from_them() -> None:
@@ -23,6 +25,14 @@ def test_the_axes_are_part_of_the_key() -> None:
     model = catalogue_model("double-pendulum")
     turned = Model(model.program, model.coordinates[::-1], model.joints, model.frames, model.parameters, {})
     assert kept(model, "kinetic_energy") is not kept(turned, "kinetic_energy")
+
+
+def test_velocity_constraints_are_part_of_the_key() -> None:
+    """They are in no output, but in what follows."""
+    model = catalogue_model("double-pendulum")
+    first, second = ({"type": "linear", "name": "belt", "expression": f"{k}*x.q1'"} for k in (1, 2))
+    keys = {known_model(replace(model, velocity_constraints=some)) for some in ((), (first,), (second,))}
+    assert len(keys) == 3
 
 
 def test_the_cache_is_bounded_by_operations() -> None:

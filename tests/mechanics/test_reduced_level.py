@@ -10,11 +10,14 @@ from typing import Any
 import numpy as np
 import pytest
 from closed_trees import tree_model, tree_parts
-from mechanics.reduced_parts import ARM, PARTS
+from mechanics.reduced_parts import ARM, PARTS, Plain
 
 from substructures import Definition, InvalidInput, Model, TreeSpec, catalogue, couple, derive, evaluate, simulate
 from substructures.analysis.closed.reduced import reduced_equations
 from substructures.errors import VerificationFailed
+from substructures.expr.walk import transfer
+from substructures.quantities import reactions as module
+from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
 from substructures.tree.certificate import certify_tree
 from substructures.tree.given.loops import closed_form
@@ -24,13 +27,18 @@ from substructures.tree.shape import shape_digest
 NAMES = {each["name"]: each for each in PARTS}
 
 
+#: to a point that moves about the linkage
+STAY: Plain = {"name": "stay", "type": "rod", "from": "hand.tip", "to": "world", "length": 2}
+EDGE: Plain = {"name": "edge", "type": "knife_edge", "frame": "hand.tip"}
+
+
 def alone(name: str, level: str | None = None, gravity: Any = (0, -9.81, 0), **more: Any) -> Model:
     instance = {"name": "x", "substructure": name} | ({"level": level} if level else {})
     return tree_model({"gravity": list(gravity), "instances": [instance], **more}, {name: NAMES[name]})
 
 
-def on_an_arm(name: str, level: str | None = None) -> Model:
-    """Between two arms, the second one on its last body."""
+def between_arms(name: str, level: str | None = None, **more: Any) -> tuple[Plain, Plain]:
+    """The second one on its last body."""
     linkage = {"name": "x", "substructure": name, "at": "arm.tip", "placement": {"rpy": ["0.3", 0, "0.1"]}}
     last = NAMES[name]["bodies"][-1]["name"]
     instances = [
@@ -38,7 +46,16 @@ def on_an_arm(name: str, level: str | None = None) -> Model:
         linkage | ({"level": level} if level else {}),
         {"name": "hand", "substructure": "arm", "at": f"x.{last}"},
     ]
-    return tree_model({"gravity": [1, "-9.81", 2], "instances": instances}, {"arm": ARM, name: NAMES[name]})
+    return {"gravity": [1, "-9.81", 2], "instances": instances, **more}, {"arm": ARM, name: NAMES[name]}
+
+
+def on_an_arm(name: str, level: str | None = None) -> Model:
+    return tree_model(*between_arms(name, level))
+
+
+def with_reactions(document: Plain, definitions: Plain) -> Sources:
+    transmitted = reactions(*tree_parts(document, definitions))
+    return Sources(tree_model(document, definitions), of_parts=lambda _: transmitted)
 
 
 def start_of(name: str) -> dict[str, float]:
@@ -103,7 +120,8 @@ def test_they_are_the_equations_with_multipliers(name: str) -> None:
     names, start = model.coordinates, start_of(name)
     for _ in range(2):
         q = {c: start.get(c, 0) + rng.uniform(-0.2, 0.2) for c in names}
-        qd, tau = ({f"{x}{c}": rng.uniform(-1, 1) for c in names} for x in ("", "tau."))
+        qd = {c: rng.uniform(-1, 1) for c in names}
+        tau = {f"tau.{c}": rng.uniform(-1, 1) for c in full.coordinates}
         other = reduced_equations(full, q, qd=qd, inputs=tau, independent=names, start=start)
         assert other.is_right
         found = evaluate(model, ["metric", "christoffel", "forces", "forward_dynamics", "bias"], q, qd, inputs=tau)
@@ -114,6 +132,65 @@ def test_they_are_the_equations_with_multipliers(name: str) -> None:
         speeds = np.array(list(qd.values()))
         bias = np.einsum("abc,b,c", found["christoffel"], speeds, speeds)
         np.testing.assert_allclose(found["bias"], bias, rtol=0, atol=1e-12 * np.abs(bias).max())
+
+
+def assert_same_reactions(ours: Sources, theirs: Sources, state: Any, closed: Any, inputs: Any) -> None:
+    found = evaluate(ours, "reactions", *state, inputs=inputs)
+    other = evaluate(theirs, "reactions", *closed, inputs=inputs)
+    assert found.labels["joints"] == other.labels["joints"]
+    for kind, wanted in other["reactions"].items():
+        np.testing.assert_allclose(found["reactions"][kind], wanted, rtol=0, atol=1e-10 * np.abs(wanted).max())
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_joints_transmit_what_they_do_with_closures(name: str) -> None:
+    """Multipliers of least norm follow from the motion, of planar loops one after the other."""
+    ours, theirs = (with_reactions(*between_arms(name, level)) for level in (None, "full"))
+    rng, start, names = np.random.default_rng(3), start_of(name), ours.model.coordinates
+    q = {c: start.get(c, 0) + rng.uniform(-0.2, 0.2) for c in names}
+    qd = {c: rng.uniform(-1, 1) for c in names}
+    tau = {f"tau.{c}": rng.uniform(-1, 1) for c in theirs.model.coordinates}
+    closed = reduced_equations(theirs.model, q, qd=qd, independent=names, start=start)
+    assert_same_reactions(ours, theirs, (q, qd), (closed.q, closed.qd), tau)
+
+
+def test_joints_transmit_forces_of_other_closures() -> None:
+    """A rod from the tip to the world, at rest: its force goes through the linkage."""
+    names, start = on_an_arm("rod").coordinates, start_of("rod")
+    q = {c: start.get(c, 0) + 0.1 for c in names}
+    tip = evaluate(on_an_arm("rod"), "position", q)["position"][on_an_arm("rod").frames.index("hand.tip")]
+    stay = {**STAY, "length": float(np.linalg.norm(tip))}
+    ours, theirs = (with_reactions(*between_arms("rod", level, closures=[stay])) for level in (None, "full"))
+    closed = reduced_equations(on_an_arm("rod", "full"), q, independent=names, start=start)
+    assert_same_reactions(ours, theirs, (q,), (closed.q,), {f"tau.{c}": 1 for c in names})
+
+
+def test_bearings_of_a_slider_crank_by_hand() -> None:
+    """At rest without masses, the crank at right angles: the guide holds what the rod presses beside it."""
+    none = ("mass", "com", "inertia", "armature")
+    bodies = [{k: x for k, x in body.items() if k not in none} for body in NAMES["slider-pin"]["bodies"]]
+    push = {"type": "force", "body": "slider", "at": [0, 0, 0], "vector": [-10, 0, 0]}
+    light = {**NAMES["slider-pin"], "name": "light", "bodies": bodies, "loads": [push]}
+    tree = with_reactions({"instances": [{"name": "x", "substructure": "light"}]}, {"light": light})
+    found = evaluate(tree, "reactions", [np.pi / 2], [0], [0])
+    rows = dict(zip(found.labels["joints"], found["reactions"]["force_world"], strict=True))
+    side = 10 * 0.3 / np.sqrt(0.8**2 - 0.3**2)
+    np.testing.assert_allclose(rows["x.x"], [0, side, 0], atol=1e-12)
+    np.testing.assert_allclose(rows["x.phi"], [10, -side, 0], atol=1e-12)
+
+
+def test_a_driven_crank_transmits_what_one_does_that_moves_so() -> None:
+    driven, free = (
+        with_reactions(
+            {"gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "slider-pin"}], **more},
+            {"slider-pin": NAMES["slider-pin"]},
+        )
+        for more in ({"driven": {"x.phi": "0.3 + 2*t"}}, {})
+    )
+    ours = evaluate(driven, "reactions", [], t=0.4)["reactions"]
+    theirs = evaluate(free, "reactions", [1.1], [2.0], [0.0])["reactions"]
+    for kind, wanted in theirs.items():
+        np.testing.assert_allclose(ours[kind], wanted, rtol=1e-12, atol=1e-12)
 
 
 def test_motions_are_those_with_closures() -> None:
@@ -172,6 +249,27 @@ def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
                 couple(spec, {"x": part})
 
 
+def test_faults_in_forces_of_loops_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Beside a closure and an edge of the tree, of which the loop's own forces depend."""
+    tree = tree_parts(*between_arms("rod", closures=[STAY], velocity_constraints=[EDGE]))
+    found = reactions(*tree)
+    assert {"lambda.stay.length", "lambda.edge"} <= {s.name for s in found.program.symbols}
+    assert not any(s.name.startswith("lambda.x.") for s in found.program.symbols)
+    right = module.loop_multipliers
+    for name in ("lambda.stay.length", "lambda.edge", "x.r"):
+
+        def wrong(known: Dependent, *given: Any, name: str = name) -> Any:
+            """What does not know one of them."""
+            more = {name: known.graph.zero}
+            made = right(known, *given)
+            return dict(zip(made, transfer(made.values(), known.graph, more), strict=True))
+
+        with monkeypatch.context() as patch:
+            patch.setattr(module, "loop_multipliers", wrong)
+            with pytest.raises(VerificationFailed, match="reaction"):
+                reactions(*tree)
+
+
 def test_shapes_tell_levels_and_branches_apart() -> None:
     """Programs that were kept for trees with all coordinates are not those of the reduced level."""
     specs = [
@@ -216,7 +314,7 @@ def test_levels_that_there_are_not(entry: str, level: str, code: str, told: str)
 
 
 def test_what_does_not_take_it_says_so() -> None:
-    """Loops of another family keep their closures, and say why; reactions want them."""
+    """Loops of another family keep their closures, and say why."""
     delta = tree_model(
         {"instances": [{"name": "x", "substructure": "delta-robot"}]}, {"delta-robot": catalogue.load("delta-robot")}
     )
@@ -225,5 +323,3 @@ def test_what_does_not_take_it_says_so() -> None:
     even = {**NAMES["crank-rocker"], "name": "even", "start": {}}
     told = tree_model({"instances": [{"name": "x", "substructure": "even"}]}, {"even": even}).certificate["warnings"]
     assert "two positions are as near" in told[0]["message"]
-    with pytest.raises(InvalidInput, match="reduced level"):
-        reactions(*tree_parts({"instances": [{"name": "x", "substructure": "rod"}]}, {"rod": NAMES["rod"]}))

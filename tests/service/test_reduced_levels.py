@@ -80,7 +80,7 @@ def test_it_is_shown_and_exported(press: TestClient, path: str) -> None:
 
 
 def test_what_it_is_asked_wrongly(press: TestClient) -> None:
-    told = press.post("/v1/trees/press/evaluations", json={"quantities": ["reactions"], "q": [1], "qdd": [0]}).json()
+    told = press.post("/v1/trees/press/evaluations", json={"quantities": ["floating_metric"], "q": [1]}).json()
     assert [fault["code"] for fault in told["errors"]] == ["has-reduced"]
     away = press.post("/v1/trees/press/evaluations", json={"quantities": ["metric"], "q": {"x.phi": 1, "x.chi": 1}})
     assert away.json()["errors"][0]["message"].startswith("'x.chi' depends on 'x.phi'")

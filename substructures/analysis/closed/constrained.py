@@ -53,6 +53,15 @@ SINGULAR = (
 )
 
 
+class Equations(NamedTuple):
+    """Which rows of the closures, independent of each other, and which coordinates make accelerations: what does not
+    move has none.
+    """
+
+    rows: NDArray[np.int64]
+    moving: NDArray[np.int64]
+
+
 class Singular(ArithmeticError):
     """The equations of a state have no unique solution; internal, every caller turns it into a failure value."""
 
@@ -115,7 +124,7 @@ class Constrained:
         self.is_still = not self.prescribed.index and not (self.closed and self.model.driven)
         self.conservative = not source.outputs[POWER].entries and self.is_still
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(self.conditions, self._t, self._x, folder)
+        self.inputs = VaryingInputs(self.conditions, self._t, [(state_names(self.model), self._x)], folder)
         # rows of closures are written where they are wanted, before those of prescribed coordinates
         rows = dict(zip((*CLOSED, "closure.rate"), (self.phi, self.G, self.c, self.phi_t), strict=True))
         self._out = {
@@ -193,7 +202,7 @@ class Constrained:
             q2 = np.full(self.n, np.nan)
         return np.concatenate((self.qd, q2, (0.0,)))
 
-    def compiled(self, rows: NDArray[np.int64]) -> CompiledRates | None:
+    def compiled(self, chosen: Equations) -> CompiledRates | None:
         """(q', q'', power) of (t, q, q') with these rows, which may change, in machine code; None where more than
         kernels is called, or closures move.
         """
@@ -203,7 +212,7 @@ class Constrained:
         if given is None or len(calls) < len(runs) or not self.is_still:
             return None
         out = self._out
-        saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], rows)
+        saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], *chosen)
         written = np.zeros((1, self.n))
         return CompiledRates(calls, self._t, self._x, written, out[POWER], self._folder, saddle, self.inputs.tables)
 
@@ -277,24 +286,36 @@ class Constrained:
         values |= dict(zip(self.model.coordinates, self.q, strict=True))
         return interpret(self.model.program, values, [name])[name]
 
-    def factor(self, rows: NDArray[np.int64]) -> Factor:
-        """The factors of [g G^T; G 0] for these independent rows. Raises Singular."""
-        n, r = self.n, len(rows)
+    def factor(self, rows: NDArray[np.int64], moving: NDArray[np.int64] | slice = ALL) -> Factor:
+        """The factors of [g G^T; G 0] for these independent rows and some coordinates. Raises Singular."""
+        n, r = len(self.f[moving]), len(rows)
         # A = A^T = [g G^T; G 0]
         A = np.zeros((n + r, n + r))
-        A[:n, :n] = self.g
+        A[:n, :n] = self.g[moving][:, moving]
         if r:
-            A[n:, :n] = G = self.G.take(rows, axis=0)
+            A[n:, :n] = G = self.G.take(rows, axis=0)[:, moving]
             A[:n, n:] = G.T
         lu, pivots, info = scipy.linalg.lapack.dgetrf(A.T, overwrite_a=True)
         if info:
             raise Singular("the metric is singular along the motions that are left free: check masses and inertias")
         return Factor(n, lu, pivots)
 
+    def equations(self, rows: NDArray[np.int64]) -> Equations:
+        """What these independent rows and everything that is held here leave. Raises Singular."""
+        return Equations(rows, np.arange(self.n))
+
     def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
         """q'' (n,) and the multipliers of the given rows. Raises Singular."""
+        return self.solved(self.equations(rows))
+
+    def solved(self, chosen: Equations) -> tuple[Array, Array]:
+        """q'' (n,) and the multipliers of the chosen rows. Raises Singular."""
+        rows, q2 = chosen.rows, np.zeros(self.n)
+        if not len(chosen.moving):
+            return q2, np.zeros(0)
+        moving = ALL if len(chosen.moving) == self.n else chosen.moving
         # g q'' + G^T (-lambda) = f, G q'' = -c
-        q2, minus = self.factor(rows).solve(self.f, -self.c.take(rows))
+        q2[moving], minus = self.factor(rows, moving).solve(self.f[moving], -self.c.take(rows))
         if not np.isfinite(q2).all():
             raise Singular("the accelerations are not finite: check masses, inertias and loads")
         return q2, -minus

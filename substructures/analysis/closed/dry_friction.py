@@ -15,105 +15,23 @@ is a part of its actuation.
 
 from __future__ import annotations
 
-from dataclasses import replace
-from typing import Any
+from collections.abc import Iterator
+from contextlib import contextmanager
 
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.closed.constrained import Constrained, Singular
+from substructures.analysis.closed.constrained import Singular
+from substructures.analysis.closed.dry_state import DryConstrained
 from substructures.analysis.closed.reductions import Reduction
-from substructures.analysis.closed.sticking_forces import RANK, bounded, holding, unit_rows
-from substructures.analysis.motion.friction.dry_friction import EDGE, REST, FrictionLaws, Signs, friction_laws
+from substructures.analysis.closed.sticking_forces import RANK, bounded, unit_rows
+from substructures.analysis.motion.friction.dry_friction import EDGE, REST, Signs
 from substructures.analysis.motion.friction.dry_run import DryRun
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 
-#: a joint has no lever where it moves by less than this part of the motion
-LEVER = 1e-6
 #: of times [s], 1 or more, at which watched quantities are zero
 RESOLUTION = 1e-14
-
-
-class DryConstrained(Constrained):
-    """A state whose joints with friction slip or stick as ``signs`` say, in place of their smooth law.
-
-    ``friction`` (k,): the forces on the coordinates ``laws.places`` [N m, N], and ``used``, the largest share of F_s in
-    those that stick, both as of the last :meth:`accelerations`. ``least``: where forces are not unique, those are taken
-    whose largest share is least, in place of those of least squares.
-    """
-
-    laws: FrictionLaws
-    signs: Signs
-    least: bool
-
-    def _arrays(self) -> None:
-        super()._arrays()
-        self.all_laws = friction_laws(self.model, self.conditions.values)
-        self.laws = _acting(self.all_laws, self.prescribed.index)
-        k = len(self.laws.places)
-        self.signs, self.least, self.used = np.ones(k, dtype=np.int64), False, 0.0
-        self.friction, self._smooth, self._without = np.zeros(k), np.zeros(k), np.zeros(self.n)
-
-    def move(self, t: float, q: Array, qd: Array) -> None:
-        """Evaluate everything at a state; ``f`` is without what sticks until :meth:`accelerations`."""
-        super().move(t, q, qd)
-        v = qd[self.laws.places]
-        self._smooth = self.laws.smooth(v)
-        self._without[:] = self.f
-        self._without[self.laws.places] -= self._smooth
-        self._take(-self.signs * self.laws.slipping(v))
-
-    def compiled(self, rows: NDArray[np.int64]) -> None:
-        """None: who sticks is decided beside the kernels."""
-
-    @property
-    def lost_power(self) -> float:
-        """As that of the formulas, with this friction in place of the smooth one [W]."""
-        return super().lost_power + float((self.friction - self._smooth) @ self.qd[self.laws.places])
-
-    def accelerations(self, rows: NDArray[np.int64]) -> tuple[Array, Array]:
-        """q'' (n,) and the multipliers of the given rows. Raises Singular."""
-        places, self.used = self.laws.places, 0.0
-        if not (self.signs == 0).any():
-            return super().accelerations(rows)
-        N = self.basis(rows)
-        B = N[places]
-        stuck = np.flatnonzero((self.signs == 0) & B.any(axis=1))
-        a = self.unheld(rows)[places[stuck]]
-        force, self.used = holding(B[stuck], a, self.laws.static[stuck], self.least)
-        friction = self.friction.copy()
-        friction[stuck] = force
-        self._take(friction)
-        q2, multipliers = super().accelerations(rows)
-        # what forces leave of those that stick is rounding, and so is what goes with it in the others
-        q2 += _stopping(N, places[stuck], q2)
-        q2[places[stuck]] = 0.0
-        return q2, multipliers
-
-    def unheld(self, rows: NDArray[np.int64]) -> Array:
-        """q'' (n,) with the friction of the joints that slip alone. Raises Singular."""
-        self._take(-self.signs * self.laws.slipping(self.qd[self.laws.places]))
-        return super().accelerations(rows)[0]
-
-    def basis(self, rows: NDArray[np.int64]) -> Array:
-        """N (n, d) with G N = 0 and N^T g N = 1; zero in the rows of coordinates without a lever. Raises Singular."""
-        Z = np.eye(self.n)
-        if len(rows):
-            Z = np.linalg.svd(self.balanced[rows])[2][len(rows) :].T
-        try:
-            L = np.linalg.cholesky(Z.T @ self.g @ Z)
-        except np.linalg.LinAlgError as error:
-            raise Singular("the metric is not positive definite along the closures: check masses") from error
-        N = np.linalg.solve(L, Z.T).T
-        N[np.linalg.norm(Z, axis=1) <= LEVER] = 0.0
-        return np.asarray(N, dtype=np.float64)
-
-    def _take(self, friction: Array) -> None:
-        """These forces of friction (k,), and no others."""
-        self.friction = friction
-        self.f[:] = self._without
-        self.f[self.laws.places] += friction
 
 
 class ClosedDryMotion:
@@ -141,21 +59,43 @@ class ClosedDryMotion:
 
     def moved(self, t: float, x: Array, signs: Signs) -> tuple[Array, Array, float]:
         """q'' (n,), the friction (k,) and the power without potential; not finite where they are not determined."""
+        try:
+            with self._at(t, x, signs) as rows:
+                second, _ = self.s.accelerations(rows)
+                self.s.hold(rows)
+        except Singular:
+            self.s.used = np.inf
+            return np.full(self.n, np.nan), np.full(len(signs), np.nan), np.nan
+        return second, self.s.friction.copy(), self.s.lost_power
+
+    def held(self, t: float, x: Array, signs: Signs) -> Array:
+        """The friction (k,) alone; not finite where it is not determined."""
+        if signs.all():
+            return np.asarray(-signs * self.laws.slipping(x[self.n + self.laws.places]))
+        try:
+            with self._at(t, x, signs) as rows:
+                self.s.hold(rows)
+        except Singular:
+            self.s.used = np.inf
+            return np.full(len(signs), np.nan)
+        return self.s.friction.copy()
+
+    @contextmanager
+    def _at(self, t: float, x: Array, signs: Signs) -> Iterator[NDArray[np.int64]]:
+        """s at a state, with other signs for a while; independent rows there."""
         s, before = self.s, self.s.signs
-        s.signs, s.least = signs, True
+        s.signs = signs
         try:
             s.move(t, x[: self.n], x[self.n : 2 * self.n])
-            second, _ = s.accelerations(s.independent_rows())
-        except Singular:
-            s.used = np.inf
-            return np.full(self.n, np.nan), np.full(len(signs), np.nan), np.nan
+            yield s.independent_rows() if self.reduction is None else self.reduction.rows
         finally:
-            s.signs, s.least = before, False
-        return second, s.friction.copy(), s.lost_power
+            s.signs = before
 
     def friction(self, run: DryRun, t: Array, x: Array) -> Array:
         """The friction on all coordinates (K, n) along a motion."""
-        laws, (_, force) = self.s.all_laws, run.forces(self, t, x)
+        laws, force = self.s.all_laws, np.zeros((len(t), self.n))
+        for i, (at, state) in enumerate(zip(t.tolist(), x, strict=True)):
+            force[i, self.laws.places] = self.held(at, state, run.at(at))
         smooth = np.setdiff1d(laws.places, self.laws.places)
         force[:, smooth] = laws.smooth(x[:, self.n + laws.places])[:, np.isin(laws.places, smooth)]
         return force
@@ -224,20 +164,13 @@ class ClosedDryMotion:
 
         def left(t: float, x: Array) -> float:
             """What is left of the static friction, as a part of it."""
-            self.moved(t, x, self.signs)
+            self.held(t, x, self.signs)
             return float(1 + EDGE - min(self.s.used, 2.0))
 
         found = [
             starts(k) if sign == 0 else self.laws.rest(k, self.n, sign) for k, sign in enumerate(self.signs.tolist())
         ]
         return [*found, Watch("slip", left, -1)] if (self.signs == 0).any() else found
-
-
-def _acting(laws: FrictionLaws, prescribed: Any) -> FrictionLaws:
-    """Of coordinates that are not prescribed, where there is any friction."""
-    kept = ~np.isin(laws.places, list(prescribed)) & ((laws.coulomb > 0) | (laws.static > 0))
-    columns = {name: getattr(laws, name)[kept] for name in ("places", "coulomb", "static", "stribeck", "velocity")}
-    return replace(laws, **columns)
 
 
 def _stopping(N: Array, places: NDArray[np.int64], qd: Array) -> Array:

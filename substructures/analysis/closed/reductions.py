@@ -16,7 +16,7 @@ import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular
+from substructures.analysis.closed.constrained import SINGULAR, Constrained, Equations, Singular
 from substructures.analysis.closed.pivoting import pivoted, singular_values
 from substructures.analysis.closed.projection import CLOSED, project
 from substructures.array import Array
@@ -45,6 +45,7 @@ class Reduction(ABC):
     def __init__(self, s: Constrained, rank: int) -> None:
         self.s, self.n, self.rank = s, s.n, rank
         self.rows = s.independent_rows()
+        self.equations = s.equations(self.rows)
         self.best_share = 0.0
         self.near = s.q.copy()
 
@@ -94,11 +95,11 @@ class Reduction(ABC):
     def _acceleration(self) -> tuple[Array, float]:
         """q'' and the power of lossy forces, actuators of prescribed coordinates and moving closures, where s is."""
         s = self.s
-        qdd, multipliers = s.accelerations(self.rows)
+        qdd, multipliers = s.solved(self.equations)
         # W' = (Q + dV/dq) q' + sum of lambda_k s'_k, and phi_t = -s'
         power = 0.0 if s.conservative else s.lost_power
         if not s.is_still:
-            power -= float(multipliers @ s.phi_t[self.rows])
+            power -= float(multipliers @ s.phi_t[self.equations.rows])
         return qdd, power
 
     def _check_rank(self, anew: bool) -> None:
@@ -116,14 +117,9 @@ class Reduction(ABC):
 class Projected(Reduction):
     """y = (q, q', work)."""
 
-    def __init__(self, s: Constrained, rank: int) -> None:
-        super().__init__(s, rank)
-        #: the rows that machine code reads
-        self._read = self.rows.copy()
-
     def compiled(self) -> CompiledRates | None:
         """The equations with multipliers and the rows that are chosen then."""
-        return self.s.compiled(self._read)
+        return self.s.compiled(self.equations)
 
     def pack(self, q: Array, qd: Array, work: float) -> Array:
         """(q, q', work)."""
@@ -145,10 +141,14 @@ class Projected(Reduction):
         return result
 
     def choose(self, anew: bool = False) -> bool:
-        """Rows only: y means the same whatever they are."""
+        """Rows only: y means the same whatever they are, but machine code reads as many as there were."""
         self._check_rank(anew)
-        self._read[:] = self.rows
-        return False
+        before, chosen = self.equations, self.s.equations(self.rows)
+        if len(before.rows) == len(chosen.rows) and np.array_equal(before.moving, chosen.moving):
+            before.rows[:] = chosen.rows
+            return False
+        self.equations = Equations(chosen.rows.copy(), chosen.moving)
+        return True
 
 
 class Partitioned(Reduction):
@@ -245,6 +245,7 @@ class Partitioned(Reduction):
         """Rows and independent coordinates, when the dependent ones have become ill conditioned."""
         before = self.rows
         self._check_rank(anew)
+        self.equations = self.s.equations(self.rows)
         if not anew and self._condition() >= WORN * self.best and before is self.rows:
             return False
         self._partition()

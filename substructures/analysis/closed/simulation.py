@@ -12,7 +12,8 @@ import numpy as np
 
 from substructures.analysis.arguments import one_of
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
-from substructures.analysis.closed.dry_friction import ClosedDryMotion, DryConstrained
+from substructures.analysis.closed.dry_friction import ClosedDryMotion
+from substructures.analysis.closed.dry_state import DryConstrained
 from substructures.analysis.closed.energy_uncertainty import energy_uncertainty
 from substructures.analysis.closed.loops import least_multipliers, mobility
 from substructures.analysis.closed.projection import Consistent, consistent_state

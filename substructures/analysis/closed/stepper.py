@@ -29,6 +29,8 @@ KINK = 0.3
 #: for the end of a step before a singular position
 BISECTIONS = 30
 NOTHING = np.zeros(0)
+#: of (t, y) makes (q, q')
+Put = Callable[[float, Array], tuple[Array, Array]]
 
 
 class _Step(NamedTuple):
@@ -100,7 +102,7 @@ class ClosedStepper:
         for _ in range(BISECTIONS):
             middle = (end + time) / 2
             end, time = (middle, time) if self._determined(state, middle) else (end, middle)
-        self.t, self.y = end, state(end)
+        self.t, self.y = end, self.rough_output(self.reduction.land)(end)
 
     def _determined(self, state: Callable[[float], Array], t: float) -> bool:
         """Whether the motion could go on from there."""
@@ -204,21 +206,24 @@ class ClosedStepper:
             self.reduction.expect(first)
             return self.make(*arguments, **options)
 
-        return self._landed(within(self.inner, make, self.t))
+        return self._at(within(self.inner, make, self.t), self.reduction.land)
 
-    def rough_output(self) -> Callable[[float], Array]:
-        """The same, less accurate, but also where the accelerations are not determined."""
+    def rough_output(self, put: Put | None = None) -> Callable[[float], Array]:
+        """The same, less accurate, beside the closures by that, but also where the accelerations are not determined.
+
+        ``put``: of a state of the integrator a state (q, q').
+        """
         self.reduction.expect(self._way[0])  # the integrator evaluates once more within the step
         plain = self.inner.plain() if isinstance(self.inner, CompiledStepper) else self.inner
-        return self._landed(plain.dense_output())
+        return self._at(plain.dense_output(), put or self.reduction.unpack)
 
-    def _landed(self, dense: Callable[[float], Array]) -> Callable[[float], Array]:
+    def _at(self, dense: Callable[[float], Array], put: Put) -> Callable[[float], Array]:
         (first, last), start, end = self._way, self.t_old, self.inner.t
 
         def state(t: float) -> Array:
-            """(q, q', W) on the closures at t."""
+            """(q, q', W) at t."""
             y = dense(t)
             self.reduction.expect(first + (t - start) / (end - start) * (last - first))
-            return np.concatenate((*self.reduction.land(t, y), y[-1:]))
+            return np.concatenate((*put(t, y), y[-1:]))
 
         return state

@@ -32,10 +32,10 @@ def unit_rows(B: Array) -> tuple[Array, Array]:
     return B / size[:, None], size
 
 
-def holding(B: Array, a: Array, most: Array, least: bool) -> tuple[Array, float]:
+def holding(B: Array, a: Array, most: Array) -> tuple[Array, float]:
     """f with B B^T f = -a, and the largest |f_i| / most_i; that is infinite where there is no such f.
 
-    Of several that of least squares, or, with ``least``, that whose largest |f_i| / most_i is least.
+    Of several that whose largest |f_i| / most_i is least.
     """
     if not len(a):
         return a, 0.0
@@ -50,7 +50,7 @@ def holding(B: Array, a: Array, most: Array, least: bool) -> tuple[Array, float]
     scale = np.abs(unit @ unit.T) @ (most * size) + np.abs(a)
     if (np.abs(a - U @ (U.T @ a)) > EDGE * scale).any():
         return f / size, np.inf
-    if least and rank < len(a):
+    if rank < len(a):
         f = _shared(U.T, right, most * size)
     return f / size, float(np.abs(f / size / most).max())
 

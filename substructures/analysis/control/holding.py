@@ -12,7 +12,6 @@ import numpy as np
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.constrained_formulas import (
     ConstrainedFormulas,
-    Constraints,
     rows_expected,
 )
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
@@ -51,8 +50,9 @@ class Ties:
 
 
 @lru_cache(maxsize=16)
-def _found(known: Known, constraints: Constraints) -> Ties:
+def _found(known: Known) -> Ties:
     model: Model = known.source
+    constraints = constraints_of(model)
     if not constraints:
         labels = (f"{closure.name}.{row}" for closure in model.closures for row in closure.rows)
         return Ties(tuple(labels), model.program)
@@ -71,5 +71,4 @@ def _found(known: Known, constraints: Constraints) -> Ties:
 
 def ties_of(model: Model) -> Ties:
     """Raises InvalidInput for velocity constraints beside closures, and for those that move."""
-    # models of one program may have others
-    return _found(known_model(model), constraints_of(model))
+    return _found(known_model(model))

@@ -6,8 +6,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from substructures.analysis.arguments import exact, require_read
+from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, program
+from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
@@ -35,8 +37,33 @@ def vector(entries: Sequence[Expr]) -> Formulas:
     return Formulas((len(entries),), {(i,): x for i, x in enumerate(entries)})
 
 
+def _dependent(model: Model, scope: Scope) -> Callable[[str], Expr | None]:
+    """The lookup of dependent coordinates, z(y), and of their rates, d z/d y y' + d z/dt (reduced level)."""
+
+    def declared(name: str) -> Expr:
+        symbol = symbols[name]
+        return scope.declare(name, symbol.kind, symbol.unit)
+
+    def lookup(name: str) -> Expr | None:
+        z = name.removesuffix("'")
+        if z not in model.dependent:
+            return None
+        known = {x: declared(x) for x in model.program.needs(["dependent"])}
+        found = replay(model.program, scope.graph, known, ["dependent"])["dependent"].entries[model.dependent.index(z),]
+        if z == name:
+            return found
+        moving = {x: scope.declare(f"{x}'", "velocity", "") for x in known if symbols[x].kind == "coordinate"}
+        moving |= {"t": scope.graph.one} if "t" in known else {}
+        slopes = gradient([found], list(moving))[0]
+        return scope.graph.sum(x * v for x, v in zip(slopes, moving.values(), strict=True))
+
+    symbols = {symbol.name: symbol for symbol in model.program.symbols}
+    return lookup
+
+
 def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | None]:
     """The lookup of names; a symbol is declared when it is first used."""
+    own = _dependent(model, scope)
     kinds: dict[str, Symbol] = {"t": Symbol("t", "time", "s")}
     kinds |= {name: Symbol(name, "coordinate") for name in model.positions}
     kinds |= {f"{name}'": Symbol(f"{name}'", "velocity") for name in model.coordinates}
@@ -45,12 +72,12 @@ def names(model: Model, scope: Scope, inputs: bool) -> Callable[[str], Expr | No
         kinds |= {name: Symbol(name, "input", str(given.get("unit", ""))) for name, given in model.inputs.items()}
         kinds |= {s.name: s for s in model.program.symbols if s.kind == "input"}
 
-    scope.more = tuple(kinds)
+    scope.more = (*kinds, *(f"{name}{prime}" for name in model.dependent for prime in ("", "'")))
 
     def lookup(name: str) -> Expr | None:
         """The symbol of a name, declared when it is first used."""
         if name not in kinds:
-            return None
+            return own(name)
         symbol = kinds[name]
         return scope.declare(name, symbol.kind, symbol.unit)
 

@@ -25,7 +25,7 @@ from substructures.analysis.equations.generators import Generators
 from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.kernels import Known, known_model
-from substructures.analysis.equations.nonholonomic.constrained_formulas import Constraints, formulas_of, rows_expected
+from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.subsystems import subsystems
 from substructures.analysis.equations.symmetries import Direction, directions
@@ -72,7 +72,7 @@ def first_integrals(
     ]
     if faults:
         raise InvalidArgument(faults)
-    return _found(known_model(model), constraints_of(model), frozenset(inputs), frozenset(zero), degree)
+    return _found(known_model(model), frozenset(inputs), frozenset(zero), degree)
 
 
 def acting_inputs(model: Model) -> list[str]:
@@ -81,8 +81,9 @@ def acting_inputs(model: Model) -> list[str]:
 
 
 @lru_cache(maxsize=32)
-def _found(known: Known, tied: Constraints, given: Names, zero: Names, degree: int) -> FirstIntegrals:
+def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegrals:
     model: Model = known.source
+    tied = constraints_of(model)
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
     f = formulas_of(model, tied, unused | zero)
     search = _Search(f)

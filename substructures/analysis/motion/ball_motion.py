@@ -96,7 +96,7 @@ class BallRates:
         model = conditions.model
         self.m, self.n = len(model.positions), model.dof
         self._t, self._x = np.zeros(1), np.zeros((1, self.m + self.n))
-        self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
+        self.inputs = VaryingInputs(conditions, self._t, [(state_names(model), self._x)], folder)
         self._rates, self._power, self._folder = np.zeros((1, self.m + self.n)), np.zeros(1), folder
         parts = self._rates[:, : self.m], self._rates[:, self.m :], self._power
         kernel = kernel_in_rates(model, conditions.zero, folder)

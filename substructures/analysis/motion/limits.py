@@ -8,7 +8,7 @@ from collections.abc import Mapping
 from dataclasses import replace
 
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.quantities.numbers.levels import loop_warnings, ranges_left
+from substructures.quantities.numbers.levels import dependent_left, loop_warnings, ranges_left
 from substructures.quantities.numbers.limits import joint_limits, reached
 from substructures.tree.model import Model
 
@@ -16,7 +16,8 @@ from substructures.tree.model import Model
 def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Trajectory) -> Trajectory:
     """The motion with limits and warnings. Nothing holds a coordinate within its limits but end stops (``limits_act``).
 
-    ``parameters``: in place of their defaults. Looked at are all steps, or where those were not kept the results.
+    ``parameters``: in place of their defaults. Looked at are all steps, or where those were not kept the results; of
+    dependent coordinates the results.
     """
     limits = joint_limits(model, parameters)
     lowest, highest = motion.reached or reached(motion.t, motion.q, motion.qd)
@@ -24,5 +25,6 @@ def with_limits(model: Model, parameters: Mapping[str, float] | None, motion: Tr
     apart = [] if judge is None else judge.apart(model.positions, motion.q)
     if model.reduced:
         is_wrong = motion.status == "failed" or motion.is_right is False
-        apart = [*apart, *ranges_left(model, lowest, highest), *(loop_warnings(model) if is_wrong else ())]
+        beyond = dependent_left(model, judge, motion.q, {**(parameters or {}), "t": motion.t})
+        apart = [*apart, *ranges_left(model, lowest, highest), *beyond, *(loop_warnings(model) if is_wrong else ())]
     return replace(motion, limits=limits.plain(), warnings=(*limits.warnings(lowest, highest), *apart))

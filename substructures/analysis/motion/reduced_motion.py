@@ -8,12 +8,14 @@ import numpy as np
 import scipy
 
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
-from substructures.analysis.motion.conditions import Conditions
+from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import compile_program
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates, SaddlePoint
 
 FORMS = {"voronets": "bias", "boltzmann-hamel": "hamel_bias"}
 
@@ -25,18 +27,23 @@ class ReducedMotion:
         model, self.conditions, self.form = equations.model, conditions, FORMS[form]
         self.equations, self.n, self.p = equations, model.dof, len(equations.velocities)
         self.columns = [*model.coordinates, *equations.velocities]
-        self._t, self._y, self._x = np.zeros(1), np.zeros((1, self.n + self.p)), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(conditions, self._t, self._x, folder)
+        #: the coordinates whose velocities are not among the chosen ones
+        self.dependent = [a for a, name in enumerate(model.coordinates) if f"{name}'" not in equations.velocities]
+        size = self.n + self.p
+        #: the state, and its rates (q', v')
+        self._t, self._y, self._written = np.zeros(1), np.zeros((1, size)), np.zeros((1, size))
+        #: v', and the power of constraints that move, which depends on it
+        self._rates, self._dv, self._power = self._written[:, : self.n], self._written[:, self.n :], np.zeros(1)
+        names = state_names(model)
+        state = [(names[: self.n], self._y[:, : self.n]), (names[self.n :], self._rates)]
+        self.inputs, self._folder = VaryingInputs(conditions, self._t, state, folder), folder
         wanted = ("metric", self.form, "forces", "lost_power")
-        self._rates = np.zeros((1, self.n))
         self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
         values = self.conditions.values | {"t": self._t}
         columns = [(self.columns, self._y)]
         rates = compile_program(equations.program, ["rates"], folder)
         self._move = rates.bind({"rates": self._rates}, values, columns=columns)
         kernel = compile_program(equations.program, wanted, folder)
-        #: v', and the power of constraints that move, which depends on it
-        self._dv, self._power = np.zeros((1, self.p)), np.zeros(1)
         self._work = None
         if "constraint_power" in equations.program.outputs:
             rate = compile_program(equations.program, ["constraint_power"], folder)
@@ -56,8 +63,26 @@ class ReducedMotion:
             laws.plain()
 
     def _fill(self, t: float, y: Array) -> None:
-        self._x[0] = self.state(t, y)
+        self.state(t, y)
         self.inputs.fill()
+
+    def compiled(self) -> CompiledRates | None:
+        """The same in machine code; None where more than kernels is called, or constraints move."""
+        given = self.inputs.runs()
+        runs = [self._move, *(given or ()), self._laws.run]
+        calls = tuple(run for run in runs if isinstance(run, BoundCall))
+        if given is None or len(calls) < len(runs) or self._work is not None:
+            return None
+        out, none = self._out, np.zeros(0, dtype=np.int64)
+        closures = np.zeros((0, self.p)), np.zeros(0)
+        sides = out["forces"][0], out[self.form][0]
+        saddle = SaddlePoint(out["metric"][0], *closures, *sides, none, np.arange(self.p), self.n)
+        state = self._t, self._y, self._written, out["lost_power"]
+        return CompiledRates(calls, *state, self._folder, saddle, self.inputs.tables)
+
+    def __call__(self, t: float, y: Array) -> Array:
+        """:meth:`rates`, as a function that integrators take."""
+        return self.rates(t, y)
 
     def state(self, t: float, y: Array) -> Array:
         """(q, q') of y (a new array)."""

@@ -86,9 +86,10 @@ class RightHandSide:
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
-        self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, self._x, folder)
+        state = [(self._names, self._x)]
+        self.inputs = None if conditions is None else VaryingInputs(conditions, self._t, state, folder)
         self._varying = [] if self.inputs is None else self.inputs.columns
-        columns = [(self._names, self._x), *self._varying]
+        columns = [*state, *self._varying]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
         source = _forward_program(Known(model.program.digest, model), frozenset(zero))
         self._values = dict(values) | {"t": self._t}

@@ -122,7 +122,7 @@ def _moved(
     choices.enter(span[0], [*breaks, span[1]][0])
     corners = rolling.corners(span[0], x, folder) if turning and choices.make is None else []
     motion = integrate(
-        rolling.rates,
+        rolling,
         x,
         span,
         problem.times.grid(),

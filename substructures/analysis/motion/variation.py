@@ -106,7 +106,7 @@ class Variation:
         self.d = np.zeros((batch, self.size))
         self.out = {name: np.zeros((batch, *output.shape)) for name, output in source.outputs.items()}
         # inputs depend on the time alone
-        self.inputs = VaryingInputs(conditions, self.t, np.zeros((1, n + model.dof)), folder)
+        self.inputs = VaryingInputs(conditions, self.t, [(state_names(model), np.zeros((1, n + model.dof)))], folder)
         columns = [(names, self.x), ([f"d.{name}" for name in names], self.d), *self.inputs.columns]
         # dp_i = 1 in the i-th direction, 0 in all others
         seeds = {f"d.{name}": np.eye(1, batch, i)[0] for i, name in enumerate(parameters)}

@@ -4,15 +4,16 @@ their own, so that whole steps can be machine code.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
 
 from substructures.analysis.equations.kernels import program_kernel
-from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.corners import Laws
 from substructures.array import Array
+from substructures.compile.arguments import NamedColumns
 from substructures.compile.tables import TimeTables
 
 
@@ -21,8 +22,8 @@ class VaryingInputs:
     are ``laws``. Not for several threads at a time.
     """
 
-    def __init__(self, conditions: Conditions, t: Array, x: Array, folder: Path | None) -> None:
-        """``t`` (1,), ``x`` (1, 2n): where the state is written before :meth:`fill`."""
+    def __init__(self, conditions: Conditions, t: Array, state: Sequence[NamedColumns], folder: Path | None) -> None:
+        """``t`` (1,), ``state``: where time, coordinates and their rates are written before :meth:`fill`."""
         self._t = t
         self._curves = dict(conditions.curves)
         found, self._table = np.zeros((1, len(conditions.formulas))), np.zeros((1, len(self._curves)))
@@ -30,10 +31,9 @@ class VaryingInputs:
         self.moving = conditions.formulas
         self.laws: tuple[Laws, ...] = ()
         if conditions.formulas:
-            columns = [(state_names(conditions.model), x)]
             kernel = program_kernel(conditions.expressions, folder)
             source = conditions.expressions.select(["inputs"])
-            self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, columns),)
+            self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, list(state)),)
         curves = [(np.array(c.times), np.array(c.pieces, dtype=np.float64)) for c in self._curves.values()]
         #: in machine code
         self.tables = TimeTables(self._table, curves) if curves else None

@@ -8,16 +8,18 @@ position is the smallest singular value of B_z there over that of B. The state i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
+from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.integrators.steppers import Stepper, within
 from substructures.analysis.motion.reduced_motion import ReducedMotion
 from substructures.array import Array
-from substructures.expr.interpret import interpret
+from substructures.compile import Kernel
 
 #: a choice is given up where it is worse than this, and the best one there is taken
 WORN = 0.3
@@ -68,7 +70,7 @@ class VelocityChoices:
         """States (K, N) by the choice that is best at them: their places, and y there."""
         if self.make is None:
             return [(self.first, np.arange(len(x)), x)]
-        best = [self.at(state) for state in x]
+        best = [self._best(B) for B in self._constraints(x)]
         found = []
         for motion in dict.fromkeys(best):
             places = np.flatnonzero([one is motion for one in best])
@@ -77,11 +79,14 @@ class VelocityChoices:
 
     def good(self, x: Array, motion: ReducedMotion) -> bool:
         """Whether a choice may be kept at a state."""
-        return self._share(self._constraints(x), motion) >= WORN
+        return self._share(self._constraints(x[None])[0], motion) >= WORN
 
     def at(self, x: Array) -> ReducedMotion:
         """The best choice at a state, of those that are known if one of them is good."""
-        B = self._constraints(x)
+        return self._best(self._constraints(x[None])[0])
+
+    def _best(self, B: Array) -> ReducedMotion:
+        """The same where the constraints are B (m, n)."""
         shares = {motion: self._share(B, motion) for motion in self.known.values()}
         best = max(shares, key=lambda motion: shares[motion])
         return best if shares[best] >= WORN else self._new(B)
@@ -99,17 +104,18 @@ class VelocityChoices:
         return self.known[key]
 
     def _constraints(self, x: Array) -> Array:
-        """B (m, n)."""
-        names = self.first.equations.model.coordinates
-        values = self.first.conditions.values | dict(zip(names, x[: len(names)].tolist(), strict=True))
-        return interpret(self.first.equations.program, values, ["constraints"])["constraints"]
+        """B (K, m, n) at states (K, N)."""
+        columns = [(list(self.first.equations.model.coordinates), x[:, : self.first.n])]
+        return self._rows.evaluate(self.first.conditions.values, columns=columns)["constraints"]
+
+    @cached_property
+    def _rows(self) -> Kernel:
+        return program_kernel(self.first.equations.program.select(["constraints"]))
 
     @staticmethod
     def _share(B: Array, motion: ReducedMotion) -> float:
-        names = [f"{name}'" for name in motion.equations.model.coordinates]
-        z = [a for a, name in enumerate(names) if name not in motion.equations.velocities]
-        least = float(scipy.linalg.svdvals(B)[-1])
-        return float(scipy.linalg.svdvals(B[:, z])[-1]) / least if least else 0.0
+        least = float(np.linalg.svd(B, compute_uv=False)[-1])
+        return float(np.linalg.svd(B[:, motion.dependent], compute_uv=False)[-1]) / least if least else 0.0
 
 
 class ChangingStepper:
@@ -123,7 +129,7 @@ class ChangingStepper:
 
     def _begin(self, step: dict[str, float]) -> None:
         self.motion = self.choices.at(self.y)
-        self.inner: Any = self.make(self.motion.rates, self.t, self.motion.reduced(self.y), self.end, **step)
+        self.inner: Any = self.make(self.motion, self.t, self.motion.reduced(self.y), self.end, **step)
 
     @property
     def nfev(self) -> int:
@@ -134,8 +140,9 @@ class ChangingStepper:
         """Advance by one step, at most to the end; a message when that failed."""
         if not self.choices.good(self.y, self.motion):
             self._counted += self.inner.nfev
-            first = getattr(self.inner, "h_abs", None)
-            self._begin({} if first is None else {"first_step": min(float(first), self.end - self.t)})
+            # machine code may be steps ahead, where it came to the end of its choice
+            known = hasattr(self.inner, "h_abs") and self.t > self.t_old
+            self._begin({"first_step": min(self.t - self.t_old, self.end - self.t)} if known else {})
         self.t_old = self.t
         message: str | None = self.inner.step()
         self.status = self.inner.status

@@ -39,8 +39,8 @@ class ModelAt:
 
     def along(self, direction: Mapping[str, Ball]) -> ModelAt:
         """The changes of all outputs when symbols change in a direction, by forward differentiation."""
-        changes = tangents(self.program, self.found, direction)
-        found = [changes.get(i, arb(0)) for i in range(len(self.found))]
+        changes, zero = tangents(self.program, self.found, direction), arb(0)
+        found = [changes.get(i, zero) for i in range(len(self.found))]
         return ModelAt(self.program, self.coordinates, direction, found)
 
     def by(self, name: str) -> ModelAt:

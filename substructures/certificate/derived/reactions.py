@@ -10,12 +10,13 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from flint import arb
+from flint import arb, arb_mat
 
 from substructures.certificate.bodies import NONE, Bodies, Frame, coordinates_of, in_order
 from substructures.certificate.by_coordinate import rates
 from substructures.certificate.closures import ROWS, closure_outputs
-from substructures.certificate.described import closures_in, hosts_first
+from substructures.certificate.derived.model_at import solve
+from substructures.certificate.described import closures_in, coordinates_in, hosts_first, is_dependent
 from substructures.certificate.dynamics import motions, required
 from substructures.certificate.linear import Ball, Matrix, column, cross, dot, vector, with_third_axis
 from substructures.certificate.numbers import Numbers, Plain
@@ -43,22 +44,61 @@ def reaction_outputs(
         for a, x in forces.items():
             Q[a] = Q.get(a, arb(0)) + x
     speeds, second = (rates(bodies, at_rest, mark) for mark in ("'", "''"))
+    needed = _required(bodies, speeds, second, numbers.vector(tree.get("gravity", NONE)) * -1)
+    for a, x in _contacts(tree, bodies, numbers, values):
+        Q[a] = Q.get(a, arb(0)) + x
     closed = closures_in(free_tree, free, numbers, inside)
     if closed:
         found = Outputs()
         closure_outputs(found, bodies, closed, speeds)
+        G = found["closure.jacobian"].entries
         names = [f"lambda.{c['name']}.{row}" for c, _ in closed for row in ROWS[c["type"]]]
-        for (k, a), x in found["closure.jacobian"].entries.items():
-            # a row of no effect has no symbol in any formula
-            Q[a] = Q.get(a, arb(0)) + x * values.get(names[k], arb(0))
-    for a, x in _contacts(tree, bodies, numbers, values):
-        Q[a] = Q.get(a, arb(0)) + x
-    needed = _required(bodies, speeds, second, numbers.vector(tree.get("gravity", NONE)) * -1)
+        # a row of no effect has no symbol in any formula
+        forces = {k: values.get(name, arb(0)) for k, name in enumerate(names)}
+        _add(Q, G, forces)
+        rotors = [joint.armature * x for joint, x in zip(bodies.joints, second, strict=True)]
+        rest = [x + rotor - Q.get(a, arb(0)) for a, (x, rotor) in enumerate(zip(needed, rotors, strict=True))]
+        _add(Q, G, _of_loops(tree, definitions, bodies, (names, G), rest))
     exerted = {j.coordinate: needed[a] - Q.get(a, arb(0)) for a, j in enumerate(bodies.joints)}
     places = list(_places(tree, definitions, bodies))
     if [name for name, *_ in places] != list(rows):
         raise VerificationFailed(f"the joints are not those of the documents: {', '.join(rows)}")
     return _shown(places, exerted)
+
+
+def _add(Q: dict[int, Ball], G: Mapping[tuple[int, ...], Ball], forces: Mapping[int, Ball]) -> None:
+    """G^T lambda."""
+    for (k, a), x in G.items():
+        Q[a] = Q.get(a, arb(0)) + x * forces.get(k, arb(0))
+
+
+def _of_loops(
+    tree: Plain,
+    definitions: Mapping[str, Plain],
+    bodies: Bodies,
+    closures: tuple[Sequence[str], Mapping[tuple[int, ...], Ball]],
+    needed: Sequence[Ball],
+) -> dict[int, Ball]:
+    """The multipliers of least norm of each reduced instance, with which its dependent coordinates need no force;
+    ``closures``: names of multipliers, and G.
+    """
+    (names, G), found = closures, dict[int, Ball]()
+    for instance in tree.get("reduced", ()):
+        own = ((f"lambda.{instance}.{c['name']}", ROWS[c["type"]]) for c in definitions[instance]["closures"])
+        rows = [names.index(f"{name}.{row}") for name, some in own for row in some]
+        every = coordinates_in({"instances": [{"name": instance}]}, definitions)
+        z = [q for q in every if is_dependent(tree, definitions, q)]
+        needs, columns = [arb(0)] * len(z), arb_mat(len(rows), len(z))
+        for a, joint in enumerate(bodies.joints):
+            if joint.mover in z:
+                j = z.index(joint.mover)
+                needs[j] += needed[a] * joint.slope
+                for i, k in enumerate(rows):
+                    columns[i, j] += G.get((k, a), arb(0)) * joint.slope
+        # of G^T lambda = needs
+        solved = solve(columns.transpose() * columns, needs)
+        found |= dict(zip(rows, (columns * arb_mat(len(z), 1, solved)).entries(), strict=True))
+    return found
 
 
 def _contacts(tree: Plain, bodies: Bodies, numbers: Numbers, values: Mapping[str, Ball]) -> Iterator[tuple[int, Ball]]:
@@ -98,7 +138,7 @@ def _released(tree: Plain, definitions: Mapping[str, Plain]) -> tuple[Plain, dic
         bound = {key: x for key, x in instance.items() if key not in ("at", "placement")}
         instances.append({key: x for key, x in instance.items() if key in ("at", "placement")} | {"name": seat})
         instances.append(bound | {"at": f"{seat}.seat"})
-    return {**tree, "instances": instances}, free
+    return {**tree, "instances": instances, "reduced": ()}, free
 
 
 def _released_definition(definition: Plain) -> Plain:

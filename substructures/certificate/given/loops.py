@@ -79,7 +79,6 @@ class Loops:
         blocks = _blocks_at_start(_Start(f"{self.name} {self.definition}", self))
         blocks = tuple(replace(block, sign=block.sign * next(sides, 1)) for block in blocks)
         at = self._position(blocks)
-        found.values |= {f"tau.{q}": arb(0) for q in self.z}
         if at is None:
             self._nowhere(found)
             return

@@ -14,9 +14,15 @@ from flint import arb
 
 from substructures.certificate.by_coordinate import AXES
 from substructures.certificate.closures import ROWS
-from substructures.certificate.described import coordinates_in, free_coordinates, hosts_first, is_dependent
+from substructures.certificate.described import (
+    coordinates_in,
+    free_coordinates,
+    hosts_first,
+    is_dependent,
+    positions_in,
+)
 from substructures.certificate.given.ignored import MOTIONS, OWN, along, contracted, whole
-from substructures.certificate.given.loops import Build, Loops, Reduced
+from substructures.certificate.given.loops import PRIMES, Build, Loops, Reduced
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Bindings, Plain
 from substructures.certificate.outputs import Outputs, Values
@@ -30,7 +36,7 @@ def reduced_symbols(tree: Plain, definitions: Mapping[str, Plain], kinds: Mappin
     """The kinds of symbols without those of dependent coordinates."""
     every = coordinates_in(tree, definitions)
     names = [name for name in every if is_dependent(tree, definitions, name)]
-    gone = {f"{x}{name}{p}" for name in names for x, p in (("tau.", ""), ("", ""), ("", "'"), ("", "''"))}
+    gone = {f"{name}{p}" for name in names for p in PRIMES}
     return {name: kind for name, kind in kinds.items() if name not in gone}
 
 
@@ -67,6 +73,10 @@ def reduced_outputs(tree: Plain, definitions: Mapping[str, Plain], found: Reduce
         linear = BENT.get(name) or ("closure.jacobian" if name == "closure.acceleration" else None)
         more = _pulled(opened[linear] if linear else None, pull)
         result[name] = _along_free(name, values, (pushed, [number[y] for y in free]), more)
+    if "position_rates" in result:
+        left = [i for i, q in enumerate(positions_in(tree, definitions)) if not is_dependent(tree, definitions, q)]
+        rates = result["position_rates"].entries
+        result["position_rates"] = Values((len(left),), entries={(k,): rates[i,] for k, i in enumerate(left)})
     if "christoffel" in result:
         entries = result["christoffel"].entries
         place = {y: i for i, y in enumerate(free)}

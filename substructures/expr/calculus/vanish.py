@@ -57,8 +57,9 @@ class Vanishing:
     def __init__(self, graph: Graph) -> None:
         self.graph, self.random = graph, SystemRandom()
         self.symbols: list[dict[Expr, Fraction]] = [{} for _ in range(POINTS)]
-        self.values: dict[tuple[int, int], dict[Expr, tuple[Any, Any]]] = {}
-        self.moved: dict[frozenset[str], dict[Expr, tuple[Any, Any]]] = {}
+        self.values: dict[tuple[int, int], dict[Expr, Any]] = {}
+        self.sizes: dict[tuple[int, int], dict[Expr, Any]] = {}
+        self.moved: dict[frozenset[str], dict[Expr, Any]] = {}
 
     def __call__(self, expr: Expr) -> bool | None:
         """True for the zero function, False for another one, None where neither is known."""
@@ -81,9 +82,9 @@ class Vanishing:
     def varies(self, expr: Expr, names: frozenset[str]) -> bool:
         """Whether some symbols are proven to change the value: it differs at two points that differ in them alone."""
         with flint.ctx.workprec(PRECISION):
-            first, _ = self._value(expr, self.values.setdefault((0, PRECISION), {}), self.symbols[0])
+            first = self._value(expr, self.values.setdefault((0, PRECISION), {}), self.symbols[0])
             there = {x: self.symbols[1 if str(x.value) in names else 0][x] for x in self.symbols[0]}
-            second, _ = self._value(expr, self.moved.setdefault(names, {}), there)
+            second = self._value(expr, self.moved.setdefault(names, {}), there)
             return not (first - second).contains(0)
 
     def _at(self, expr: Expr, point: int, looks: list[int]) -> bool | None:
@@ -95,39 +96,34 @@ class Vanishing:
             precision = looks[second]
             with flint.ctx.workprec(precision):
                 known = self.values.setdefault((point, precision), {})
-                value, size = self._value(expr, known, self.symbols[point])
-                if not (value.is_finite() and size.is_finite()):
+                value = self._value(expr, known, self.symbols[point])
+                if not value.is_finite():
                     return None
                 if not value.contains(0):
                     return False
+                size = _size(expr, self.sizes.setdefault((point, precision), {}), known)
+                if not size.is_finite():
+                    return None
                 small = bool(value.rad() < size * flint.arb(2) ** (GUARD - precision))
         return True if small else None
 
-    def _value(self, expr: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]) -> tuple[Any, Any]:
-        """The value, and the sum of the absolute values of its terms; what is ``known`` below it is not looked at."""
+    def _value(self, expr: Expr, known: dict[Expr, Any], symbols: dict[Expr, Fraction]) -> Any:
+        """The value; what is ``known`` below it is not looked at."""
         for node in reachable([expr], known.__contains__):
             if node not in known:
                 known[node] = self._operation(node, known, symbols)
         return known[expr]
 
-    def _operation(
-        self, node: Expr, known: dict[Expr, tuple[Any, Any]], symbols: dict[Expr, Fraction]
-    ) -> tuple[Any, Any]:
+    def _operation(self, node: Expr, known: dict[Expr, Any], symbols: dict[Expr, Fraction]) -> Any:
         if node.is_number or node.op == "sym":
             if node.op == "sym" and node not in symbols:
                 for point, x in zip(self.symbols, self._drawn(), strict=True):
                     point[node] = x
             x = Fraction(node.value) if node.is_number else symbols[node]
-            value = flint.arb(flint.fmpq(x.numerator, x.denominator))
-            return value, abs(value)
-        args = [known[a][0] for a in node.args]
+            return flint.arb(flint.fmpq(x.numerator, x.denominator))
+        args = [known[a] for a in node.args]
         function = _OPERATIONS.get(node.op)
-        value = function(*args) if function else getattr(args[0], node.op)()
-        if node.op in ("add", "sub"):
-            return value, known[node.args[0]][1] + known[node.args[1]][1]
-        if node.op == "mul":
-            return value, known[node.args[0]][1] * known[node.args[1]][1]
-        return value, known[node.args[0]][1] if node.op == "neg" else abs(value)
+        return function(*args) if function else getattr(args[0], node.op)()
 
     def _drawn(self) -> list[Fraction]:
         """A random number for every point: of every two decades between 10^-6 and 10^6 one of either sign.
@@ -137,10 +133,24 @@ class Vanishing:
         half = POINTS // 2
         signs = [self.random.choice((-1, 1)) for _ in range(half)]
         orders = [(k, sign * signs[k]) for sign in (1, -1) for k in self.random.sample(range(half), half)]
-        return [sign * self._size(2 * k - DECADES + self.random.randrange(2)) for k, sign in orders]
+        return [sign * self._magnitude(2 * k - DECADES + self.random.randrange(2)) for k, sign in orders]
 
-    def _size(self, power: int) -> Fraction:
+    def _magnitude(self, power: int) -> Fraction:
         return Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
+
+
+def _size(expr: Expr, sizes: dict[Expr, Any], known: dict[Expr, Any]) -> Any:
+    """The sum of the absolute values of the terms of a formula; ``known``: the values of its nodes."""
+    for node in reachable([expr], sizes.__contains__):
+        if node in sizes:
+            continue
+        if node.op in ("add", "sub"):
+            sizes[node] = sizes[node.args[0]] + sizes[node.args[1]]
+        elif node.op == "mul":
+            sizes[node] = sizes[node.args[0]] * sizes[node.args[1]]
+        else:
+            sizes[node] = sizes[node.args[0]] if node.op == "neg" else abs(known[node])
+    return sizes[expr]
 
 
 def _bits(number: Expr) -> int:

@@ -1,11 +1,18 @@
-"""What is said of numbers of the reduced level: ranges that coordinates leave, and loops that are open or singular."""
+"""What is said of numbers of the reduced level: ranges and limits that coordinates leave, and loops that are open or
+singular.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from typing import Any
+
 from substructures.array import Array
 from substructures.errors import listed
+from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.numbers.states import default_number
 from substructures.tree.model import Model
+from substructures.tree.plausibility import Plausibility
 
 
 def ranges_left(model: Model, lowest: Array, highest: Array) -> list[dict[str, str]]:
@@ -16,13 +23,31 @@ def ranges_left(model: Model, lowest: Array, highest: Array) -> list[dict[str, s
     for name, ends in model.reduction.ranges.items():
         if name not in own:
             continue
-        a, (low, high) = model.coordinates.index(name), map(default_number, ends)
+        a, (low, high) = model.positions.index(name), map(default_number, ends)
         gone = [x for x in (lowest[a], highest[a]) if not low <= x <= high]
         if gone:
             closures = listed(f"'{closure}'" for closure in own[name]["closures"])
             message = f"'{name}' is {gone[0]:.6g}, outside of its range {low:.6g} to {high:.6g} with {closures}"
             found.append({"pointer": f"/q/{name}", "code": "range-left", "message": message})
     return found
+
+
+def dependent_left(
+    model: Model, judge: Plausibility | None, q: Array, given: Mapping[str, Any], first: int = 0
+) -> list[dict[str, str]]:
+    """A warning for each dependent coordinate beyond the limits of its joint in states ``q`` (N, m); ``given``:
+    parameters in place of defaults, and the time where it counts, without which nothing is known.
+    """
+    names = model.dependent
+    if judge is None or not any(name in judge.limits_at_defaults for name in names):
+        return []
+    defaults = {n: default_number(p["value"]) for n, p in model.parameters.items() if p["value"] is not None}
+    values: dict[str, Any] = {**defaults, **given, **{name: q[:, i] for i, name in enumerate(model.positions)}}
+    needed = model.program.needs(["dependent"])
+    if not all(name in values for name in needed):
+        return []
+    z = interpret_in_blocks(model.program, {name: values[name] for name in needed}, ["dependent"], len(q))["dependent"]
+    return [dict(told) for told in judge.left(names, z, {n: x for n, x in given.items() if n != "t"}, first)]
 
 
 def singular_loops(model: Model) -> str:

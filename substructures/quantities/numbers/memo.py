@@ -24,9 +24,9 @@ class Known:
 
 
 def known_model(model: Model) -> Known:
-    """A model: its program, the meaning of its axes, the names of the rows of its closures, and all that is declared,
-    also what has no effect."""
-    axes = f"{model.coordinates} {model.joints} {model.closures}"
+    """A model: its program, the meaning of its axes, the names of the rows of its closures, its velocity constraints,
+    which are in no output, and all that is declared, also what has no effect."""
+    axes = f"{model.coordinates} {model.joints} {model.closures} {model.velocity_constraints}"
     return Known(f"{model.program.digest} {axes} {sorted(model.units.items())}", model)
 
 

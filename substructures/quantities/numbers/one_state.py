@@ -13,7 +13,7 @@ from substructures.array import Array
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
-from substructures.quantities.numbers.levels import ranges_left
+from substructures.quantities.numbers.levels import dependent_left, ranges_left
 from substructures.quantities.numbers.result import Evaluation, without_axis
 from substructures.quantities.numbers.states import default_numbers, input_defaults
 from substructures.quantities.numbers.warnings import doubted, not_judged_warnings, value_warnings
@@ -90,8 +90,8 @@ class OneState:
                 return False
             if not isfinite(np.add.reduce(array)):
                 return False
-        names, q, judge = self._model.coordinates, self._state["q"][None], self._judge
-        if self._model.reduced and ranges_left(self._model, q[0], q[0]):
+        names, q, judge = self._model.positions, self._state["q"][None], self._judge
+        if self._model.reduced and (ranges_left(self._model, q[0], q[0]) or dependent_left(self._model, judge, q, {})):
             return False
         return judge is None or not (judge.left(names, q, {}) or judge.apart(names, q))
 

@@ -170,7 +170,7 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
     """
     names = model.positions if name == "q" else model.coordinates
     unknown = [str(key) for key in given if key not in names]
-    taken = {*model.given, *(z for level in model.reduced for z in level["dependent"])}
+    taken = {*model.given, *model.dependent}
     faults = [
         Fault(
             f"/{name}/{escape(key)}",

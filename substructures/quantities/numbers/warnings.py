@@ -7,7 +7,7 @@ from typing import Any
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.quantities.numbers.levels import ranges_left
+from substructures.quantities.numbers.levels import dependent_left, ranges_left
 from substructures.quantities.quantity import MODEL, TABLE
 from substructures.quantities.sources import Sources, steps
 
@@ -51,6 +51,7 @@ def value_warnings(
         notices += judge.apart(model.positions, q, first)
     if model.reduced and q is not None and len(q):
         notices += ranges_left(model, q.min(axis=0), q.max(axis=0))
+        notices += dependent_left(model, judge, q, parameters, first)
     return notices
 
 

@@ -44,6 +44,7 @@ from substructures.expr.walk import transfer
 from substructures.part.relations import OF_COORDINATES
 from substructures.tree.assembly import Assembly
 from substructures.tree.document import DrivenInput, DrivenTable
+from substructures.tree.given.projection import changed
 from substructures.tree.given.reduced import reduced
 
 Elements = Mapping[tuple[int, ...], Any]
@@ -220,12 +221,7 @@ def _substituted(graph: Graph, outputs: Mapping[str, Formulas], motions: Mapping
     """The outputs with s, s', s'' for driven coordinates, and no force of their actuators."""
     values = {f"{name}{p}": x for name, motion in motions.items() for p, x in zip(PRIMES, motion, strict=True)}
     values |= {f"tau.{name}": graph.zero for name in motions}
-    roots = [graph.lift(x) for each in outputs.values() for x in each.entries.values()]
-    found = iter(transfer(roots, graph, values))
-    return {
-        name: Formulas(each.shape, {i: next(found) for i in each.entries}, each.symmetry)
-        for name, each in outputs.items()
-    }
+    return changed(graph, outputs, lambda every: transfer(every, graph, values))
 
 
 def _free(each: Formulas, axes: Sequence[int], free: Sequence[int]) -> Formulas:

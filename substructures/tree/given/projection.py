@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
 
 from substructures.expr.graph import Expr, Graph
@@ -58,3 +58,14 @@ class Projection:
             found.setdefault(index, []).append(x)
         sums = {index: self.graph.sum(some) for index, some in found.items()}
         return {index: x for index, x in sums.items() if not x.is_zero}
+
+
+def changed(
+    graph: Graph, outputs: Mapping[str, Formulas], change: Callable[[list[Expr]], Iterable[Expr]]
+) -> dict[str, Formulas]:
+    """Outputs whose elements are what ``change`` makes of them, of all together."""
+    found = iter(change([graph.lift(x) for each in outputs.values() for x in each.entries.values()]))
+    return {
+        name: Formulas(each.shape, {i: next(found) for i in each.entries}, each.symmetry)
+        for name, each in outputs.items()
+    }

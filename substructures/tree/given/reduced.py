@@ -6,8 +6,8 @@ With z the dependent coordinates of :mod:`substructures.tree.given.loops`, q' = 
     g*_ij = N_ai g_ab N_bj        Gamma*_ijk = N_ai (Gamma_abc N_bj N_ck + g_ab H_bjk)        Q*_i = N_ai Q_a
 
 and every output with an index of coordinates like Q, at z(y), z' and z''. Closures of the tree have G N for G, and
-G_a H_ajk y'^j y'^k more in c. Limits and friction stay those of independent coordinates; an actuator of a dependent
-coordinate has no force. Nothing of the tree depends on dependent coordinates any more.
+G_a H_ajk y'^j y'^k more in c. Limits and friction stay those of independent coordinates. Nothing of the tree depends on
+dependent coordinates any more, but on what their actuators do, N_zi tau_z.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from substructures.expr.program import Formulas
 from substructures.expr.walk import transfer
 from substructures.part.part import Part
 from substructures.tree.given.loops.dependent import Dependent
-from substructures.tree.given.projection import Projection, Terms
+from substructures.tree.given.projection import Projection, Terms, changed
 
 #: what has a term more, g_ab H_bjk y'^j y'^k or G_a H_ajk y'^j y'^k
 BENT = {"bias": "metric", "nonlinear_effects": "metric", "closure.acceleration": "closure.jacobian"}
@@ -74,7 +74,7 @@ class _Reduced:
             a: graph.sum(x * speeds[j] * speeds[k] * (1 if j == k else 2) for j, k, x in rows)
             for a, rows in self.H.items()
         }
-        self.values = {f"tau.{z}": graph.zero for z in known.values}
+        self.values: dict[str, Expr] = {}
         for mark, more in (("'", {}), ("''", self.bent)):
             moving = [graph.symbol(f"{names[a]}{mark}") for a in self.free]
             for z in known.values:
@@ -94,12 +94,8 @@ class _Reduced:
 
     def written(self, outputs: Mapping[str, Formulas]) -> dict[str, Formulas]:
         """Without dependent coordinates, their rates and accelerations."""
-        roots = [self.graph.lift(x) for each in outputs.values() for x in each.entries.values()]
-        found = iter(self.known.put_in(transfer(roots, self.graph, self.values)))
-        return {
-            name: Formulas(each.shape, {i: next(found) for i in each.entries}, each.symmetry)
-            for name, each in outputs.items()
-        }
+        known, graph = self.known, self.graph
+        return changed(graph, outputs, lambda every: known.put_in(transfer(every, graph, self.values)))
 
     def _pull(self, linear: Formulas) -> Terms:
         """x_.b H_bjk y'^j y'^k."""

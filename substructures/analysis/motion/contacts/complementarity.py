@@ -6,12 +6,16 @@ For contacts i with normal forces p_i, facets D of their friction and what these
 
 and the product of both sides zero (D. E. Stewart and J. C. Trinkle, Int. J. Numer. Meth. Eng. 39, 1996; M. Anitescu and
 F. A. Potra, Nonlinear Dynamics 14, 1997), by Lemke's pivoting. From there Newton's method leads to Coulomb's cones
-where points slip in two directions. Whatever both say, forces count by the conditions that they meet.
+where points slip in two directions. Where contacts are alike and redundant, so that pivots tie, it follows the forces
+of contacts that yield less and less, which are unique where all yield much (continuation; the springs of R. W. Cottle,
+J.-S. Pang, R. E. Stone, The Linear Complementarity Problem, 1992, section 5.6, Tikhonov's regularisation). Whatever
+these say, forces count by the conditions that they meet.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +30,8 @@ MET = 1e-9
 FACETS, TURNS = 8, 8
 #: so much a contact yields, beside A_NN, and how often what that leaves is taken away
 SOFT, ROUNDS = 1e-8, 30
+#: and how much more on the way there from contacts that hardly know of each other
+YIELDING = 10.0 ** np.arange(1, -8, -1)
 #: most steps of that, and of the largest of b when it has arrived
 NEWTON, EXACT = 100, 1e-14
 #: of the largest: what is nothing but rounding; an inverse mass above zero
@@ -96,10 +102,10 @@ def coulomb(cones: Cones) -> Array:
     size = float(np.abs(cones.b * scale[:, None]).max(initial=0)) or 1.0
     A, b = cones.A * scale[:, None, None, None] * scale[:, None], cones.b * scale[:, None] / size
     scaled = Cones(A, b, cones.friction, cones.tangents, np.ones(k))
-    soft, p = A + SOFT * np.eye(3 * k).reshape(A.shape), np.zeros((k, 3))
+    soft, p = _softer(Cones(A, b, cones.friction, cones.tangents, cones.yields), SOFT), np.zeros((k, 3))
     for _ in range(ROUNDS):
         # what yields less and less: w = A p + SOFT (p - p_before) + b
-        p = _found(Cones(soft, b - SOFT * p, cones.friction, cones.tangents, cones.yields))
+        p = _found(replace(soft, b=b - SOFT * p), p)
         if scaled.violation(p) <= EXACT:
             break
     if not scaled.violation(p) <= MET:
@@ -107,17 +113,35 @@ def coulomb(cones: Cones) -> Array:
     return np.asarray(p * scale[:, None] * size)
 
 
-def _found(cones: Cones) -> Array:
-    """The same of contacts that yield. Raises ArithmeticError."""
-    for turn in np.arange(TURNS if cones.spatial else 1) * (2 * np.pi / FACETS / TURNS):
-        try:
-            start = _pressed(cones, float(turn))
-        except ArithmeticError:  # a ray, or rounding
-            start = np.zeros(cones.b.shape)
+def _softer(cones: Cones, more: float) -> Cones:
+    """Contacts that yield by so much more, each by itself."""
+    k = len(cones.b)
+    return replace(cones, A=cones.A + more * np.eye(3 * k).reshape(k, 3, k, 3))
+
+
+def _found(cones: Cones, near: Array) -> Array:
+    """The same of contacts that yield; ``near``: forces that may be beside. Raises ArithmeticError."""
+    for start in _starts(cones, near):
         p = _on_cones(cones, start)
         if cones.violation(p) <= MET:
             return p
     raise ArithmeticError(JAMMED)
+
+
+def _starts(cones: Cones, near: Array) -> Iterator[Array]:
+    """Forces (k, 3) from which Newton's method may lead on: those that are near; of facets; of contacts that yield less
+    and less, from where they hardly know of each other, as redundant ones that are alike need; of other facets.
+    """
+    if near.any():
+        yield near
+    first, *others = np.arange(TURNS if cones.spatial else 1) * (2 * np.pi / FACETS / TURNS)
+    yield _pressed(cones, first)
+    p = np.zeros(near.shape)
+    for more in YIELDING:
+        p = _on_cones(_softer(cones, more), p)
+    yield p
+    for turn in others:
+        yield _pressed(cones, turn)
 
 
 def _on_cones(cones: Cones, p: Array) -> Array:
@@ -169,7 +193,7 @@ def _missing(cones: Cones, p: Array) -> tuple[Array, Array]:
 
 
 def _pressed(cones: Cones, turn: float) -> Array:
-    """p (k, 3) with facets in place of cones, turned by an angle."""
+    """p (k, 3) with facets in place of cones, turned by an angle; 0 where none are found."""
     k = len(cones.b)
     columns, of = _facets(cones.tangents, turn)
     m, rough = len(of), np.flatnonzero(cones.tangents.any(axis=1))
@@ -184,7 +208,10 @@ def _pressed(cones: Cones, turn: float) -> Array:
     for row, i in enumerate(rough.tolist(), k + m):
         mine = k + np.flatnonzero(of == i)
         M[mine, row], M[row, mine], M[row, i] = 1.0, -1.0, cones.friction[i]
-    z = lemke(M, q)
+    try:
+        z = lemke(M, q)
+    except ArithmeticError:  # a ray, or rounding
+        return np.zeros((k, 3))
     return np.asarray(np.einsum("iar,r->ia", F, z[: k + m]))
 
 

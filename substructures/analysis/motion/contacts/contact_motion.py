@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.equations.kernels import program_kernel
-from substructures.analysis.motion.conditions import Conditions, state_names
+from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.contacts.complementarity import LEAST, least
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
 from substructures.analysis.motion.integrators.steppers import Stepper
@@ -28,6 +28,7 @@ from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.array import Array
+from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.quantities.numbers.states import require
 from substructures.tree.model import Model
@@ -44,8 +45,8 @@ FAST, APPROACH, REST = 1e-4, 1e-3, 1e-6
 STOPS, GOES = 1e-2, 2.0
 #: a contact with a smaller gap [m] touches; so far below may the start be
 TOUCHING, BELOW = 1e-9, 1e-6
-#: of the size of forces: how far beyond what it can do a contact is watched
-EDGE = 1e-9
+#: of the size of forces: how far beyond what it can do a contact is watched, and what rounding leaves of one at rest
+EDGE, NOTHING = 1e-9, 1e-14
 #: gaps [m] and velocities [m/s] that are closed well enough within a motion; offset of a gap that opens slowly [m]
 DRIFT, SLOW = 1e-13, 1e-11
 #: states of a step that watches remember
@@ -70,7 +71,7 @@ class ContactMotion(RightHandSide):
         folder: Path | None = None,
     ) -> None:
         super().__init__(model, values, zero, conditions, folder)
-        self.has_power, self.contacts = True, tuple(contacts)
+        self.has_power, self.contacts, self._model = True, tuple(contacts), model
         k, n = len(self.contacts), self.n
         self.modes: Modes = np.zeros((k, 3))
         self.friction = np.array([contact.friction for contact in self.contacts])
@@ -87,14 +88,13 @@ class ContactMotion(RightHandSide):
         source = contact_rows(model, contacts)
         pushed = {a for i, r, a in source.outputs[ROWS].index if r == 0 or self.tangents[i, r - 1]}
         self.pushed = [model.coordinates[a] for a in sorted(pushed)]
-        known, columns = dict(values) | {"t": self._t}, [(state_names(model), self._x), *self._varying]
-        require(source, list(found), dict.fromkeys([*known, *(name for names, _ in columns for name in names)]))
-        self._see = program_kernel(source, folder).bind(found, known, columns=columns)
-        metric = program_kernel(model.program.select(["metric"]), folder)
-        self._weigh = metric.bind({"metric": self.g[None]}, known, columns=columns)
+        names = [name for some, _ in self._columns for name in some]
+        require(source, list(found), dict.fromkeys([*self._values, *names]))
+        self._see = self.bound(program_kernel(source, folder), found)
+        self._weigh = self.bound(program_kernel(model.program.select(["metric"]), folder), {"metric": self.g[None]})
 
-    def compiled(self) -> None:
-        """Not: contact forces are found in between."""
+    def compiled(self) -> CompiledRates | None:
+        """None: contact forces are found in between."""
 
     @property
     def signs(self) -> Modes:
@@ -161,7 +161,9 @@ class ContactMotion(RightHandSide):
         self.force[closed, 0] = found[: len(closed)]
         self.force[:, 1:] = -self.friction[:, None] * self.force[:, :1] * ways
         self.force[of, 1 + tangent] = found[len(closed) :]
-        return free + F @ found, pivots, power + self.power(x)
+        second = free + F @ found
+        second[np.abs(second) <= NOTHING * (np.abs(free) + np.abs(F) @ np.abs(found))] = 0.0
+        return second, pivots, power + self.power(x)
 
     def _ways(self, v: Array) -> Array:
         """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: not turned back where

@@ -10,12 +10,15 @@ What touches with a velocity of zero is then closed if accelerations and forces 
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.contacts.complementarity import Cones, coulomb
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.motion.contacts.complementarity import LEAST, Cones, coulomb
 from substructures.analysis.motion.contacts.contact_motion import (
     EDGE,
     FULL,
@@ -29,8 +32,13 @@ from substructures.analysis.motion.contacts.contact_motion import (
     ContactMotion,
     Modes,
 )
+from substructures.analysis.motion.friction.dry_rates import DYNAMICS
+from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Crossing
 from substructures.array import Array
+from substructures.compile.machine import BoundCall
+from substructures.compile.motion import CompiledRates, SaddlePoint
+from substructures.mechanics.closure_rows import rank_of
 
 #: of the largest acceleration: what is none
 NONE = 1e-11
@@ -63,6 +71,32 @@ class DecidedContacts(ContactMotion):
         """All contacts are open, and nothing has happened."""
         self.modes = np.zeros((len(self.contacts), 3))
         self.told, self.impacts, self.begun = [], [], False
+
+    def compiled(self) -> CompiledRates | None:
+        """As the modes are now, with rows J q'' = -bias of what is closed and what sticks, where no friction depends on
+        what a point presses with, and forces are unique.
+        """
+        rates, closed = RightHandSide.compiled(self), self.closed
+        if rates is None or not closed.any():
+            return rates
+        rubs = closed & (self.modes[:, 0] != STICK) & self.tangents.any(axis=1)
+        rows = np.flatnonzero(np.column_stack((closed, self.tangents & (self.modes[:, :1] == STICK))))
+        G = self.G.reshape(-1, self.n)
+        lengths = np.linalg.norm(G[rows], axis=1, keepdims=True)
+        if rubs.any() or self._model.driven or rank_of(G[rows] / np.maximum(lengths, LEAST)) < len(rows):
+            return None
+        call, (g, Q, bias) = self._dynamics
+        calls = tuple(each for each in (self._see, call) if isinstance(each, BoundCall))
+        saddle = SaddlePoint(g, G, self.bias.reshape(-1), Q, bias, rows, np.arange(self.n))
+        return replace(rates, calls=(*rates.calls, *calls), saddle=saddle) if len(calls) == 2 else None
+
+    @cached_property
+    def _dynamics(self) -> tuple[Callable[[], None], list[Array]]:
+        """What is called for the metric, forces and what depends on velocities, and these."""
+        n = self.n
+        out = dict(zip(DYNAMICS, (np.zeros((1, n, n)), np.zeros((1, n)), np.zeros((1, n))), strict=True))
+        call = self.bound(program_kernel(self._model.program.select(list(out))), out)
+        return call, [x[0] for x in out.values()]
 
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""

@@ -129,9 +129,14 @@ class CompiledStepper:
         """SciPy's stepper that made the last step, as its polynomial may be wanted."""
         h = self.t - self.t_old
         # any error is taken
-        solver = scipy_stepper(self._method, 1.0, 1.0)(self.fun, self.t_old, self.y_old, self.t, first_step=h)
+        solver = scipy_stepper(self._method, 1.0, 1.0)(self._rates, self.t_old, self.y_old, self.t, first_step=h)
         solver.step()
         return solver
+
+    def _rates(self, t: float, x: Array) -> Array:
+        """x' at (t, x), by Python where it is not finite, which may tell why."""
+        found = self._short.rates(t, x)
+        return found if np.isfinite(found).all() else np.asarray(self.fun(t, x))
 
     def _more(self) -> bool:
         """Further steps: more and more of them, as the first ones may end at a corner."""

@@ -8,8 +8,8 @@
 
 static const double ZERO = 1e-12, MET = 1e-9, SOFT = 1e-8, EXACT = 1e-14, ROUNDING = 4e-16, LEAST = 1e-300;
 static const double TURN = 6.283185307179586 / 64.0, SHARES[] = {1.0, 0.5, 0.25, 0.1, 0.03, 0.01};
-/* FACETS of a cone, TURNS of these where Newton's method leads nowhere from there */
-enum { ROUNDS = 30, FACETS = 8, TURNS = 8, NEWTON = 100 };
+/* FACETS of a cone, TURNS of these and YIELDING steps where Newton's method leads nowhere from there */
+enum { ROUNDS = 30, FACETS = 8, TURNS = 8, NEWTON = 100, YIELDING = 9 };
 enum { COLUMNS = (1 + FACETS) * FMU_CONTACTS, SIDE = COLUMNS + FMU_CONTACTS };
 
 int solve(int n, const double *A, int m, double *B)
@@ -258,14 +258,31 @@ static void on_cones(const Cones *c, const double *A, const double *b, double *p
     }
 }
 
-/* p of contacts that yield; 0, or 1 */
+/* p of contacts that yield less and less, from where they hardly know of each other */
+static void stiffened(const Cones *c, const double *A, const double *b, double *p)
+{
+    double soft[ROWS * ROWS];
+    int n = 3 * c->count;
+    memset(p, 0, sizeof(double) * (size_t)n);
+    for (int step = 0; step < YIELDING; ++step) {
+        memcpy(soft, A, sizeof(double) * (size_t)(n * n));
+        for (int i = 0; i < n; ++i) soft[i * n + i] += pow(10.0, 1 - step);
+        on_cones(c, soft, b, p);
+    }
+}
+
+/* p of contacts that yield, from p, if that is not zero, from facets, or as above; 0, or 1 */
 static int found(const Cones *c, const double *A, const double *b, double *p)
 {
-    int turns = 1;
-    for (int i = 0; i < c->count; ++i)
+    int turns = 1, near = 0;
+    for (int i = 0; i < c->count; ++i) {
         if (c->tangents[i] == 2) turns = TURNS;
-    for (int turn = 0; turn < turns; ++turn) {
-        if (pressed(c, A, b, TURN * turn, p)) memset(p, 0, sizeof(double) * 3 * (size_t)c->count);
+        for (int d = 0; d < 3; ++d) near = near || p[3 * i + d] != 0.0;
+    }
+    for (int start = near ? -1 : 0; start <= turns; ++start) {
+        if (start == 1) stiffened(c, A, b, p);
+        else if (start >= 0 && pressed(c, A, b, TURN * (start ? start - 1 : 0), p))
+            memset(p, 0, sizeof(double) * 3 * (size_t)c->count);
         on_cones(c, A, b, p);
         if (violation(c, A, b, p) <= MET) return 0;
     }

@@ -124,6 +124,7 @@ class _Solver:
         self.numbers |= self._numbers(values)
         self.found.values |= values
         self.found.angles |= angles
+        self.found.loops[closure.name] = tuple(values)
         self._move(loop)
         for name in values:
             self._straighten(name, angles)
@@ -187,12 +188,12 @@ class _Solver:
         N, H = self.found.N, self.found.H
         slopes = gradient(loop.rows, names)
         bent = [gradient(row, names) for row in slopes]
-        inverse = _inverse([row[: len(z)] for row in slopes])
+        back = inverse([row[: len(z)] for row in slopes])
         graph, y = self.graph, self.found.independent
 
         def solved(columns: Sequence[Expr]) -> list[Expr]:
             """-phi_z^-1 x, as a number where it is one."""
-            found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in inverse]
+            found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in back]
             return [w if w.is_number else x for x, w in zip(found, self.found.put_in(found), strict=True)]
 
         others = list(enumerate(names))[len(z) :]
@@ -215,7 +216,7 @@ class _Solver:
                 H.setdefault(q, {}).update({} if x.is_zero else {(j, k): x})
 
 
-def _inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:
+def inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:
     """Of one, two or three rows, by Cramer's rule. Raises NotPlanar for a determinant that is always zero."""
     n = len(A)
 

@@ -18,7 +18,8 @@ Sum = frozenset[tuple[str, int]]
 class Dependent:
     """What the coordinates of a part are: values of dependent ones, cosines and sines of sums of them, rows of N by
     coordinate and independent coordinate, H by coordinate and two of these; ``branches``: the signs that were taken;
-    ``sums``: angles that are, but for turns, sums of independent ones.
+    ``sums``: angles that are, but for turns, sums of independent ones; ``loops``: the coordinates that each closure
+    tells, in the order in which they are found.
 
     Values and angles are formulas of independent coordinates and parameters; N and H of all coordinates.
     """
@@ -31,9 +32,11 @@ class Dependent:
     H: dict[str, dict[tuple[str, str], Expr]] = field(default_factory=dict)
     branches: list[int] = field(default_factory=list)
     sums: dict[str, Expr] = field(default_factory=dict)
+    loops: dict[str, tuple[str, ...]] = field(default_factory=dict)
 
-    def moved(self, graph: Graph, names: Mapping[str, str], bindings: Mapping[str, Expr]) -> Dependent:
-        """In another graph, where symbols are ``bindings`` and coordinates have these ``names``."""
+    def moved(self, graph: Graph, instance: str, bindings: Mapping[str, Expr]) -> Dependent:
+        """In another graph, where symbols are ``bindings``, and coordinates and closures those of an instance."""
+        names = {name: f"{instance}.{name}" for name in (*self.independent, *self.values, *self.loops)}
         given = [*self.values.values(), *(x for pair in self.angles.values() for x in pair)]
         given += [x for row in self.N.values() for x in row.values()]
         given += [*(x for bend in self.H.values() for x in bend.values()), *self.sums.values()]
@@ -44,13 +47,15 @@ class Dependent:
         N = {names[q]: {names[j]: next(found) for j in row} for q, row in self.N.items()}
         H = {names[q]: {(names[j], names[k]): next(found) for j, k in row} for q, row in self.H.items()}
         sums = {names[q]: next(found) for q in self.sums}
-        return Dependent(graph, own, values, angles, N, H, list(self.branches), sums)
+        loops = {names[x]: tuple(names[q] for q in z) for x, z in self.loops.items()}
+        return Dependent(graph, own, values, angles, N, H, list(self.branches), sums, loops)
 
     def beside(self, other: Dependent) -> Dependent:
         """Those of both."""
         values, angles = self.values | other.values, self.angles | other.angles
         rest = self.N | other.N, self.H | other.H, self.branches + other.branches, self.sums | other.sums
-        return Dependent(self.graph, self.independent + other.independent, values, angles, *rest)
+        loops = self.loops | other.loops
+        return Dependent(self.graph, self.independent + other.independent, values, angles, *rest, loops)
 
     def put_in(self, roots: Sequence[Expr]) -> list[Expr]:
         """Formulas with what dependent coordinates are in their places."""
