@@ -147,9 +147,7 @@ class Model:
 
     @classmethod
     def load(cls, summary: Mapping[str, Any], stored: bytes | Program) -> Model:
-        """A stored model, with its numbers put in; ``stored``: its program, maybe read already. Raises InvalidProgram
-        when the bytes are damaged.
-        """
+        """A stored model, with its numbers put in; ``stored``: its program, read or not. Raises InvalidProgram."""
         names = tuple(summary["coordinates"]), str(summary["joints"]), tuple(summary["frames"])
         described = summary["parameters"], summary["certificate"]
         closures = tuple(ClosureRows.read(plain) for plain in summary.get("closures", ()))
