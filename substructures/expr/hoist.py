@@ -22,6 +22,8 @@ from fractions import Fraction
 from substructures.expr.operations import BINARY, Operation, Output
 from substructures.expr.program import Program, operands, renumbered
 
+NUMBERS = ("int", "rat")
+
 
 def hoisted(source: Program) -> Program:
     """The same functions, up to rounding, with no more operations, and fewer of them for each state."""
@@ -79,13 +81,14 @@ class _Writer:
         found = self._products.get(key)
         if found is None:
             found = self._products[key] = len(self.made)
-            one, other = _number(self.made[a]), _number(self.made[b])
-            self.made.append(("mul", a, b) if one is None or other is None else _operation(one * other))
+            one, other = self.made[a], self.made[b]
+            are_numbers = one[0] in NUMBERS and other[0] in NUMBERS
+            self.made.append(_operation(_number(one) * _number(other)) if are_numbers else ("mul", a, b))
         return found
 
 
-def _number(operation: Operation) -> Fraction | None:
-    return Fraction(*map(int, operation[1:])) if operation[0] in ("int", "rat") else None
+def _number(operation: Operation) -> Fraction:
+    return Fraction(*map(int, operation[1:]))
 
 
 def _operation(x: Fraction) -> Operation:

@@ -23,6 +23,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.bind import bind
 from substructures.expr.direct import steps_of
+from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
@@ -203,6 +204,7 @@ def _value(given: Any) -> Fraction | None:
     return found if max(found.numerator.bit_length(), found.denominator.bit_length()) <= MOST_BITS else None
 
 
+@without_collections
 def with_numbers(program: Program, values: Mapping[str, Fraction]) -> Program:
     """The program of a shape with numbers in the places of symbols, exactly. Raises as
     :func:`substructures.expr.bind.bind`.

@@ -18,7 +18,9 @@ from service.settings import Limits
 from substructures.documents import read_model
 from substructures.errors import InvalidDocument, InvalidInput, InvalidProgram, meant
 from substructures.late import Table
+from substructures.part.definition import Definition
 from substructures.sweeps.document import SweepDocument
+from substructures.tree.document import TreeSpec
 
 __all__ = ["KINDS", "Library", "expand", "given", "load", "resolve", "run", "submission"]
 
@@ -34,9 +36,13 @@ _log = logging.getLogger(__name__)
 
 
 def load() -> None:
-    """Import all that computes, so that it is there before the time of the first item begins."""
+    """Import all that computes, and build the models of documents, so that it is there before the time of the first
+    item begins.
+    """
     for table in (_KINDS, REQUESTED):
         dict(table)
+    for model in (Definition, TreeSpec):
+        model.model_rebuild()
 
 
 def submission(document: Mapping[str, Any]) -> SubmittedItems | SubmittedSweep:
