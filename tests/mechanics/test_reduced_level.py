@@ -154,6 +154,16 @@ def test_joints_transmit_what_they_do_with_closures(name: str) -> None:
     assert_same_reactions(ours, theirs, (q, qd), (closed.q, closed.qd), tau)
 
 
+def test_more_rows_act_than_coordinates_depend(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A ball in axes that are tilted against the plane: three rows for two coordinates, and forces of least norm."""
+    plain, turned = NAMES["crank-rocker"], {"rotation": {"rpy": ["0.4", "0.3", 0]}}
+    ball: Plain = {"closures": [{"name": "loop", "type": "ball", "from": "end", "to": "tip"}]}
+    monkeypatch.setitem(
+        NAMES, "tilted", {**plain, **ball, "name": "tilted", "ports": [p | turned for p in plain["ports"]]}
+    )
+    test_joints_transmit_what_they_do_with_closures("tilted")
+
+
 def test_joints_transmit_forces_of_other_closures() -> None:
     """A rod from the tip to the world, at rest: its force goes through the linkage."""
     names, start = on_an_arm("rod").coordinates, start_of("rod")
