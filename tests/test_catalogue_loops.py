@@ -200,7 +200,7 @@ def test_the_adaptive_gripper_on_an_arm_moves_as_in_mujoco() -> None:
     """Positions, closed by us, are closed there; all accelerations agree to 1e-8 of the largest one, and so do those of
     the independent coordinates alone.
     """
-    mujoco = pytest.importorskip("mujoco")
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the test extra")
     tree: dict[str, Any] = {
         "name": "cell",
         "gravity": [0.3, -2, -9.81],

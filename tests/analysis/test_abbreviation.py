@@ -111,6 +111,14 @@ def test_bounds_of_known_sums(low: str, high: str, largest: float) -> None:
     assert prover.bound(sums, largest * 0.9).proven > 0.9 * largest
 
 
+def test_what_was_given_up_is_no_answer_to_another_question() -> None:
+    """|cos q| + |sin q|: 2 by its products alone, the root of 2 by both."""
+    sums = AngleSums(("a", "b"), (0, 1), ((Fraction(1),), (Fraction(1),)), np.array([1, -1j]))
+    prover = Prover([Interval(Fraction(-3), Fraction(3))])
+    assert prover.bound(sums, 0.5).proven == pytest.approx(2)
+    assert prover.bound(sums).proven <= 1.05 * np.sqrt(2)
+
+
 def test_bounds_of_a_sum_that_is_flat_in_the_middle() -> None:
     """1 - cos q, zero with its slope at the centre of the box."""
     sums = AngleSums(("a",), (0,), ((Fraction(0),), (Fraction(1),)), np.array([1, -1 + 0j]))

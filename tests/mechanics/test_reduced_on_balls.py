@@ -101,7 +101,7 @@ def test_motions_on_a_floating_base_are_those_of_angles() -> None:
 
 def test_it_accelerates_as_in_mujoco() -> None:
     """M, h and J of that engine, whose loop is closed by <connect>; J' by differences along the motion."""
-    mujoco = pytest.importorskip("mujoco")
+    mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the test extra")
     turn = Rotation.from_euler("xyz", [0.3, 0, 0.1]).as_quat(scalar_first=True)
     own = '<inertial mass="1" pos="0.1 0.05 0.02" diaginertia="0.01 0.02 0.02"/><joint axis="0 0 1" type="hinge"'
     coupler = f'<body name="coupler" pos="0.3 0 0">{own}/></body>'

@@ -104,6 +104,7 @@ def test_claims_end_soon_after_their_server(kind: str, tmp_path: Path, monkeypat
     assert timedelta(seconds=5) >= claims.LEASE
     monkeypatch.setattr("service.http.idempotency.LEASE", timedelta(seconds=0.6))
     monkeypatch.setattr(claims, "RENEWAL", 0.05)
+    monkeypatch.setattr(claims, "FORGET", 1e9)  # by those who want them alone
     living = idempotency.Claim("local", "living", "we")
     with fresh(kind, tmp_path) as address, open_store(Settings(database=address, catalogue=False)) as store:
         client = make_client(store)
