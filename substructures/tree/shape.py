@@ -25,7 +25,7 @@ from substructures.expr.bind import bind
 from substructures.expr.direct import steps_of
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
-from substructures.expr.operations import Operation
+from substructures.expr.operations import Operation, Output
 from substructures.expr.program import Program
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Parameter, Placement
@@ -72,15 +72,21 @@ class CertifiedProgram:
         return replace(self, program=replace(self.program, symbols=symbols), instances=instances)
 
     @cached_property
-    def _is_total(self) -> bool:
-        return all(map(_is_total, self.program.operations))
+    def _undefined_somewhere(self) -> Program | None:
+        """What operations that have no value of some operands are made of; None where there are none."""
+        entries = tuple(i for i, operation in enumerate(self.program.operations) if not _is_total(operation))
+        if not entries:
+            return None
+        output = Output((len(entries),), tuple((k,) for k in range(len(entries))), entries)
+        return replace(self.program, outputs={"undefined": output})
 
     def takes(self, values: Mapping[str, Fraction]) -> bool:
         """Whether these numbers may be put in: no formula divides by zero, or leaves its domain, with them."""
-        if not values or self._is_total:
+        program = self._undefined_somewhere
+        if not values or program is None:
             return True
         try:
-            with_numbers(self.program, values)
+            bind(program, {name: values[name] for name in program.needs(program.outputs) if name in values})
         except (InvalidDocument, TooLarge):
             return False
         return True
