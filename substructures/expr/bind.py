@@ -49,7 +49,9 @@ def bind(program: Program, values: Mapping[str, Value]) -> Program:
     except (ZeroDivisionError, ValueError) as error:
         culprits = ", ".join(f"'{name}'" for name in sorted(values))
         raise InvalidDocument.at("/bind", "undefined", f"the formulas are undefined for {culprits}: {error}") from None
-    return collect(graph, outputs, known)
+    found = collect(graph, outputs, known)
+    graph.release()
+    return found
 
 
 def _bindings(

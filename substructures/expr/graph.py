@@ -174,6 +174,13 @@ class Graph:
         self.nodes, self.table, self.others = state.nodes, state.table, state.others
         self.numbers, self.symbols = state.numbers, state.symbols
 
+    def release(self) -> None:
+        """Forget all nodes, none of which may be used any more: each refers to the graph, and it to them, a cycle that
+        Python's collector would have to find."""
+        for known in (self.nodes, self.table, self.others, self.numbers, self.symbols):
+            known.clear()
+        del self.zero, self.one
+
     def number(self, value: ExactNumber) -> Expr:
         """An exact constant; a Decimal is taken as its decimal text. Floats are refused.
 

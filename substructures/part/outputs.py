@@ -105,6 +105,7 @@ def with_own_inertia(part: Part, program: Program) -> Program:
     known = {symbol.name: symbol for symbol in part.program.symbols}
     lifted = {name: graph.lift(x) for name, x in bindings.items()}
     result = collect(graph, replay(program, graph, lifted), known)
+    graph.release()
     return result.marked(program.not_judged.union(_require_own(part, program, result)))
 
 

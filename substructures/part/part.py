@@ -262,6 +262,7 @@ def derive(
     definition = _read(definition)
     m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
     certificate = _certificate(m, result, units, perf_counter() - start)
+    m.graph.release()
     return Part(definition, result.marked(not_judged(certificate)), certificate)
 
 

@@ -216,11 +216,9 @@ def couple_shape(
         mine = assembly if free is spec else assemble(free, parts)
         admitted = every if group else numbers_and(constants)
         result = limited(_formulas(mine, not entries.is_large, admitted, None), max_nodes)
-        begun = perf_counter()
+        described, begun = _model(mine, result, plausibility).described(), perf_counter()
         try:
-            certificate, is_shared = certified(
-                free, definitions, _model(mine, result, plausibility).described(), result
-            )
+            certificate, is_shared = certified(free, definitions, described, result)
         except VerificationFailed as error:
             raise blamed(parts, error) from None
         verifying[0] += perf_counter() - begun
@@ -281,11 +279,12 @@ def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted:
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-        outputs = ignore(
-            assembly, tuple(all_coordinates(assembly)), put_in(assembly, loaded_outputs(assembly, coupled, wanted))
-        )
+        loaded = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
+        outputs = ignore(assembly, tuple(all_coordinates(assembly)), loaded)
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
-        return hoisted(program(graph, outputs, assembly.scope.symbols))
+        found = hoisted(program(graph, outputs, assembly.scope.symbols))
+        graph.release()
+        return found
     except ZeroDivisionError:
         raise division_by_zero(assembly.reading.spec, assembly) from None
 
