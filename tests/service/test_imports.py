@@ -218,6 +218,19 @@ def test_import_prints_the_definition_and_tells_of_the_file(tmp_path: Path, caps
     assert "there is no link 'hnad' to be cut at; did you mean 'hand'" in capsys.readouterr().err
 
 
+def test_like_remarks_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "box.urdf"
+    links = '<link name="a">\n<visual/></link>\n<link name="b">\n<visual/>\n<collision/></link>'
+    joint = '<joint name="j" type="fixed"><parent link="a"/><child link="b"/></joint>'
+    path.write_text(f'<robot name="box">\n{links}\n{joint}</robot>')
+    assert main(["import", str(path)]) == 0
+    ignored = [line for line in capsys.readouterr().err.splitlines() if line.startswith("ignored")]
+    assert ignored == [
+        "ignored: line 3: <visual> and 1 more: how it looks: no influence on the equations of motion",
+        "ignored: line 6: <collision>: contacts: no influence on the equations of motion",
+    ]
+
+
 def test_derive_takes_robot_files_by_their_content(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "arm.txt"
     path.write_text(ARM)

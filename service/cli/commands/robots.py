@@ -132,8 +132,12 @@ def _submitted(server: Server, is_part: bool, document: Any) -> dict[str, Any]:
 
 
 def _told(found: Imported) -> Iterator[str]:
+    alike = dict[tuple[str, str, str], list[dict[str, Any]]]()
     for remark in found.report:
-        yield f"{remark['level']}: {remark['place']}: {remark['message']}"
+        alike.setdefault((remark["level"], remark["element"], remark["message"]), []).append(remark)
+    for (level, _, message), some in alike.items():
+        more = f" and {len(some) - 1} more" if len(some) > 1 else ""
+        yield f"{level}: {some[0]['place']}{more}: {message}"
     checks = ", ".join(
         f"{name} {'passed' if told['passed'] else '{warnings} warning(s)'.format(**told)}"
         for name, told in found.checks.items()

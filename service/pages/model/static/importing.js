@@ -22,9 +22,11 @@ function failed({ message, faults = [] }) {
 
 function remarks(rows) {
     if (!rows.length) return element("p", {}, "Nothing was left out or changed.");
-    const lines = rows.map(({ line, place: where, level, message }) =>
-        element("tr", {}, ...[line || "", level, where, message].map((text) => element("td", {}, String(text)))));
-    const heads = ["line", "level", "place", "remark"].map((name) => element("th", { scope: "col" }, name));
+    const alike = Map.groupBy(rows, ({ level, element: what, message }) => [level, what, message].join("\n"));
+    const lines = [...alike.values()].map(([{ place: where, level, message }, ...more]) =>
+        element("tr", {}, ...[level, where + (more.length ? ` and ${more.length} more` : ""), message]
+            .map((text) => element("td", {}, String(text)))));
+    const heads = ["level", "place", "remark"].map((name) => element("th", { scope: "col" }, name));
     const table = element("table", {}, element("thead", {}, element("tr", {}, ...heads)), element("tbody", {}, ...lines));
     return element("div", { class: "scroll", tabindex: "0", role: "group", "aria-label": "Remarks" }, table);
 }
