@@ -74,6 +74,7 @@ def formed(
     except ZeroDivisionError:
         raise division_by_zero(spec, assembly) from None
     result = program(assembly.scope.graph, outputs, assembly.scope.symbols)
+    assembly.scope.graph.release()
     if len(result) > max_nodes:
         raise TooLarge(f"the {what} (in operations)", len(result), max_nodes)
     multipliers = {symbol.name: symbol.kind for symbol in result.symbols if symbol.name.startswith("lambda.")}
