@@ -27,8 +27,8 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels
-from substructures.tree.model import couple_shape
 from substructures.tree.units import DescribedParameters, check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name
