@@ -197,7 +197,9 @@ def _coupled(
     """What is stored of a tree; ``members``: of the item of the work."""
     with store.database.read() as connection:
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
-        item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer, blobs=store.caches.blobs))
+        library = StoreLibrary(connection, viewer, blobs=store.caches.blobs)
+        is_checked = all(each.definition is None for each in spec.instances)
+        item, blobs = pinned_spec(spec, store.work_limits, library, is_checked=is_checked)
         digests = {each.name: each.digest for each in TreeSpec.stored(item["tree"]).instances}
         hidden = private_parts(connection, digests.values())
         faults = list(owners.private_parts(whose, item["tree"].get("instances", ()), digests, hidden))
