@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
+from types import MappingProxyType
 from typing import Any
 
 from service.content.cache import Cache
@@ -150,15 +151,27 @@ class TreeContent:
     inline: Sequence[PartContent] = ()
     software: str = ""
 
+    @property
+    def shared(self) -> dict[str, bytes]:
+        """What trees of its shape have in common, by digest."""
+        found = {} if self.program is None else {self.program_digest: self.program}
+        form, digest = self.summary.form, self.summary.form_digest
+        return found if form is None or digest is None else {**found, digest: form.encode()}
+
     @classmethod
-    def of_files(cls, told: Mapping[str, Any], files: Mapping[str, bytes]) -> TreeContent:
-        """What a work of the kind ``assemble`` has told and made. Raises Refused for a program that is not what it is
-        called.
+    def of_files(
+        cls, told: Mapping[str, Any], files: Mapping[str, bytes], known: Mapping[str, bytes] = MappingProxyType({})
+    ) -> TreeContent:
+        """What a work of the kind ``assemble`` has told and made; ``known``: by digest what it was told not to send.
+        Raises Refused for a program that is not what it is called.
         """
         inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
         figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
         summary, program = TreeSummary.of_files(files), files.get("program")
         if program is not None:
             checked("the program of a tree", told["program"], unpack(program))
+        if summary.form is None and summary.form_digest is not None and summary.form_digest in known:
+            summary = replace(summary, form=known[summary.form_digest].decode())
+        program = known.get(told["program"]) if program is None else program
         made = summary, told["parts"], program, inline, told.get("software", UNKNOWN)
         return cls(told["name"], files["spec"], *figures, *made)

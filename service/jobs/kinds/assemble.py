@@ -29,6 +29,7 @@ from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.couple import couple_shape
 from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels
+from substructures.tree.model import Model
 from substructures.tree.units import DescribedParameters, check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name
@@ -71,20 +72,25 @@ def pinned_spec(
         if version.software != software():  # it may lack what is coupled today
             raise NotDerived("part", version.digest)
     if faults or not is_checked:
-        definitions = [_definition(each, found, library) for each in spec.instances]
-        known = {i.name: each for i, each in zip(spec.instances, definitions, strict=True) if each is not None}
-        faults += _faults(spec, definitions)
-        if not is_stored:
-            faults += check_tree_units(spec, _parameters(known, found), known).faults
-        if faults:
-            raise InvalidDocument(faults)
-        spec = with_levels(spec, known) if is_stored else spec
+        spec = _compared(spec, found, library, is_stored, faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     text = spec.model_copy(update={"instances": pinned}).canonical()
     tree = Written.of(read_json(text), text)
     entry = {ENTRY: item[ENTRY]} if ENTRY in item else {}
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
+
+
+def _compared(
+    spec: TreeSpec, found: Mapping[str, StoredVersion], library: Library, is_stored: bool, faults: Sequence[Fault]
+) -> TreeSpec:
+    """The tree, compared with the definitions of its parts. Raises InvalidDocument for these faults and more."""
+    definitions = [_definition(each, found, library) for each in spec.instances]
+    known = {i.name: each for i, each in zip(spec.instances, definitions, strict=True) if each is not None}
+    units = () if is_stored else check_tree_units(spec, _parameters(known, found), known).faults
+    if told := [*faults, *_faults(spec, definitions), *units]:
+        raise InvalidDocument(told)
+    return with_levels(spec, known) if is_stored else spec
 
 
 def _faults(spec: TreeSpec, definitions: Sequence[Definition | None]) -> Iterator[Fault]:
@@ -154,15 +160,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     given, parts = tree_parts(item, blobs)
     spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
+    model = _coupled(spec, parts, item)
     definitions = {name: part.definition for name, part in parts.items()}
-    try:
-        model = couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
-    except InvalidDocument:
-        faults = [*_faults(given, [definitions[each.name] for each in given.instances])]
-        faults += check_tree_units(given, {name: part.parameters for name, part in parts.items()}, definitions).faults
-        if faults:
-            raise InvalidDocument(faults) from None
-        raise
     spec = with_levels(spec, definitions, {each["instance"] for each in model.reduced})
     check_constraints(model)
     check_contacts(model)
@@ -190,6 +189,18 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "warnings": [*model.certificate["warnings"], *no_coordinates(model.dof)],
     }
     return Outcome(summary, files)
+
+
+def _coupled(spec: TreeSpec, parts: Mapping[str, Part], item: ItemDocument) -> Model:
+    """The model. Raises InvalidDocument for all that is wrong with the tree, TooLarge."""
+    try:
+        return couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    except InvalidDocument:
+        definitions = {name: part.definition for name, part in parts.items()}
+        units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()}, definitions)
+        if told := [*_faults(spec, [definitions[each.name] for each in spec.instances]), *units.faults]:
+            raise InvalidDocument(told) from None
+        raise
 
 
 def _named(spec: TreeSpec, parts: Mapping[str, Part]) -> TreeSpec:
