@@ -106,8 +106,9 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.part.definition import Definition
     from substructures.part.part import Formula, Part, derive
     from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+    from substructures.tree.couple import couple
     from substructures.tree.document import Instance, TreeSpec, read_instance
-    from substructures.tree.model import Model, couple
+    from substructures.tree.model import Model
 
 __all__ = [
     "Closed",
@@ -208,7 +209,8 @@ _WHERE = {
     "substructures.interchange.symbolic.systems": ("tree_of_system",),
     "substructures.interchange.symbolic.texts": ("from_sympy",),
     "substructures.tree.document": ("Instance", "TreeSpec", "read_instance"),
-    "substructures.tree.model": ("Model", "couple"),
+    "substructures.tree.couple": ("couple",),
+    "substructures.tree.model": ("Model",),
 }
 _named = names_in(__name__, _WHERE)
 

@@ -20,8 +20,8 @@ from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import BY_VALUE, TOLD
 from substructures.quantities.sources import Sources, of_parts
+from substructures.tree.couple import couple
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.model import couple
 
 
 def parts_beside(spec: TreeSpec, folder: Path) -> dict[str, Part]:

@@ -16,8 +16,9 @@ from typing import Any
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
 from substructures.part.part import MAX_NODES, Part, derive
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec, with_levels
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
@@ -83,7 +84,7 @@ def recipe_of(spec: TreeSpec, parts: Mapping[str, Part], recipes: Mapping[str, s
 
 
 def coupled_tree(document: bytes, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> tuple[TreeSpec, Model]:
-    """A stored tree and its model; ``parts``: by instance. Raises as :func:`substructures.tree.model.couple`."""
+    """A stored tree and its model; ``parts``: by instance. Raises as :func:`substructures.tree.couple.couple`."""
     spec = _stored_tree(read_json(document), parts)
     return spec, couple(spec, parts, max_nodes)
 

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import chain
+from types import MappingProxyType
 from typing import Any
 
+from service.content.cache import Cache
 from service.content.integrity import checked, digest_of
 from service.content.summaries import UNKNOWN, PartContent, float_of
 from service.database.packed import unpack
@@ -17,6 +19,7 @@ from substructures.tree.model import Model
 HOLE = "\x1f"  # in a form; no text of a document has it
 _HOLE = write_json(HOLE).decode()
 SHORT = 16  # characters
+FORMS = 2_000_000  # characters that are kept
 
 
 @dataclass(frozen=True, slots=True)
@@ -88,13 +91,36 @@ def tree_summary(spec: TreeSpec, model: Model) -> TreeSummary:
     holed = plain | {"certificate": without(plain["certificate"], "converted", "seconds", "warnings")}
     holed = without(holed, "gravity", "instances", "loads", "numbers")
     holed["parameters"] = {name: without(each, "given", "value") for name, each in sorted(plain["parameters"].items())}
-    form = write_json(holed)
-    if form.decode().count(_HOLE) != len(values):  # an old document's description is a hole
+    form = _form(model.program.digest, holed)
+    if form.holes != len(values):  # an old document's description is a hole
         whole = write_json(plain)
         return TreeSummary(whole.decode(), digest_of(whole))
     lines = "\n".join(_placed(write_json(each).decode(), document) for each in values)
-    digest = digest_of(summary_text(lines, form.decode(), document).encode())
-    return TreeSummary(lines, digest, digest_of(form), form.decode())
+    digest = digest_of(summary_text(lines, form.text, document).encode())
+    return TreeSummary(lines, digest, form.digest, form.text)
+
+
+@dataclass(frozen=True, slots=True)
+class _Form:
+    """The text of a form, with its digest and the number of its holes."""
+
+    data: Mapping[str, Any]
+    text: str
+    digest: str
+    holes: int
+
+
+_forms: Cache[_Form] = Cache(FORMS, lambda form: len(form.text))
+
+
+def _form(program: str, data: Mapping[str, Any]) -> _Form:
+    """Written once for trees of one shape: equal data have equal texts; the first of a program is kept."""
+    found = _forms.get(program)
+    if found is None or found.data != data:
+        text = write_json(data).decode()
+        found = _Form(data, text, digest_of(text.encode()), text.count(_HOLE))
+        _forms.put(program, found)
+    return found
 
 
 def _placed(value: str, document: str) -> str:
@@ -125,15 +151,27 @@ class TreeContent:
     inline: Sequence[PartContent] = ()
     software: str = ""
 
+    @property
+    def shared(self) -> dict[str, bytes]:
+        """What trees of its shape have in common, by digest."""
+        found = {} if self.program is None else {self.program_digest: self.program}
+        form, digest = self.summary.form, self.summary.form_digest
+        return found if form is None or digest is None else {**found, digest: form.encode()}
+
     @classmethod
-    def of_files(cls, told: Mapping[str, Any], files: Mapping[str, bytes]) -> TreeContent:
-        """What a work of the kind ``assemble`` has told and made. Raises Refused for a program that is not what it is
-        called.
+    def of_files(
+        cls, told: Mapping[str, Any], files: Mapping[str, bytes], known: Mapping[str, bytes] = MappingProxyType({})
+    ) -> TreeContent:
+        """What a work of the kind ``assemble`` has told and made; ``known``: by digest what it was told not to send.
+        Raises Refused for a program that is not what it is called.
         """
         inline = [PartContent.of_files(files, f"{name}.") for name in told["parts"] if f"{name}.program" in files]
         figures = told["program"], told["nodes"], told["dof"], told["joints"], float_of(told["mass"])
         summary, program = TreeSummary.of_files(files), files.get("program")
         if program is not None:
             checked("the program of a tree", told["program"], unpack(program))
+        if summary.form is None and summary.form_digest is not None and summary.form_digest in known:
+            summary = replace(summary, form=known[summary.form_digest].decode())
+        program = known.get(told["program"]) if program is None else program
         made = summary, told["parts"], program, inline, told.get("software", UNKNOWN)
         return cls(told["name"], files["spec"], *figures, *made)

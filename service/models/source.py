@@ -11,8 +11,9 @@ from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import Evaluator, Sources, interpreted
 from substructures.quantities.quantity import REGRESSOR
 from substructures.quantities.regressor import RegressorModel
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 
 @dataclass(frozen=True)

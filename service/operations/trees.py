@@ -10,7 +10,7 @@ from service.content.integrity import digest_of, missing
 from service.content.tree_content import TreeContent
 from service.database.connections import Connection
 from service.jobs.kinds.assemble import NAMED, pinned_spec
-from service.jobs.kinds.shapes import SHARE
+from service.jobs.kinds.shapes import KNOWN, SHARE
 from service.jobs.worker import Worker
 from service.messages.answers import etag
 from service.messages.references import Reference, is_pinned, parse_reference
@@ -29,6 +29,9 @@ from substructures.documents.tables import with_points
 from substructures.errors import InvalidDocument, among
 from substructures.part.parameters import counted
 from substructures.tree.document import TreeSpec
+
+#: contents that are kept for the next tree of the same parts: so many, of at most so many bytes
+LATEST, SHORT = 8, 100_000
 
 
 @dataclass(frozen=True, slots=True)
@@ -197,15 +200,29 @@ def _coupled(
     """What is stored of a tree; ``members``: of the item of the work."""
     with store.database.read() as connection:
         whose = owners.wanted(connection, viewer, "tree", spec.name, entry)
-        item, blobs = pinned_spec(spec, store.work_limits, StoreLibrary(connection, viewer, blobs=store.caches.blobs))
-        digests = {each.name: each.digest for each in TreeSpec.stored(item["tree"]).instances}
+        library = StoreLibrary(connection, viewer, blobs=store.caches.blobs)
+        is_checked = all(each.definition is None for each in spec.instances)
+        item, blobs = pinned_spec(spec, store.work_limits, library, is_checked=is_checked)
+        pinned = zip(spec.instances, item["tree"].get("instances", ()), strict=True)
+        digests = {
+            each.name: each.definition.digest if each.definition else given["substructure"].partition("@")[2]
+            for each, given in pinned
+        }
         hidden = private_parts(connection, digests.values())
         faults = list(owners.private_parts(whose, item["tree"].get("instances", ()), digests, hidden))
     if faults:
         raise InvalidDocument(faults)
-    given = {**item, **store.work_limits, **members, SHARE: f"owner {viewer.owner}"}
+    shared = store.caches.shared.once((viewer.owner, *item["programs"].values()), dict)
+    known = dict(shared)
+    given = {**item, **store.work_limits, **members, SHARE: f"owner {viewer.owner}", KNOWN: list(known)}
     outcome = worker("assemble", given, store.blobs(blobs))
-    return TreeContent.of_files(outcome.summary, outcome.files)
+    coupled = TreeContent.of_files(outcome.summary, outcome.files, known)
+    for digest, data in coupled.shared.items():
+        if len(data) <= SHORT:
+            shared[digest] = data
+    for digest in list(shared)[:-LATEST]:
+        shared.pop(digest, None)
+    return coupled
 
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:

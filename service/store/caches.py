@@ -16,6 +16,7 @@ from substructures.tree.plausibility import Plausibility
 
 TREES = 1000  # with what judges their values
 FACETS = 20_000  # values of facets
+SHARED = 32  # combinations of parts
 # bytes for each operation that is kept: of pictures, of stored bytes and uploads, of formulas as they were sent
 PICTURES, BLOBS, PRINTED = 8, 32, 16
 
@@ -26,7 +27,8 @@ class Caches:
     those of the tree, ``derived`` by model and quantity, ``of_parts`` by digest of the tree, name and parts,
     ``numeric_trees`` and ``plausibilities`` by digest of the tree, ``evaluations`` that are at hand by reference and
     quantities, ``pictures`` in the standard pose and formulas of pages by digest, ``blobs`` by digest, ``printed``
-    formulas by their ETag, and what browsers compute with, ``facets`` of searches by the last act that was noted.
+    formulas by their ETag, and what browsers compute with, ``facets`` of searches by the last act that was noted,
+    ``shared`` contents by digest that the latest trees of an owner and some programs of parts have in common.
     """
 
     parts: Cache[Part]
@@ -41,6 +43,7 @@ class Caches:
     blobs: Cache[bytes]
     printed: Cache[Answer]
     facets: Cache[Any]  # of service.queries.searching.part_search
+    shared: Cache[dict[str, bytes]]
 
     @classmethod
     def for_nodes(cls, nodes: int) -> Caches:
@@ -58,4 +61,5 @@ class Caches:
             blobs=Cache(BLOBS * nodes, len),
             printed=Cache(PRINTED * nodes, lambda answer: len(answer.body)),
             facets=Cache(FACETS, lambda found: sum(map(len, found.values())) + 1),
+            shared=Cache(SHARED, lambda _: 1),
         )

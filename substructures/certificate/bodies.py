@@ -44,7 +44,7 @@ CHAINS: dict[str, tuple[tuple[bool, int], ...]] = {
     "ball": ((False, 0), (False, 1), (False, 2)),
     "floating": ((True, 0), (True, 1), (True, 2), (False, 0), (False, 1), (False, 2)),
 }
-NONE = (0, 0, 0)
+NONE, MASSES = (0, 0, 0), frozenset(("mass", "com", "inertia"))
 
 
 @dataclass(frozen=True)
@@ -174,8 +174,8 @@ class Bodies:
             frame = self._moved(frame, joint, step, names, prismatic, axis, (phi, tau), numbers)
         self.frames[f"{prefix}{body['name']}"] = frame
         self.named.setdefault(frame.carrier, f"{prefix}{body['name']}")
-        mass = mass_of(body, numbers).outwards(frame.A, frame.p)
-        self.own[frame.carrier] = self.own[frame.carrier] + mass
+        if not MASSES.isdisjoint(body):
+            self.own[frame.carrier] += mass_of(body, numbers).outwards(frame.A, frame.p)
 
     def _moved(
         self,

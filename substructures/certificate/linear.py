@@ -68,6 +68,9 @@ def side_by_side(vectors: Iterable[Matrix]) -> Matrix:
     return arb_mat(3, len(some), [v[i] for i in range(3) for v in some])
 
 
+_RENAMED = tuple(side_by_side(_AXES[(axis + 1 + i) % 3] for i in range(3)) for axis in range(3))
+
+
 def column(matrix: Matrix, j: int) -> Matrix:
     """A column of a matrix of three rows."""
     return vector(matrix[0, j], matrix[1, j], matrix[2, j])
@@ -84,14 +87,18 @@ def turn(axis: int, angle: Ball) -> Matrix:
 
 
 def roll_pitch_yaw(angles: Matrix) -> Matrix:
-    """Rz(yaw) Ry(pitch) Rx(roll): turned about fixed axes, roll first (URDF)."""
+    """Rz(yaw) Ry(pitch) Rx(roll): turned about fixed axes, roll first (URDF); not to be changed."""
     roll, pitch, yaw = angles.entries()
+    if roll == 0 and pitch == 0 and yaw == 0:
+        return _IDENTITY
     return turn(2, yaw) * turn(1, pitch) * turn(0, roll)
 
 
 def onto_third_axis(axis: int) -> Matrix:
-    """The frame, as a rotation, whose third axis is a frame axis: the axes renamed in their cyclic order."""
-    return side_by_side(unit((axis + 1 + i) % 3) for i in range(3))
+    """The frame, as a rotation, whose third axis is a frame axis: the axes renamed in their cyclic order; not to be
+    changed.
+    """
+    return _RENAMED[axis]
 
 
 def with_third_axis(direction: Matrix) -> Matrix:

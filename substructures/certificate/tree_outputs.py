@@ -104,7 +104,7 @@ def with_given(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[st
 
 def level_at(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> Reduced:
     """The values of all symbols, those of coordinates that depend on others among them; ``values``: of the others."""
-    return reduced_at(tree, definitions, values, built)
+    return reduced_at(tree, definitions, values, _placed)
 
 
 def _outputs(
@@ -171,6 +171,19 @@ def built(
     tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball], like: Sequence[Forces] = ()
 ) -> tuple[Numbers, Bodies, list[tuple[str, Numbers, range]], list[Forces]]:
     """The numbers of the tree, its bodies in the world, and what acts on them, by instance."""
+    numbers, bodies, loads = _placed(tree, definitions, values)
+    before = {forces.prefix: forces for forces in like}
+    acting = [
+        forces(bodies, written(definitions[name]), inside, joints, f"{name}.", before.get(f"{name}."))
+        for name, inside, joints in loads
+    ]
+    return numbers, bodies, loads, acting
+
+
+def _placed(
+    tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]
+) -> tuple[Numbers, Bodies, list[tuple[str, Numbers, range]]]:
+    """The numbers of the tree, its bodies in the world, and the joints and numbers of instances."""
     bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
     numbers, bodies = Numbers(Bindings(values, bound)), Bodies()
     loads = []
@@ -179,12 +192,7 @@ def built(
         inside = Numbers(Related(definitions[name], _names(name, definitions[name], numbers.names, values)))
         bodies.add(definitions[name], inside, _seat(bodies, instance, numbers), f"{name}.")
         loads.append((name, inside, range(first, len(bodies.joints))))
-    before = {forces.prefix: forces for forces in like}
-    acting = [
-        forces(bodies, written(definitions[name]), inside, joints, f"{name}.", before.get(f"{name}."))
-        for name, inside, joints in loads
-    ]
-    return numbers, bodies, loads, acting
+    return numbers, bodies, loads
 
 
 def beside(tree: Plain, definitions: Mapping[str, Plain], bodies: Bodies, numbers: Numbers) -> TreeForces:

@@ -11,6 +11,7 @@ from typing import Any, Self, TypeVar
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from substructures.documents.faults import faults_of, require_object
+from substructures.documents.from_json import read_json
 from substructures.documents.to_json import write_json
 from substructures.errors import InvalidDocument
 
@@ -38,6 +39,13 @@ class Document(DocumentPart):
     def stored(cls, data: Any) -> Self:
         """The document from what was stored: as :meth:`read`, and what older versions accepted keeps its meaning."""
         return read_model(cls, data, stored=True)
+
+    @classmethod
+    def kept(cls, canonical: bytes) -> Self:
+        """The :meth:`stored` document of canonical bytes, whose digest is its own. Raises InvalidDocument."""
+        found = cls.stored(read_json(canonical))
+        found.__dict__["_canonical"] = canonical
+        return found
 
     @cached_property
     def _canonical(self) -> bytes:

@@ -24,11 +24,30 @@ def write_json(data: Any, keys: Callable[[dict[Any, Any]], Iterable[Any]] = sort
     ``0``; a ``float`` is written as its shortest decimal text. Raises :class:`InvalidDocument` for a value that is not
     plain data or not finite, for a lone surrogate, and for nesting deeper than ``MAX_DEPTH``.
     """
-    text = _Writing(keys).value(data, 0)
+    try:
+        text = _written(data, keys)
+    except (InvalidDocument, RefusedNumberError, TypeError):
+        text = _Writing(keys).value(data, 0)  # says where the fault is
     try:
         return text.encode("utf-8")
     except UnicodeEncodeError:
         raise InvalidDocument.at("", "encoding", SURROGATE) from None
+
+
+def _written(value: Any, keys: Callable[[dict[Any, Any]], Iterable[Any]], depth: int = 0) -> str:
+    """What :class:`_Writing` makes of plain data; of all else, and where something is wrong, it is asked itself."""
+    kind = type(value)
+    if kind is str:
+        return _text(value)
+    if kind is int or kind is Decimal or kind is float:
+        return plain_text(value)
+    if kind is dict and depth < MAX_DEPTH:
+        inner = depth + 1
+        return f"{{{','.join([f'{_text(key)}:{_written(value[key], keys, inner)}' for key in keys(value)])}}}"
+    if (kind is list or kind is tuple) and depth < MAX_DEPTH:
+        inner = depth + 1
+        return f"[{','.join([_written(each, keys, inner) for each in value])}]"
+    return _Writing(keys).value(value, depth)
 
 
 class Written(dict[str, Any]):

@@ -64,7 +64,7 @@ def value(given: Given, names: Mapping[str, Any] | None = None) -> Any:
     if not isinstance(given, str):
         text = str(given)
         is_short = len(text) <= SHORT and not text.strip("-.0123456789")
-        return np.float64(text) + 0.0 if is_short else _float(_exact(given))  # both correctly rounded, -0 is 0
+        return np.float64(float(text) + 0.0) if is_short else _float(_exact(given))  # correctly rounded, -0 is 0
     steps, known = read(given), names or {}
     if len(steps) == 1 and steps[0].op == "name":
         return _floats(_lookup(steps[0], known))

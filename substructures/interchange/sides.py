@@ -17,9 +17,10 @@ from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 #: a tree and the parts of its instances
 Parts = tuple[TreeSpec, Mapping[str, Part]]

@@ -13,11 +13,11 @@ from substructures.part.part import Part
 from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
+from substructures.tree.couple import loaded_outputs
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec, require_unignored
 from substructures.tree.given.driven import all_coordinates, put_in
 from substructures.tree.given.ignored import at_momenta
-from substructures.tree.model import loaded_outputs
 
 #: what trees with ignored coordinates have, too, and what tells whether these are cyclic
 REDUCED, OF_EQUATIONS = ("reactions", "powers"), frozenset(("metric", "bias", "forces", "potential_energy", "friction"))

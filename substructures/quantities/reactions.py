@@ -34,6 +34,7 @@ from substructures.quantities.of_parts import OfParts, formed
 from substructures.quantities.regressor import DYNAMIC, bare
 from substructures.tree.applied_wrenches import applied_wrenches
 from substructures.tree.assembly import Assembly
+from substructures.tree.couple import loaded_outputs
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec
 from substructures.tree.given.driven import every_coordinate
@@ -41,7 +42,6 @@ from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.given.loops.multipliers import PREFIX, loop_multipliers
 from substructures.tree.given.projection import changed
 from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions, pass_back
-from substructures.tree.model import loaded_outputs
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
 

@@ -26,8 +26,8 @@ from substructures.sweeps.shapes import (
     couple_shape,
     values_of,
 )
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
 
 Rows = NDArray[np.int64]
 #: rows that are evaluated at a time: their intermediate values stay in the cache of a core

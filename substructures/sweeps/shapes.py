@@ -22,8 +22,9 @@ from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
+from substructures.tree.couple import couple_formulas
 from substructures.tree.document import TreeSpec, read_instance
-from substructures.tree.model import Model, couple_formulas
+from substructures.tree.model import Model
 from substructures.tree.shape import places_of, without_numbers
 from substructures.tree.units import differing_interfaces
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import Any
 
 from substructures.errors import InvalidDocument, among
 from substructures.expr.graph import Expr, Graph
@@ -110,6 +111,8 @@ def unchecked(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     _name_faults(spec, scope)
     scope.finish()
     parameters = _parameters(spec, parts, scope)
+    for name, each in parameters.items():
+        scope.declare(name, "parameter", str(each["unit"]))
     bound = _Bindings(spec, parts, scope)
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
@@ -187,34 +190,33 @@ def _order(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> list[int]
 
 
 def _parameters(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
-    """All parameters of the tree with defaults, those of instances as instance.name; declares their symbols."""
+    """All parameters of the tree with defaults, those of instances as instance.name; faults of the tree's own."""
     result: dict[str, dict[str, object]] = {}
     for name, each in sorted(described(spec.parameters).items()):
-        scope.declare(name, "parameter", str(each["unit"]))
         if each["value"] is not None:
             # in a graph of its own: no formula, nor the order of operations, depends on the value
             Scope(Graph(), faults=scope.faults).read(each["value"], f"/parameters/{name}/value", no_names)
         result[name] = each
     for instance in spec.instances:
-        for name, some in sorted(parts[instance.name].parameters.items()):
-            full = f"{instance.name}.{name}"
-            scope.declare(full, "parameter", str(some["unit"]))
-            result[full] = some
+        result |= {f"{instance.name}.{name}": x for name, x in sorted(parts[instance.name].parameters.items())}
     return result
 
 
-def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, dict[str, dict[str, object]]]:
-    """``parameters`` that are not bound and ``inputs`` of a tree, whether or not a formula depends on them."""
+def declared(spec: TreeSpec, parts: Mapping[str, Part]) -> dict[str, Any]:
+    """``parameters`` that are not bound and ``inputs`` of a tree, whether or not a formula depends on them. Raises
+    InvalidDocument for values of its own that cannot be read.
+    """
+    scope = Scope(Graph())
     bound = {f"{instance.name}.{name}" for instance in spec.instances for name in instance.parameters}
-    parameters = _parameters(spec, parts, Scope(Graph()))
-    free = {name: each for name, each in parameters.items() if name not in bound}
-    return {"parameters": free, "inputs": _inputs(spec, parts)}
+    parameters, inputs = _parameters(spec, parts, scope), _inputs(spec, parts, scope)
+    scope.finish()
+    return {"parameters": {name: x for name, x in parameters.items() if name not in bound}, "inputs": inputs}
 
 
-def _inputs(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope | None = None) -> dict[str, dict[str, object]]:
-    """All inputs of loads: of the tree, and those that the definitions declare; ``scope``: notes faults of defaults."""
+def _inputs(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> dict[str, dict[str, object]]:
+    """All inputs of loads: of the tree, and those that the definitions declare; faults of the tree's defaults."""
     for name, given in sorted(spec.inputs.items()):
-        if scope is not None and given.default is not None:
+        if given.default is not None:
             Scope(Graph(), faults=scope.faults).read(given.default, f"/inputs/{name}/default", no_names)
     return described_inputs(spec.inputs) | {
         tree_name(instance.name, name): each

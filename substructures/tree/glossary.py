@@ -58,7 +58,7 @@ MOST_FACTORS = 20_000
 def glossary(spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, model: Program | None = None) -> Program:
     """Outputs ``letter numbers component``, for example ``U 3.1 x``, each a scalar, over the symbols of the model.
 
-    ``group``: as :func:`substructures.tree.model.couple`; ``model``: its program, for names of what it stores. Raises
+    ``group``: as :func:`substructures.tree.couple.couple`; ``model``: its program, for names of what it stores. Raises
     InvalidDocument.
     """
     assembly = assemble(spec, parts)

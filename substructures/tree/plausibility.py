@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.documents.fields import in_si
-from substructures.expr.direct import ball, value
+from substructures.expr.direct import ball, steps_of, value
+from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Body, Definition
 from substructures.part.mass import limits_in_numbers, number_of, sum_of
@@ -53,25 +54,20 @@ class _Values(Mapping[str, Any]):
         return len({**self._texts, **self._found})
 
 
-class _OfInstance(Mapping[str, Any]):
-    """The same by their names in one definition."""
+def _names_of(values: _Values, instance: str, names: Iterable[str]) -> dict[str, Any]:
+    """The same by their names in one definition; those that have a value."""
+    found = {}
+    for name in names:
+        try:
+            found[name] = values[f"{instance}.{name}"]
+        except (KeyError, ExpressionError):
+            continue
+    return found
 
-    def __init__(self, tree: Mapping[str, Any], instance: str, names: Iterable[str]) -> None:
-        self._tree, self._instance, self._names = tree, instance, frozenset(names)
 
-    def __getitem__(self, name: str) -> Any:
-        if name not in self._names:
-            raise KeyError(name)
-        return self._tree[f"{self._instance}.{name}"]
-
-    def __contains__(self, name: object) -> bool:
-        return name in self._names and f"{self._instance}.{name}" in self._tree
-
-    def __iter__(self) -> Iterator[str]:
-        return iter(self._names)
-
-    def __len__(self) -> int:
-        return len(self._names)
+def _in_masses(definition: Definition) -> set[str]:
+    texts = (mass for body in definition.bodies if isinstance(mass := in_si(body.mass), str))
+    return {str(step.value) for text in texts for step in steps_of(text) if step.op == "name"}
 
 
 @dataclass(frozen=True)
@@ -95,14 +91,13 @@ class Plausibility:
     def mass(self) -> float | None:
         """Of all bodies in kg where no parameter is given; None where that of one is not known then."""
         values = _Values(self._texts, {}, ball)
-        definitions = self.definitions.items()
-        names = {name: _OfInstance(values, name, each.parameters) for name, each in definitions}
-        return sum_of((body.mass, names[name]) for name, each in definitions for body in each.bodies)
+        names = {name: _names_of(values, name, _in_masses(each)) for name, each in self.definitions.items()}
+        return sum_of((body.mass, names[name]) for name, each in self.definitions.items() for body in each.bodies)
 
     def masses(self, given: Mapping[str, Any]) -> Any:
         """Of all bodies in kg, with the parameters ``given`` (numbers, or (N,)) and defaults; NaN without a value."""
         values, pairs = _Values(self._texts, given), self.definitions.items()
-        names = {name: _OfInstance(values, name, each.parameters) for name, each in pairs}
+        names = {name: _names_of(values, name, _in_masses(each)) for name, each in pairs}
         found = [number_of(body.mass, names[name]) for name, each in pairs for body in each.bodies]
         return sum((np.nan if x is None else x for x in found), 0.0)
 
@@ -130,7 +125,7 @@ class Plausibility:
         values, found = _Values(self._texts, given), list[tuple[str, str, Sequence[tuple[str, str]], Tensor | None]]()
         for i, instance in enumerate(self.spec.instances):
             definition = self.definitions[instance.name]
-            names = _OfInstance(values, instance.name, definition.parameters)
+            names = _names_of(values, instance.name, definition.parameters)
             for body in definition.bodies:
                 told = f"instance '{instance.name}', body '{body.name}'"
                 found.append((f"/instances/{i}", told, *_faults(body, names, first)))
@@ -146,7 +141,7 @@ class Plausibility:
         values, found = _Values(self._texts, given), dict[str, tuple[Any, Any, str]]()
         for instance in self.spec.instances:
             definition = self.definitions[instance.name]
-            names = _OfInstance(values, instance.name, definition.parameters)
+            names = _names_of(values, instance.name, definition.parameters)
             found |= {f"{instance.name}.{q}": ends for q, ends in limits_in_numbers(definition, names).items()}
         return found
 
@@ -235,7 +230,9 @@ def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tupl
             found += _negative("armature", number_of(given, names), "kg m^2", first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
         return found, None
-    numbers = [number_of(x, names) for x in (body.mass, *body.com, *inertia)]
+    numbers = [
+        names[x] if type(x) is str and x in names else number_of(x, names) for x in (body.mass, *body.com, *inertia)
+    ]
     if isinstance(body.mass, str):
         found += _negative("mass", numbers[0], "kg", first)
     if any(x is None for x in numbers):

@@ -50,13 +50,15 @@ TOTAL = frozenset(("add", "sub", "mul", "neg", "int", "rat", "sym", "sin", "cos"
 class CertifiedProgram:
     """The program of a shape, what its certificate says of the formulas, and what is to be told of them.
 
-    ``instances``: the names in its symbols, in the order of the document that it was made of.
+    ``instances``: the names in its symbols, in the order of the document that it was made of. ``axes``:
+    ``coordinates``, ``joints``, ``frames`` and ``limited`` of the model where it has nothing else (loops, ties).
     """
 
     program: Program
     certificate: Mapping[str, Any]
     notices: Sequence[Notice] = ()
     instances: tuple[str, ...] = ()
+    axes: Mapping[str, Any] | None = None
 
     def called(self, instances: tuple[str, ...]) -> CertifiedProgram:
         """That of the tree whose instances have these names: an identity holds whatever its symbols are called."""
@@ -68,8 +70,9 @@ class CertifiedProgram:
             instance, dot, rest = text.removeprefix(effort).partition(".")
             return f"{effort}{names.get(instance, instance) if dot else instance}{dot}{rest}"
 
-        symbols = tuple(replace(symbol, name=name(symbol.name)) for symbol in self.program.symbols)
-        return replace(self, program=replace(self.program, symbols=symbols), instances=instances)
+        program = replace(self.program, symbols=tuple(replace(s, name=name(s.name)) for s in self.program.symbols))
+        axes = self.axes and {k: x if k == "joints" else tuple(map(name, x)) for k, x in self.axes.items()}
+        return replace(self, program=program, instances=instances, axes=axes)
 
     @cached_property
     def _undefined_somewhere(self) -> Program | None:
@@ -96,27 +99,32 @@ def _is_total(operation: Operation) -> bool:
     return operation[0] in TOTAL or (operation[0] == "powi" and operation[2] > 0)
 
 
+Make = Callable[[TreeSpec, Collection[str]], tuple[CertifiedProgram, bool]]
+
+
 def of_shape(
     spec: TreeSpec,
     parts: Mapping[str, Part],
     group: bool,
     known: KnownShapes | None,
-    make: Callable[[TreeSpec, Collection[str]], tuple[CertifiedProgram, bool]],
+    make: Make,
+    require: Callable[[], None],
 ) -> tuple[CertifiedProgram, dict[str, Fraction]]:
     """What is known of the shape of a tree, or made, and the numbers to be put in.
 
     ``make``: gives it of a tree that is free of the numbers of such parameters, and whether it holds for all values of
     parameters. Where it does not, and where numbers cannot be put in, the tree with its numbers is a shape of its own.
+    ``require``: raises for what is wrong with the tree; called where the names of a known shape's instances are new.
     """
     free, values = without_numbers(spec)
     if values:
         try:
-            found, is_shared = _found(free, parts, group, known, make, values)
+            found, is_shared = _found(free, parts, group, known, make, require, values)
         except (InvalidDocument, TooLarge):  # maybe not with numbers
             is_shared = False
         if is_shared and found.takes(values):
             return found, values
-    return _found(spec, parts, group, known, make, {})[0], {}
+    return _found(spec, parts, group, known, make, require, {})[0], {}
 
 
 def _found(
@@ -124,7 +132,8 @@ def _found(
     parts: Mapping[str, Part],
     group: bool,
     known: KnownShapes | None,
-    make: Callable[[TreeSpec, Collection[str]], tuple[CertifiedProgram, bool]],
+    make: Make,
+    require: Callable[[], None],
     values: Collection[str],
 ) -> tuple[CertifiedProgram, bool]:
     if known is None:
@@ -132,19 +141,20 @@ def _found(
     key, names = shape_digest(spec, parts, group, values), tuple(each.name for each in spec.instances)
     found = known.get(key)
     if found is None:
-        found, is_shared = make(spec, values)
-        found = replace(found, instances=names)
+        made, is_shared = make(spec, values)
+        found = replace(made, instances=names)
         if is_shared:
             known.put(key, found)
         return found, is_shared
-    if found.instances != names:
-        key = f"{key} {' '.join(names)}"
-        renamed = known.get(key)
-        if renamed is None:
-            renamed = found.called(names)
-            known.put(key, renamed)
-        return renamed, True
-    return found, True
+    if found.instances == names:
+        return found, True
+    key = f"{key} {' '.join(names)}"
+    renamed = known.get(key)
+    if renamed is None:
+        require()
+        renamed = found.called(names)
+        known.put(key, renamed)
+    return renamed, True
 
 
 def without_numbers(spec: TreeSpec) -> tuple[TreeSpec, dict[str, Fraction]]:
@@ -215,8 +225,7 @@ def with_numbers(program: Program, values: Mapping[str, Fraction]) -> Program:
     """The program of a shape with numbers in the places of symbols, exactly. Raises as
     :func:`substructures.expr.bind.bind`.
     """
-    known = {symbol.name for symbol in program.symbols}
-    own = {name: x for name, x in values.items() if name in known}
+    own = {symbol.name: values[symbol.name] for symbol in program.symbols if symbol.name in values}
     return hoisted(bind(program, own)).marked(program.not_judged) if own else program
 
 
@@ -234,7 +243,7 @@ def shape_digest(
     spec: TreeSpec, parts: Mapping[str, Part], group: bool = False, constants: Collection[str] = ()
 ) -> str:
     """The digest of the shape of a tree: mounts, placements, bindings, loads and closures, the shapes of its ``parts``
-    (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.model.couple`;
+    (by instance) with the digests of their programs; ``group``: see :func:`substructures.tree.couple.couple`;
     ``constants``: the parameters that numbers are put in for.
 
     Words and values of parameters are not in it; of the tree's own there is whether they have one. Names of instances
@@ -255,8 +264,7 @@ def shape_digest(
     told = [without_descriptions(left), group, sorted(constants)]
     names = [each["name"] for each in instances]
     if names and left.keys() <= NAMELESS:
-        others = ("t", "tau.", *left.get("parameters", ()), *left.get("inputs", ()))
-        named = {*(f"{name}." for name in names), *others}
+        named = {*(f"{x}." for x in names), "t", "tau.", *left.get("parameters", ()), *left.get("inputs", ())}
         told = _numbered([*told, sorted(named)], names)
         for each in told[0]["instances"]:
             del each["name"]

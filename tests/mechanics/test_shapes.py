@@ -16,8 +16,8 @@ from substructures import Definition, Model, Part, catalogue, couple, derive
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument, VerificationFailed
 from substructures.tree.certificate import certify_tree
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple_shape
 from substructures.tree.shape import CertifiedProgram
 
 
@@ -191,6 +191,39 @@ def test_names_of_instances_are_names_of_symbols_alone(bound: dict[str, Any]) ->
         assert _said(couple(tree, parts, known=known)) == _said(couple(tree, parts))
     assert len([key for key in known if " " not in key]) == 3
     assert known.hits == 5 + 1  # five trees of the first shape, and one time a renamed program
+
+
+@pytest.mark.parametrize(
+    ("changed", "code"),
+    [
+        ({"name": "g"}, "reserved-name"),
+        ({"name": "world"}, "reserved-name"),
+        ({"name": "p"}, "duplicate-name"),
+        ({"parameters": {"m": {"value": 1, "unit": "m"}}}, "unit-mismatch"),
+        ({"parameters": {"m": {"value": "2*(", "unit": ""}}}, "bad-expression"),
+    ],
+)
+def test_a_tree_of_a_known_shape_is_read_all_the_same(changed: dict[str, Any], code: str) -> None:
+    """What is wrong with a tree is what the slow way says, whether or not there was one of its shape before."""
+    part, known = shipped_part("simple-pendulum"), Shapes()
+
+    def coupled(given: dict[str, Any], shapes: Shapes | None) -> Model:
+        """Two pendulums, of which the second is as given, with parameters of the tree."""
+        own = {"g": {"value": 9.81, "unit": "m/s^2"}, "m": {"value": 1, "unit": "kg"}} | given.get("parameters", {})
+        name = given.get("name", "q")
+        second = {"name": name, "substructure": "x", "parameters": {"m": "m"}}
+        instances = [{"name": "p", "substructure": "x"}, second]
+        tree = {"name": "t", "gravity": [0, 0, "-g"], "parameters": own, "instances": instances}
+        return couple(tree, dict.fromkeys(("p", name), part), known=shapes)
+
+    coupled({}, known)
+    faults = []
+    for shapes in (known, None):
+        with pytest.raises(InvalidDocument) as refused:
+            coupled(changed, shapes)
+        faults.append(refused.value.faults)
+    assert faults[0] == faults[1]
+    assert faults[0][0].code == code
 
 
 def test_names_of_instances_that_mean_another_tree_belong_to_the_shape() -> None:

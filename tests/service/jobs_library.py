@@ -15,8 +15,8 @@ from substructures.documents import write_json
 from substructures.interchange.importing import document_of
 from substructures.part.definition import Definition
 from substructures.part.part import Part, derive
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
 
 BUDGET = Budget(60.0, 2**31)
 

@@ -17,8 +17,9 @@ from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 from substructures.export import render
 from substructures.part.part import derive
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE
 from .job_outcomes import faults, known_library, outcomes, quiet

@@ -16,7 +16,7 @@ from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.shapes import SHARE
 from service.store.store import Store
 from substructures import Definition, Part, catalogue, derive
-from substructures.tree import model
+from substructures.tree import couple
 
 from .conftest import TREE
 from .fake_engine import FakeEngine, finished, items, running, submitted
@@ -47,13 +47,13 @@ def _item(arm: Part, hand: Part, **more: Any) -> tuple[dict[str, Any], dict[str,
 def certified(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     """The trees that are compared with their documents, by digest of their programs."""
     found: list[str] = []
-    slow = model.certified
+    slow = couple.certified
 
     def noted(*given: Any) -> Any:
         found.append(given[3].digest)
         return slow(*given)
 
-    monkeypatch.setattr(model, "certified", noted)
+    monkeypatch.setattr(couple, "certified", noted)
     return found
 
 

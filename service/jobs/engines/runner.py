@@ -10,6 +10,7 @@ item: memory by RLIMIT_DATA, CPU time by an interval timer whose signal, SIGPROF
 from __future__ import annotations
 
 import ctypes
+import gc
 import os
 import resource
 import signal
@@ -37,6 +38,7 @@ def main(arguments: list[str]) -> int:
     _give_up_rights()
     os.nice(niceness)
     load()
+    gc.freeze()  # what was imported stays: nothing to look at whenever there is something to collect
     _send(reports, Message({"ready": os.getpid()}))
     reader = MessageReader()
     blobs: dict[str, bytes] = {}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 
 from service.content.cache import Cache
@@ -27,8 +27,9 @@ from substructures.part.definition import Definition
 from substructures.part.parameters import described
 from substructures.part.part import Part, derive
 from substructures.quantities.numbers.warnings import no_coordinates
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels
-from substructures.tree.model import couple_shape
+from substructures.tree.model import Model
 from substructures.tree.units import DescribedParameters, check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name
@@ -55,9 +56,11 @@ def pinned_tree(item: ItemDocument, library: Library, is_stored: bool = False) -
 
 
 def pinned_spec(
-    spec: TreeSpec, item: ItemDocument, library: Library, is_stored: bool = False
+    spec: TreeSpec, item: ItemDocument, library: Library, is_stored: bool = False, is_checked: bool = False
 ) -> tuple[ItemDocument, tuple[str, ...]]:
-    """As :func:`pinned_tree`, of a document that was read."""
+    """As :func:`pinned_tree`, of a document that was read; ``is_checked``: it is compared with the definitions of its
+    parts where it is coupled, unless there is a fault already.
+    """
     versions = {i.name: library.version(i.substructure) for i in spec.instances if i.substructure is not None}
     faults = [
         Fault(f"/instances/{k}/substructure", "unknown-substructure", _unknown(instance, library))
@@ -68,14 +71,8 @@ def pinned_spec(
     for version in found.values():
         if version.software != software():  # it may lack what is coupled today
             raise NotDerived("part", version.digest)
-    faults += _faults(spec, found, library)
-    definitions = {each.name: _definition(each, found, library) for each in spec.instances}
-    known = {name: each for name, each in definitions.items() if each is not None}
-    if not is_stored:
-        faults += check_tree_units(spec, _parameters(known, found), known).faults
-    if faults:
-        raise InvalidDocument(faults)
-    spec = with_levels(spec, known) if is_stored else spec
+    if faults or not is_checked:
+        spec = _compared(spec, found, library, is_stored, faults)
     pinned = tuple(_pin(instance, found.get(instance.name)) for instance in spec.instances)
     programs = {version.digest: version.program for version in found.values()}
     text = spec.model_copy(update={"instances": pinned}).canonical()
@@ -84,21 +81,33 @@ def pinned_spec(
     return {"tree": tree, "programs": programs, "nodes": item["nodes"], **entry}, (*programs, *programs.values())
 
 
-def _faults(spec: TreeSpec, versions: Mapping[str, StoredVersion], library: Library) -> Iterator[Fault]:
-    """Names that occur twice, hosts that do not exist, parameters and places of hosts that the definitions lack."""
+def _compared(
+    spec: TreeSpec, found: Mapping[str, StoredVersion], library: Library, is_stored: bool, faults: Sequence[Fault]
+) -> TreeSpec:
+    """The tree, compared with the definitions of its parts. Raises InvalidDocument for these faults and more."""
+    definitions = [_definition(each, found, library) for each in spec.instances]
+    known = {i.name: each for i, each in zip(spec.instances, definitions, strict=True) if each is not None}
+    units = () if is_stored else check_tree_units(spec, _parameters(known, found), known).faults
+    if told := [*faults, *_faults(spec, definitions), *units]:
+        raise InvalidDocument(told)
+    return with_levels(spec, known) if is_stored else spec
+
+
+def _faults(spec: TreeSpec, definitions: Sequence[Definition | None]) -> Iterator[Fault]:
+    """Names that occur twice, hosts that do not exist, parameters and places of hosts that the ``definitions`` lack, of
+    the instances that have one.
+    """
     first: dict[str, Instance] = {}
     for k, instance in enumerate(spec.instances):
         if first.setdefault(instance.name, instance) is not instance:
             yield Fault(f"/instances/{k}/name", "duplicate-name", f"duplicate instance '{instance.name}'")
-    definitions = {name: _definition(each, versions, library) for name, each in first.items()}
     frames = {
-        name: ["base", *(body.name for body in each.bodies), *(port.name for port in each.ports)]
-        for name, each in definitions.items()
-        if each is not None
+        instance.name: ["base", *(body.name for body in each.bodies), *(port.name for port in each.ports)]
+        for instance, each in zip(spec.instances, definitions, strict=True)
+        if each is not None and first[instance.name] is instance
     }
-    unread = definitions.keys() - frames.keys()
-    for k, instance in enumerate(spec.instances):
-        definition = _definition(instance, versions, library)
+    unread = first.keys() - frames.keys()
+    for k, (instance, definition) in enumerate(zip(spec.instances, definitions, strict=True)):
         if definition is not None:
             for name in instance.parameters:
                 if name not in definition.parameters:
@@ -151,7 +160,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     given, parts = tree_parts(item, blobs)
     spec = _named(given, parts) if item.get(NAMED) else given
     progress(0.1)
-    model = couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    model = _coupled(spec, parts, item)
     definitions = {name: part.definition for name, part in parts.items()}
     spec = with_levels(spec, definitions, {each["instance"] for each in model.reduced})
     check_constraints(model)
@@ -180,6 +189,18 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "warnings": [*model.certificate["warnings"], *no_coordinates(model.dof)],
     }
     return Outcome(summary, files)
+
+
+def _coupled(spec: TreeSpec, parts: Mapping[str, Part], item: ItemDocument) -> Model:
+    """The model. Raises InvalidDocument for all that is wrong with the tree, TooLarge."""
+    try:
+        return couple_shape(spec, parts, item["nodes"], admitted(item), known=shapes_of(item))
+    except InvalidDocument:
+        definitions = {name: part.definition for name, part in parts.items()}
+        units = check_tree_units(spec, {name: part.parameters for name, part in parts.items()}, definitions)
+        if told := [*_faults(spec, [definitions[each.name] for each in spec.instances]), *units.faults]:
+            raise InvalidDocument(told) from None
+        raise
 
 
 def _named(spec: TreeSpec, parts: Mapping[str, Part]) -> TreeSpec:

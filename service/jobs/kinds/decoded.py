@@ -34,7 +34,7 @@ def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:
     if part is None:
         with reading("a part", definition):
             read = _programs.once(program, lambda: Program.from_bytes(blobs[program]))
-            part = Part(Definition.stored(read_json(blobs[definition])), read, {})
+            part = Part(Definition.kept(blobs[definition]), read, {})
         _parts.put(key, part)
     return part
 

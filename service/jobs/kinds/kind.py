@@ -13,7 +13,6 @@ from service.messages.refusals import LongWork
 from service.schemas.entries import Entry
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
-from substructures.documents import read_json
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.part.definition import Definition
 
@@ -71,7 +70,7 @@ def stored_definition(digest: str, library: Library) -> Definition:
     if content is None:
         raise missing("a definition", digest)
     with reading("a definition", digest):
-        return Definition.stored(read_json(content))
+        return Definition.kept(content)
 
 
 def recipe_member(version: StoredVersion, library: Library) -> ItemDocument:

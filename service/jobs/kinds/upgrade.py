@@ -24,8 +24,8 @@ from service.settings import Limits
 from substructures.documents import read_json, read_model
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple_shape
 
 ALL = "*"
 

@@ -27,7 +27,7 @@ from service.settings import Limits
 from substructures.documents import read_json, read_model, write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.tree.model import couple_shape
+from substructures.tree.couple import couple_shape
 
 ALL = "*"
 #: what is stored of a tree beside its program, but for the certificate

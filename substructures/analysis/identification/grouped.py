@@ -39,9 +39,10 @@ from substructures.printers.render import INLINE_LIMIT
 from substructures.printers.text import Text
 from substructures.printers.textbook import textbook_inlined
 from substructures.tree.assembly import Assembly, assemble
+from substructures.tree.couple import loaded_outputs
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, loaded_outputs
+from substructures.tree.model import Model
 from substructures.tree.mounted_part import MountedPart
 
 #: outputs of a model that base parameters determine

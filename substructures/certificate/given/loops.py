@@ -9,35 +9,18 @@ No formula of the program is looked at."""
 
 from __future__ import annotations
 
-import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import lru_cache
-from itertools import count
-from typing import Any
 
-import numpy as np
 from flint import arb, arb_mat, ctx
 
-from substructures.certificate.bodies import Bodies
-from substructures.certificate.by_coordinate import of_coordinates, rates
-from substructures.certificate.closures import ROWS, closure_outputs
-from substructures.certificate.described import closures_in, coordinates_in
+from substructures.certificate.given.closing import PRIMES, Block, Closing, blocks_of
 from substructures.certificate.linear import Ball
-from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.outputs import Outputs
+from substructures.certificate.numbers import Numbers
 
-Array = Any
-#: bodies of a tree at values of all symbols
-Build = Callable[[Plain, Mapping[str, Plain], Mapping[str, Ball]], tuple[Numbers, Bodies, Any, Any]]
-PRIMES = ("", "'", "''")
-#: starts that are tried, and steps of Newton's method from each
-STARTS, MANY, STEPS = 5, 40, 12
 #: bits that floats are exact to at least; each step of Newton's method doubles them
 EXACT = 40
-#: of what no closure depends on
-MASSES = frozenset(("mass", "com", "inertia"))
-LAWS = frozenset(("stiffness", "rest", "damping", "armature", "limits", "friction"))
 
 
 @dataclass
@@ -52,28 +35,8 @@ class Reduced:
     pull: dict[str, Ball]
 
 
-class Loops:
-    """The closures of one instance by itself."""
-
-    def __init__(self, name: str, definition: Plain, values: Mapping[str, Ball], build: Build) -> None:
-        self.name, self.build = name, build
-        bodies = [{key: x for key, x in body.items() if key not in MASSES} for body in definition["bodies"]]
-        bodies = [{**b, "joint": {key: x for key, x in b["joint"].items() if key not in LAWS}} for b in bodies]
-        self.definition = {**definition, "bodies": bodies, "loads": []}
-        self.tree: Plain = {"instances": [{"name": name}]}
-        self.kinds = coordinates_in(self.tree, {name: definition})
-        self.y = [q for q in self.kinds if q.partition(".")[2] in definition["independent"]]
-        self.z = [q for q in self.kinds if q not in self.y]
-        self.values = dict(values) | {f"tau.{q}": arb(0) for q in self.z}
-        self.values |= {f"{q}{p}": arb(0) for q in self.z for p in PRIMES}
-
-    def rows(self, more: Mapping[str, Ball]) -> Outputs:
-        """The outputs of the closures."""
-        values, result = {**self.values, **more}, Outputs()
-        numbers, bodies, inside, _ = self.build(self.tree, {self.name: self.definition}, values)
-        closed = closures_in(self.tree, {self.name: self.definition}, numbers, inside)
-        closure_outputs(result, bodies, closed, rates(bodies, values, "'"))
-        return of_coordinates(result, bodies)
+class Loops(Closing):
+    """The closures of one instance, and what they make of its coordinates."""
 
     def solve(self, found: Reduced, sides: Iterator[int]) -> None:
         """z and its derivatives, into what was found; ``sides``: 1 or -1, that of the start or the other one."""
@@ -134,11 +97,11 @@ class Loops:
                 for q, x in zip(self.z, both, strict=True):
                     found.H.setdefault(q, {})[y, other] = x
 
-    def _position(self, blocks: Sequence[_Block]) -> dict[str, Ball] | None:
+    def _position(self, blocks: Sequence[Block]) -> dict[str, Ball] | None:
         """z on the branch of the start, in balls."""
         numbers = [(name, float(x)) for name, x in self.values.items()]
         # the same ones at all precisions of a state
-        floats = _closed(_Start(f"{self.name} {self.definition} {blocks} {numbers}", self), blocks)
+        floats = _closed(_Start(f"{self.name} {self.definition} {numbers}", self), blocks)
         if floats is None:
             return None
         at = {q: arb(x) for q, x in floats.items()}
@@ -153,81 +116,9 @@ class Loops:
                 )
                 step = _solved(G, arb_mat(len(rows), 1, [phi.get((k,), arb(0)) for k in rows])).entries()
                 at = {q: (at[q] - x).mid() for q, x in zip(self.z, step, strict=True)}
-            turned = {q: self._turned(q, x) for q, x in at.items()}
+            turned = {q: self.turned(q, x) for q, x in at.items()}
         small = arb(2) ** (-precision - 16)
         return {q: x + (x.abs_upper() + 1) * arb(0, small) for q, x in turned.items()}
-
-    def _turned(self, q: str, x: Ball) -> Ball:
-        """Between -pi and pi of where it starts, if it is an angle."""
-        if self.kinds[q] != "R":
-            return x
-        start = Numbers({}).read(self.definition.get("start", {}).get(q.partition(".")[2], 0))
-        return x - 2 * arb.pi() * round(float((x - start) / (2 * arb.pi())))
-
-    def close(self, block: _Block, at: dict[str, float]) -> bool:
-        """Newton's method for the coordinates of one closure, from several starts: many where it closes at all."""
-        source = random.Random(1)  # noqa: S311 -- the same for everybody
-        first = [float(Numbers({}).read(self.definition.get("start", {}).get(q.partition(".")[2], 0))) for q in block.z]
-        tried, closes = 0, False
-        while tried < (MANY if closes else STARTS):
-            at |= zip(block.z, first, strict=True)
-            if self._newton(block, at):
-                if block.sign_at(self, at) == block.sign:
-                    return True
-                closes = True
-            first, tried = [source.uniform(-3, 3) for _ in block.z], tried + 1
-        return False
-
-    def approach(self, block: _Block, at: dict[str, float]) -> None:
-        """The nearest closed position."""
-        source, start = random.Random(2), {q: at[q] for q in block.z}  # noqa: S311 -- the same for everybody
-        found: list[tuple[float, dict[str, float]]] = []
-        for k in range(STARTS):
-            at |= start if k == 0 else {q: x + source.uniform(-3, 3) for q, x in start.items()}
-            if self._newton(block, at):
-                place = {q: float(self._turned(q, arb(at[q]))) for q in block.z}
-                found.append((sum(abs(x - start[q]) for q, x in place.items()), place))
-        at |= min(found, key=lambda pair: pair[0])[1] if found else start
-
-    def _newton(self, block: _Block, at: dict[str, float]) -> bool:
-        names = list(self.kinds)
-        columns, every = [names.index(q) for q in block.z], [k for k, _ in block.all_rows]
-        for _ in range(STEPS):
-            phi, G, alignment = self._floats(at, every)
-            step = np.linalg.lstsq(G[:, columns], phi, rcond=1e-12)[0]
-            size = np.abs(step).max()
-            at |= {q: at[q] - x * min(1.0, 1.0 / size) if size else at[q] for q, x in zip(block.z, step, strict=True)}
-            if not np.isfinite(size):
-                return False
-            if size < 1e-13:
-                return bool(np.abs(phi).max() < 1e-9 and min(alignment, default=1.0) > 0)
-        return False
-
-    def _floats(self, at: Mapping[str, float], rows: Sequence[int]) -> tuple[Array, Array, list[float]]:
-        found = self.rows({q: arb(x) for q, x in at.items()})
-        phi, G = (found[f"closure.{x}"].entries for x in ("residual", "jacobian"))
-        some = np.array([float(phi.get((k,), arb(0))) for k in rows])
-        matrix = np.array([[float(G.get((k, a), arb(0))) for a in range(len(self.kinds))] for k in rows])
-        alignment = [float(found["closure.alignment"].entries[k,].mid()) for k in rows]
-        return some, matrix, [x for x in alignment if x]
-
-
-@dataclass(frozen=True)
-class _Block:
-    """A closure: its unknown coordinates, all its rows by number and name, those that tell the coordinates, and the
-    sign of their determinant on the branch.
-    """
-
-    z: tuple[str, ...]
-    all_rows: tuple[tuple[int, str], ...]
-    rows: tuple[int, ...]
-    sign: int
-
-    def sign_at(self, loops: Loops, at: Mapping[str, float]) -> int:
-        """Of the determinant."""
-        names = list(loops.kinds)
-        _, G, _ = loops._floats(at, self.rows)
-        return int(np.sign(np.linalg.det(G[:, [names.index(q) for q in self.z]])))
 
 
 @dataclass(frozen=True)
@@ -239,16 +130,17 @@ class _Start:
 
 
 @lru_cache(maxsize=64)
-def _closed(known: _Start, blocks: Sequence[_Block]) -> dict[str, float] | None:
-    """z of closed positions, to the digits of floats."""
-    found: dict[str, float] = dict.fromkeys(known.loops.z, 0.0)
+def _closed(known: _Start, blocks: Sequence[Block]) -> Mapping[str, float] | None:
+    """z of closed positions, to the digits of floats; what closes first is so on all sides of what closes then."""
+    if not blocks:
+        return dict.fromkeys(known.loops.z, 0.0)
+    found = dict(_closed(known, blocks[:-1]) or {})
     with ctx.workprec(64):
-        is_closed = all(known.loops.close(block, found) for block in blocks)
-    return found if is_closed else None
+        return found if found and known.loops.close(blocks[-1], found) else None
 
 
 @lru_cache(maxsize=64)
-def _blocks_at_start(start_of: _Start) -> tuple[_Block, ...]:
+def _blocks_at_start(start_of: _Start) -> tuple[Block, ...]:
     """The closures in an order in which each tells coordinates, at the start of the definition."""
     loops, definition = start_of.loops, start_of.loops.definition
     given = {p: x.get("value") for p, x in definition.get("parameters", {}).items()}
@@ -256,40 +148,7 @@ def _blocks_at_start(start_of: _Start) -> tuple[_Block, ...]:
     start = {f"{loops.name}.{q}": Numbers({}).read(x) for q, x in definition.get("start", {}).items()}
     there = Loops(loops.name, definition, {**loops.values, **dict.fromkeys(loops.y, arb(0)), **numbers}, loops.build)
     there.values |= {q: start.get(q, arb(0)) for q in loops.y}
-    return tuple(_told(there, {q: float(start.get(q, arb(0))) for q in loops.z}))
-
-
-def _told(loops: Loops, at: dict[str, float]) -> Iterator[_Block]:
-    """Closures one after the other, at the closed position near the start."""
-    number = count()
-    waiting = [tuple((next(number), row) for row in ROWS[each["type"]]) for each in loops.definition["closures"]]
-    left, names = list(loops.z), list(loops.kinds)
-    with ctx.workprec(64):
-        while waiting and left:
-            for rows in waiting:
-                _, G, _ = loops._floats(at, [k for k, _ in rows])
-                own = [q for q in left if np.abs(G[:, names.index(q)]).max() > 1e-12]
-                columns = [names.index(q) for q in own]
-                if own and np.linalg.matrix_rank(G[:, columns], tol=1e-9) == len(own):
-                    loops.approach(_Block(tuple(own), rows, (), 0), at)
-                    _, G, _ = loops._floats(at, [k for k, _ in rows])
-                    block = _Block(tuple(own), rows, tuple(rows[i][0] for i in _pivots(G[:, columns])), 0)
-                    yield replace(block, sign=block.sign_at(loops, at))
-                    left = [q for q in left if q not in own]
-                    waiting.remove(rows)
-                    break
-            else:
-                return
-
-
-def _pivots(G: Array) -> list[int]:
-    """As many rows as there are columns, the largest first, each less what the others have of it."""
-    rest, chosen = G.copy(), list[int]()
-    for _ in range(G.shape[1]):
-        chosen.append(int(np.argmax(np.linalg.norm(rest, axis=1))))
-        e = rest[chosen[-1]] / np.linalg.norm(rest[chosen[-1]])
-        rest = rest - np.outer(rest @ e, e)
-    return sorted(chosen)
+    return tuple(blocks_of(there, {q: float(start.get(q, arb(0))) for q in loops.z}))
 
 
 def _solved(G: arb_mat, x: arb_mat) -> arb_mat:

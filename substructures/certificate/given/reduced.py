@@ -21,8 +21,9 @@ from substructures.certificate.described import (
     is_dependent,
     positions_in,
 )
+from substructures.certificate.given.closing import PRIMES, Build
 from substructures.certificate.given.ignored import MOTIONS, OWN, along, contracted, whole
-from substructures.certificate.given.loops import PRIMES, Build, Loops, Reduced
+from substructures.certificate.given.loops import Loops, Reduced
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Bindings, Plain
 from substructures.certificate.outputs import Outputs, Values

@@ -25,7 +25,7 @@ from substructures.tree.inertial import FRAMES, LINKS, Plan, inertial_entries, p
 from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
 from substructures.tree.publishing.published import Published
 from substructures.tree.publishing.published_names import PartNames
-from substructures.tree.renaming import number_text
+from substructures.tree.publishing.renaming import number_text
 
 USED = (*LINKS, *FRAMES, "U", "Omega", "subtree.m", "subtree.s", "subtree.J")
 

@@ -13,7 +13,7 @@ from substructures.part.parameters import counted
 from substructures.part.part import Part
 from substructures.part.topology import BASE
 from substructures.tree.document import TreeSpec
-from substructures.tree.renaming import Names, names_of, number_text, renamed
+from substructures.tree.publishing.renaming import Names, names_of, number_text, renamed
 
 #: fields that are no expressions
 TEXTS = frozenset(

@@ -21,8 +21,9 @@ from service.schemas.jobs import ItemDocument
 from substructures.part.part import Part
 from substructures.pictures.scene import scene
 from substructures.pictures.tree import picture
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 
 @dataclass(frozen=True, slots=True)

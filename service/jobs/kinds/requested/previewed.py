@@ -15,8 +15,8 @@ from substructures.part.definition import Definition
 from substructures.part.mass import mass_at_defaults
 from substructures.part.part import Part, derive
 from substructures.pictures.tree import picture
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
 
 
 def preview_of(item: ItemDocument, _blobs: Blobs) -> Outcome:

@@ -12,8 +12,8 @@ from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.kind import Blobs
 from service.schemas.jobs import ItemDocument
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import TreeSpec, with_levels
-from substructures.tree.model import couple_shape
 from substructures.tree.plausibility import Plausibility
 
 Renewed = Callable[[ItemDocument, Blobs], Outcome]
@@ -28,7 +28,7 @@ def _part(item: ItemDocument, blobs: Blobs) -> Outcome:
 
 def _tree(item: ItemDocument, blobs: Blobs) -> Outcome:
     """Files ``program`` (packed), ``summary``, ``form`` of a stored document; ``parts``: the digests of definition and
-    program of every instance. Raises as :func:`substructures.tree.model.couple_shape`."""
+    program of every instance. Raises as :func:`substructures.tree.couple.couple_shape`."""
     parts = {name: part_of(definition, program, blobs) for name, (definition, program) in item["parts"].items()}
     definitions = {name: part.definition for name, part in parts.items()}
     spec = TreeSpec.stored(item["tree"])

@@ -24,10 +24,11 @@ from substructures.part.part import Part
 from substructures.pictures.latex import latex_picture
 from substructures.pictures.tree import picture
 from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.given.ties import require_untied
 from substructures.tree.glossary import glossary
-from substructures.tree.model import Model, couple
+from substructures.tree.model import Model
 
 #: of a part alone, which does not say gravity
 GRAVITY = {"gravity": [0, 0, "-g"], "parameters": {"g": {"value": "9.81", "unit": "m/s^2"}}}

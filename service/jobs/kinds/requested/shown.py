@@ -35,8 +35,8 @@ from substructures.part.outputs import with_own_inertia
 from substructures.part.part import INTERNAL, Part
 from substructures.quantities.origins import movers_of_part, movers_of_tree, origins
 from substructures.quantities.quantity import outputs_of
+from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.model import couple
 
 #: of programs where none are named, those that there are; of origins always
 OF_TREES = ("metric", "christoffel", "forces", "position", "rotation")
