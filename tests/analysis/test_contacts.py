@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
-from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, walker
+from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, point, walker
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.conditions import read_conditions
@@ -275,7 +275,7 @@ def test_steps_of_contacts_are_machine_code_where_none_rubs(modes: list[int], is
     place = int(np.abs(f.gap).argmin())
     # turning about the corner on which it stands
     x = np.concatenate([q, np.linalg.svd(f.G[place, :2])[2][2], [0.0]])
-    f.modes[place], f.modes[1 - place] = [modes[0], 1, 0], 0
+    f.modes[place], f.modes[1 - place] = [modes[0], 1, 0, 1], 0
     rates = f.compiled()
     assert (rates is not None) == is_made
     if rates is not None:
@@ -306,6 +306,34 @@ def test_a_disc_stays_where_it_falls_on_sixteen_points() -> None:
     np.testing.assert_allclose(motion.q[1:], [[0.2 * fall, 0.1 * fall, 0.05, 0, 0, 0]] * 2, atol=1e-9)
     assert np.abs(motion.qd[1:]).max() < 1e-12
     np.testing.assert_allclose(motion.series["contact_forces"][-1, :, 0], 2 * G / 16, rtol=1e-6)
+
+
+def test_a_thin_disc_settles_point_by_point() -> None:
+    """Tilted onto eight points, of which some begin to slip slowly: friction is against their accelerations then."""
+    rim = [Contact(f"p{k}", f"b.p{k}", friction=0.4) for k in range(8)]
+    model = of("b", disc(8, 1.0, 0.01, (0.1 * 0.0253, 0.005)), [0, 0, -G])
+    motion = move(model, [0, 0, 0.1, 0, 0.1, 0.2], [0] * 6, 0.4, rim)
+    assert motion.is_right, motion.checks
+    assert motion.steps < 2000
+    assert motion.q[-1, 2:] == pytest.approx([0.01, motion.q[-1, 3], 0, 0], abs=1e-9)
+    assert np.abs(motion.qd[-1]).max() < 1e-9
+
+
+def test_a_slip_from_rest_has_the_way_of_its_acceleration() -> None:
+    """Pushed beyond friction by a force that turns: v x (F - mu m g v/|v|) = 0 from rest on, by another integrator."""
+    loads = [{"type": "joint", "name": f"push_{a}", "coordinate": f"b.{a}", "force": text}
+             for a, text in (("x", "6 + t"), ("y", "4*t^2"))]  # fmt: skip
+    contacts = [Contact("c", "b.body", friction=0.3)]
+    motion = move(of("b", point(), [0, 0, -G], loads=loads), [0, 0, 0], [0, 0, 0], 0.5, contacts)
+
+    def rates(t: float, x: Array) -> Array:
+        force = np.array([6 + t, 4 * t * t]) - 0.6 * G * x[2:] / max(np.hypot(*x[2:]), 1e-12)
+        return np.concatenate([x[2:], force / 2])
+
+    start = [0, 0, 1e-6 * (6 - 0.6 * G) / 2, 0]
+    right = scipy.integrate.solve_ivp(rates, (1e-6, 0.5), start, "Radau", rtol=1e-11, atol=1e-14).y[:, -1]
+    assert [*motion.q[-1, :2], *motion.qd[-1, :2]] == pytest.approx(right, abs=1e-8)
+    assert motion.is_right, motion.checks
 
 
 def test_a_rod_that_jams_is_told() -> None:

@@ -69,7 +69,7 @@ class DecidedContacts(ContactMotion):
 
     def begin(self) -> None:
         """All contacts are open, and nothing has happened."""
-        self.modes = np.zeros((len(self.contacts), 3))
+        self.modes = np.zeros((len(self.contacts), 4))
         self.told, self.impacts, self.begun = [], [], False
 
     def compiled(self) -> CompiledRates | None:
@@ -181,7 +181,8 @@ class DecidedContacts(ContactMotion):
         mode = np.where(slips | begins | smooth, SLIP, STICK)
         mode[begins & self.tangents[some].all(axis=1)] = STARTS
         self.modes[some, 0] = np.where(pressed, mode, OPEN)
-        self.modes[some, 1:] = np.where(begins[:, None], _unit(w_T), d)
+        self.modes[some, 1:3] = np.where(begins[:, None], _unit(w_T), d)
+        self.modes[some, 3] = cones.yields
         # what forces there are about
         self.scale[some] = np.maximum(p[:, 0], np.abs(b).max() / cones.yields)
         self._share(t, x, len(some))
@@ -196,7 +197,7 @@ class DecidedContacts(ContactMotion):
             if not (pulls | drags).any():
                 return
             self.modes[pulls, 0], self.modes[drags, 0] = OPEN, FULL
-            self.modes[drags, 1:] = -_unit(self.force[drags, 1:])
+            self.modes[drags, 1:3] = -_unit(self.force[drags, 1:])
 
     def _tell(self, t: float, x: Array, before: Array) -> None:
         """Contacts that lift off, and those that begin to stick or to slip."""
