@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,9 +21,8 @@ from numpy.typing import NDArray
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.contacts.complementarity import LEAST, least
-from substructures.analysis.motion.contacts.pressing import Rows, Slips, independent, slipping
+from substructures.analysis.motion.contacts.pressing import NONE, Rows, Slips, independent, slipping
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
-from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
 from substructures.analysis.motion.right_hand_side import RightHandSide
@@ -75,7 +73,7 @@ class ContactMotion(RightHandSide):
         self.has_power, self.contacts, self._model = True, tuple(contacts), model
         k, n = len(self.contacts), self.n
         self.modes: Modes = np.zeros((k, 4))
-        self._rows: tuple[bytes, Rows] = b"", Rows(*(np.zeros(0, dtype=np.int64),) * 2)
+        self._rows: tuple[bytes, Rows] = b"", NONE
         self.friction = np.array([contact.friction for contact in self.contacts])
         count = np.array([TANGENTS[contact.type] for contact in self.contacts])
         self.tangents = (np.arange(2) < count[:, None]) & (self.friction > 0)[:, None]
@@ -111,6 +109,11 @@ class ContactMotion(RightHandSide):
     def closed(self) -> NDArray[np.bool_]:
         """Contacts that are closed (k,)."""
         return self.modes[:, 0] >= STICK
+
+    @property
+    def turns(self) -> NDArray[np.bool_]:
+        """Contacts that slip along a way with two directions (k,)."""
+        return np.asarray((self.modes[:, 0] == SLIP) & self.tangents.all(axis=1))
 
     def require_above(self, t: float, x: Array) -> None:
         """Raises InvalidArgument (``/q``) for a start at which a contact that acts is below its plane."""
@@ -150,28 +153,27 @@ class ContactMotion(RightHandSide):
         if not self.closed.any():
             return free, pivots, power
         self.look(t, x)
-        slips = Slips(self.friction, self._ways(self.velocities(x)), self.modes[:, 0] == STARTS)
-        found, slips = slipping(self.g, self.G, self.bias, self._independent(), free, slips)
+        slips = Slips(self.friction, self.ways(self.velocities(x)), self.modes[:, 0] == STARTS)
+        found, slips = slipping(self.g, self.G, self.bias, self.independent(), free, slips)
         self.force[:] = found.force
         self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * slips.ways
         second = found.second
         second[np.abs(second) <= NOTHING * found.size] = 0.0
         return second, pivots, power + self.power(x)
 
-    def _independent(self) -> Rows:
+    def independent(self) -> Rows:
         """Of what is closed and what sticks, chosen where these modes are looked at first."""
         if (key := self.modes.tobytes()) != self._rows[0]:
             holds = np.column_stack((self.closed, self.tangents & (self.modes[:, :1] == STICK)))
             self._rows = key, independent(self.g, self.G, holds, self.modes[:, 3])
         return self._rows[1]
 
-    def _ways(self, v: Array) -> Array:
+    def ways(self, v: Array) -> Array:
         """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: a way with two
         directions turns, and is shorter where it ends.
         """
-        turns = (self.modes[:, 0] == SLIP) & self.tangents.all(axis=1)
         speed = np.maximum(np.linalg.norm(v[:, 1:], axis=1), STOPS * self.approach)
-        there = np.where(turns[:, None], v[:, 1:] / speed[:, None], self.modes[:, 1:3])
+        there = np.where(self.turns[:, None], v[:, 1:] / speed[:, None], self.modes[:, 1:3])
         return np.where(self.modes[:, :1] >= FULL, there, 0.0)
 
     def land(self, t: float, x: Array, closed: NDArray[np.bool_], still: NDArray[np.bool_] | None) -> Array:
@@ -205,34 +207,13 @@ class ContactMotion(RightHandSide):
         """G_N g^-1 G_N^T of each of these contacts, of the state that was looked at."""
         return np.maximum(np.einsum("ia,ai->i", self.G[some, 0], np.linalg.solve(self.g, self.G[some, 0].T)), LEAST)
 
-    def stepper(self, plain: Stepper) -> Stepper:
-        """Steps that land on closed contacts where they have drifted from them."""
-
-        def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
-            """A stepper of f from x at start to end."""
-            solver = plain(f, start, x, end, **first_step)
-            step: Callable[[], str | None] = solver.step
-
-            def landed() -> str | None:
-                """A step, and the state on the contacts."""
-                message = step()
-                if solver.status != "failed" and self._has_drifted(solver.t, solver.y):
-                    solver.y = self.land(solver.t, solver.y, self.closed, self.modes[:, 0] == STICK)
-                    solver.f = solver.fun(solver.t, solver.y)
-                return message
-
-            solver.step = landed
-            return solver
-
-        return make
-
-    def _has_drifted(self, t: float, x: Array) -> bool:
-        closed = self.closed
-        if not closed.any():
+    def has_drifted(self, t: float, x: Array) -> bool:
+        """Whether contacts that are closed are not closed well enough."""
+        if not self.closed.any():
             return False
         self.look(t, x)
-        rates = self._kept(self.velocities(x), closed, self.modes[:, 0] == STICK)
-        return bool(np.abs([*self.gap[closed], *rates]).max() > DRIFT)
+        rates = self._kept(self.velocities(x), self.closed, self.modes[:, 0] == STICK)
+        return bool(np.abs([*self.gap[self.closed], *rates]).max() > DRIFT)
 
     def watches(self) -> list[Watch]:
         """A gap closes, or a point comes back; a contact lifts off, stops, or sticks no more."""

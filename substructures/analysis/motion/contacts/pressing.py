@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 
 from substructures.analysis.motion.contacts.complementarity import JAMMED
 from substructures.array import Array
+from substructures.compile.motion import Pressing
 
 #: rows that add less than this part of their length, in the metric, depend on others
 DEPENDENT = 1e-7
@@ -31,23 +32,39 @@ STEPS, FAR, FOUND = 30, 1.0, 1e-7
 @dataclass(frozen=True)
 class Rows:
     """``held`` (m,): which of the 3 k velocities stay as they are, by contact; ``kept`` (r,): independent ones;
-    ``shares`` (m,) = 1/D where rows depend on others, none where they do not.
+    ``inverse`` (m,) = 1/D and ``scales`` (n,) = S; no 1/D where no row depends on others.
     """
 
     held: NDArray[np.int64]
     kept: NDArray[np.int64]
-    shares: Array | None = None
+    inverse: Array
+    scales: Array
+
+    def pressing(self, rate: Array, velocities: Array, laws: Array, power: Array) -> Pressing:
+        """The same in machine code. ``rate`` G_0 (3 k,); ``laws`` (k, 4): mu, v_0 where ways turn, and ways."""
+        n, m, r = len(velocities), len(self.inverse), len(self.kept)
+        written = np.zeros((len(rate), n)), np.zeros((m, r)), np.zeros((r, n)), np.zeros(r)
+        return Pressing(rate, velocities, laws, self.held[:m], self.inverse, self.scales, *written, power)
+
+    def forces(self, made: Pressing, force: Array) -> None:
+        """x into ``force`` (k, 3), as machine code has found it."""
+        force[:] = 0.0
+        force.reshape(-1)[self.held] = made.shares @ made.pressed if len(self.inverse) else made.pressed
+
+
+NONE = Rows(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
 
 
 def independent(g: Array, G: Array, holds: NDArray[np.bool_], yields: Array) -> Rows:
     """Of rows G (k, 3, n) those that hold, by ``holds`` (k, 3); ``yields`` (k,): D. Raises LinAlgError."""
     held, J = np.flatnonzero(holds), G.reshape(-1, len(g))
     # lengths and angles in the metric, whatever the coordinates
-    rows = scipy.linalg.solve_triangular(np.linalg.cholesky(g), J[held].T, lower=True)
+    rows = np.linalg.solve(np.linalg.cholesky(g), J[held].T)
     R, order = scipy.linalg.qr(rows / np.maximum(np.linalg.norm(rows, axis=0), 1e-300), mode="r", pivoting=True)
     rank = int((np.abs(np.diagonal(R)) > DEPENDENT).sum())
     kept = held[np.sort(order[:rank])]
-    return Rows(held, kept, None if rank == len(held) else 1 / yields[held // 3])
+    inverse = 1 / yields[held // 3] if rank < len(held) else np.zeros(0)
+    return Rows(held, kept, inverse, 1 / np.diagonal(g))
 
 
 class Pressed(NamedTuple):
@@ -69,11 +86,11 @@ def pressed(g: Array, G: Array, bias: Array, rows: Rows, free: Array, F: Array) 
     n = len(g)
     J, F, c = G.reshape(-1, n), F.reshape(-1, n), bias.reshape(-1)
     kept = J[rows.kept]
-    if rows.shares is None:
-        columns = F[rows.kept].T
+    if len(rows.inverse):
+        shares = rows.inverse[:, None] * (J[rows.held] @ (kept * rows.scales).T)
+        columns = F[rows.held].T @ shares
     else:
-        spread = rows.shares[:, None] * (J[rows.held] @ (kept / np.diagonal(g)).T)
-        columns = F[rows.held].T @ spread
+        columns = F[rows.kept].T
     try:
         inverse = np.linalg.inv(g)
         W = inverse @ columns
@@ -82,7 +99,7 @@ def pressed(g: Array, G: Array, bias: Array, rows: Rows, free: Array, F: Array) 
         raise ArithmeticError(JAMMED) from error
     y = A @ -(kept @ free + c[rows.kept])
     x = np.zeros(len(J))
-    x[rows.held] = y if rows.shares is None else spread @ y
+    x[rows.held] = shares @ y if len(rows.inverse) else y
 
     def moved(force: Array) -> Array:
         """q'' of a force beside, with the contacts as they are."""
