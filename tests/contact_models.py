@@ -55,15 +55,19 @@ def box() -> dict[str, Any]:
     }
 
 
-def disc(count: int) -> dict[str, Any]:
-    """A disc of 2 kg that is free in space, with so many points alike on its lower rim of 0.1 m, 0.05 m below."""
+def disc(
+    count: int, mass: float = 2.0, half: float = 0.05, about: tuple[float, float] = (0.02, 0.03)
+) -> dict[str, Any]:
+    """A disc that is free in space, with so many points alike on its lower rim of 0.1 m, half its height below, and
+    its moments of inertia about diameters and its axis.
+    """
     joint = {"type": "free", "coordinate": ["x", "y", "z", "yaw", "pitch", "roll"]}
-    inertia = {"xx": 0.02, "yy": 0.02, "zz": 0.03}
+    inertia = {"xx": about[0], "yy": about[0], "zz": about[1]}
     angles = [f"{k}*2*pi/{count}" for k in range(count)]
-    places = {f"p{k}": [f"cos({angle})/10", f"sin({angle})/10", -0.05] for k, angle in enumerate(angles)}
+    places = {f"p{k}": [f"cos({angle})/10", f"sin({angle})/10", -half] for k, angle in enumerate(angles)}
     return {
         "name": "disc",
-        "bodies": [{"name": "body", "parent": "base", "joint": joint, "mass": 2, "inertia": inertia}],
+        "bodies": [{"name": "body", "parent": "base", "joint": joint, "mass": mass, "inertia": inertia}],
         "ports": [{"name": name, "body": "body", "position": place} for name, place in places.items()],
     }
 

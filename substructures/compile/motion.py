@@ -25,11 +25,38 @@ _Words = ctypes.c_int64 * len(RUN)
 
 
 @dataclass(frozen=True)
+class Pressing:
+    """Contacts of a saddle point: see :mod:`.pressing`, whose arrays these are. Those behind ``scales`` are written at
+    every call: ``forces`` F (3 k, n), ``shares`` (m, r), ``columns`` (r, n), ``pressed`` y (r,), and ``power`` (1,), to
+    which theirs is added.
+    """
+
+    rate: Array
+    velocities: Array
+    laws: Array
+    held: NDArray[np.int64]
+    inverse: Array
+    scales: Array
+    forces: Array
+    shares: Array
+    columns: Array
+    pressed: Array
+    power: Array
+
+    def words(self, jacobian: Array, rows: NDArray[np.int64]) -> NDArray[np.int64]:
+        """The table PRESSING."""
+        arrays = jacobian, self.rate, self.velocities, self.laws, self.forces, self.held, self.inverse, self.scales
+        sizes = len(self.velocities), len(self.laws), len(self.held), len(rows)
+        table = [*map(address, (*arrays, self.shares, self.columns, rows)), *sizes]
+        return np.array(table, dtype=np.int64)
+
+
+@dataclass(frozen=True)
 class SaddlePoint:
     """[g G^T; G 0] [q''; -lambda] = [Q - Gamma q'q'; -c] of arrays that kernels write: ``metric`` (n, n), ``jacobian``
     (m, n), ``acceleration`` c (m,), ``forces``, ``bias`` (n,). ``rows`` (r,): the independent ones of G and c, others
     at the next call where they have changed. ``moving`` (k,): the coordinates that are not held, of which q'' is zero.
-    ``first``: place of q'' in what is written.
+    ``first``: place of q'' in what is written. ``pressing``: contacts, whose columns stand in the place of G^T.
     """
 
     metric: Array
@@ -40,16 +67,22 @@ class SaddlePoint:
     rows: NDArray[np.int64]
     moving: NDArray[np.int64]
     first: int = 0
+    pressing: Pressing | None = None
 
-    def words(self, width: int) -> tuple[NDArray[np.int64], Scratch]:
-        """The table SADDLE, and the memory of its matrix."""
+    def words(self, width: int) -> tuple[NDArray[np.int64], Any]:
+        """The table SADDLE, and the memory that it needs."""
         free = len(self.moving)
         size = free + len(self.rows)
         matrix = Scratch.zeros(size, -(-(size + 1) // width) * width)
         arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows, self.moving
         sizes = len(self.forces), free, size, matrix.array.shape[1], self.first
-        table = [*map(address, arrays), matrix.address, *sizes]
-        return np.array(table, dtype=np.int64), matrix
+        contacts, beside = np.zeros(1, dtype=np.int64), [0, 0, 0, 0]
+        if (p := self.pressing) is not None:
+            contacts = p.words(self.jacobian, self.rows)
+            beside = [*map(address, (p.columns, p.velocities, p.pressed, p.power))]
+        own = 0 if p is None else address(contacts)
+        table = [*map(address, arrays), matrix.address, *beside, *sizes, own]
+        return np.array(table, dtype=np.int64), (matrix, contacts)
 
 
 @dataclass(frozen=True)

@@ -5,6 +5,8 @@
 for independent rows of G and c, and the columns of the coordinates that move: all others have q'' = 0. It is backward
 stable also where g alone is singular, as the LU factors of LAPACK are (N. J. Higham, Accuracy and Stability of
 Numerical Algorithms, 2002, chapter 9); without a solution q'' is not finite.
+
+Contacts have other columns than G^T beside their rows (see :mod:`.pressing`), and forces C y whose power counts.
 """
 
 from __future__ import annotations
@@ -15,10 +17,12 @@ from substructures.compile.assembler import AssemblyWriter
 
 #: words of a saddle point: addresses of g (n, n), G (m, n), c (m,), Q, Gamma q'q' (n,), of the numbers of the r rows
 #: and of the k coordinates that move, and of a matrix (k + r, stride), whose rows are filled up to whole vectors;
-#: n, k, k + r, stride, and the place of q'' in what is written
+#: of contacts, 0 where there are none, the columns C (r, n), q', y (r,) and the power that theirs is added to; n, k,
+#: k + r, stride, the place of q'' in what is written, and the table of contacts, or 0
 SADDLE = (
     *("metric", "jacobian", "acceleration", "forces", "bias", "rows", "moving", "matrix"),
-    *("n", "free", "size", "stride", "first"),
+    *("columns", "velocities", "pressed", "power"),
+    *("n", "free", "size", "stride", "first", "contacts"),
 )
 
 
@@ -31,14 +35,17 @@ class _SaddlePoint:
     def __init__(self, width: int) -> None:
         self.w = w = AssemblyWriter(width)
         c = w.words("%table", SADDLE)
-        self.at = {name: w.pointer(c[name]) for name in SADDLE[:8]}
-        self.n, self.free, self.size, self.stride, self.first = (c[name] for name in SADDLE[8:])
+        self.at = {name: w.pointer(c[name]) for name in SADDLE[:12]}
+        self.n, self.free, self.size, self.stride, self.first, self.contacts = (c[name] for name in SADDLE[12:])
+        self.press = w.do(f"icmp ne i64 {self.contacts}, 0")
         #: where the largest number of a column is
         self.place = w.do("alloca i64, align 8")
 
     def text(self) -> str:
         """The function."""
         w = self.w
+        with w.when(self.press):
+            w.put(f"call void @pressing(ptr {w.pointer(self.contacts)})")
         self._fill()
         with w.loop("0", self.size) as k:
             self._exchange(k)
@@ -53,6 +60,8 @@ class _SaddlePoint:
             self._store("0.0", w.offset(found, i, "double"))
         with w.loop("0", self.free) as i:
             self._store(self._load(self._entry(i, self.size)), w.offset(found, self._number("moving", i), "double"))
+        with w.when(self.press), w.loop(self.free, self.size) as i:
+            self._work(i)
         return w.function("saddle_point", "ptr %table, ptr %x")
 
     def _fill(self) -> None:
@@ -65,15 +74,31 @@ class _SaddlePoint:
             Q, bias = (self._load(w.offset(at[name], a, "double")) for name in ("forces", "bias"))
             self._store(w.do(f"fsub double {Q}, {bias}"), self._entry(i, self.size))
         with w.loop(self.free, self.size) as i:
-            row = self._number("rows", w.arithmetic("sub", i, self.free))
+            kept = w.arithmetic("sub", i, self.free)
+            row = self._number("rows", kept)
             with w.loop("0", self.free) as j:
-                number = self._load(self._element(at["jacobian"], row, self._number("moving", j)))
-                self._store(number, self._entry(i, j))
-                self._store(number, self._entry(j, i))
+                a = self._number("moving", j)
+                place = self._element(at["jacobian"], row, a)
+                self._store(self._load(place), self._entry(i, j))
+                beside = self._element(at["columns"], kept, a)
+                chosen = w.do(f"select i1 {self.press}, ptr {beside}, ptr {place}")
+                self._store(self._load(chosen), self._entry(j, i))
             with w.loop(self.free, self.size) as j:
                 self._store("0.0", self._entry(i, j))
             c = self._load(w.offset(at["acceleration"], row, "double"))
             self._store(w.do(f"fneg double {c}"), self._entry(i, self.size))
+
+    def _work(self, i: str) -> None:
+        """y of a column, which is that of -y in the matrix, and the power of its force."""
+        w, at = self.w, self.at
+        kept = w.arithmetic("sub", i, self.free)
+        y = w.do(f"fneg double {self._load(self._entry(i, self.size))}")
+        self._store(y, w.offset(at["pressed"], kept, "double"))
+        with w.loop("0", self.n) as a:
+            velocity = self._load(w.offset(at["velocities"], a, "double"))
+            force = w.do(f"fmul double {self._load(self._element(at['columns'], kept, a))}, {y}")
+            power = w.do(f"fmul double {force}, {velocity}")
+            self._store(w.do(f"fadd double {self._load(at['power'])}, {power}"), at["power"])
 
     def _exchange(self, k: str) -> None:
         """The largest number of what is left of column k comes to row k."""

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.emission import attributes, literal
+from substructures.compile.pressing import pressing
 from substructures.compile.runtime import CONTEXT
 from substructures.compile.saddle import saddle_point
 from substructures.compile.tables import tables_at
@@ -56,7 +57,7 @@ class Tableau:
 def stepping(tableau: Tableau, width: int) -> str:
     """The module: advance, which tries ``most`` steps of a run (words RUN) and writes those that are accepted."""
     declared = "declare double @llvm.fabs.f64(double)\ndeclare double @llvm.sqrt.f64(double)\n"
-    called = saddle_point(width) + tables_at(width) + _rates(width)
+    called = pressing(width) + saddle_point(width) + tables_at(width) + _rates(width)
     return declared + called + _Advance(tableau, width).text() + attributes(width)
 
 

@@ -8,11 +8,11 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
-from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, walker
+from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, point, walker
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.conditions import read_conditions
-from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK
+from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK, ContactMotion
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
@@ -235,7 +235,7 @@ def test_a_point_that_hits_a_plane_slips_or_stops(speed: float) -> None:
 
 def test_a_box_slides_straight_and_spins_to_a_stop() -> None:
     """In space: four corners, whose forces are not unique. A box that slides and spins stops both at once."""
-    contacts = [Contact(c, f"b.{c}", friction=0.3) for c in ("c00", "c01", "c10", "c11")]
+    contacts = [Contact(c, f"b.{c}", friction=0.3) for c in CORNERS]
     model = of("b", box(), [0, 0, -G])
     straight = move(model, [0, 0, 0.1, 0, 0, 0], [3, 1, 0, 0, 0, 0], 1.5, contacts)
     speed = math.hypot(3, 1)
@@ -251,7 +251,7 @@ def test_a_box_slides_straight_and_spins_to_a_stop() -> None:
 
 
 def test_a_box_tumbles_to_rest() -> None:
-    contacts = [Contact(c, f"b.{c}", friction=0.3, restitution=0.2) for c in ("c00", "c01", "c10", "c11")]
+    contacts = [Contact(c, f"b.{c}", friction=0.3, restitution=0.2) for c in CORNERS]
     motion = simulate(
         of("b", box(), [0, 0, -G]), [0, 0, 0.15, 0.3, 0.1, 0.2], (0, 0.8), qd=[1, 1, 0, 1, 1, 0],
         kind=TreeMotion(contacts=contacts), integrator=Integrator("RK45", relative_tolerance=1e-8),
@@ -262,27 +262,45 @@ def test_a_box_tumbles_to_rest() -> None:
     assert motion.q[-1, 2] == pytest.approx(0.1, abs=1e-9)
 
 
+CORNERS = ("c00", "c01", "c10", "c11")
+#: contacts by name with their modes, coordinates, and rates with which the closed ones keep their gaps
+MOVING = {
+    "in the air": ({"l": 0, "r": 0}, block(0.2, 0.5), [0, 0.6, 0.1], [1, 2, 3]),
+    "turns about a corner": ({"l": 0, "r": STICK}, block(0.2, 0.5), [0, 0.5, 0], [0.5, -0.2, 1]),
+    "slides on a corner": ({"l": 0, "r": SLIP}, block(0.2, 0.5), [0, 0.5, 0], [2, -0.2, 1]),
+    "slides on two": ({"l": SLIP, "r": SLIP}, block(0.2, 0.5), [0, 0.5, 0], [2, 0, 0]),
+    "slides and spins": (dict.fromkeys(CORNERS, SLIP), box(), [0, 0, 0.1, 0.3, 0, 0], [3, 1, 0, 4, 0, 0]),
+    "turns about a point": ({"c00": STICK, "c01": SLIP}, box(), [0, 0, 0.1, 0, 0, 0], [0.1, -0.2, 0, 2, 0, 0]),
+    "on a ring": ({f"p{k}": SLIP for k in range(8)}, disc(8), [0, 0, 0.05, 0.2, 0, 0], [0.3, 0.1, 0, 5, 0, 0]),
+}  # fmt: skip
+
+
 @pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
-@pytest.mark.parametrize(("modes", "is_made"), [([0, 0], True), ([STICK, 0], True), ([SLIP, 0], False)])
-def test_steps_of_contacts_are_machine_code_where_none_rubs(modes: list[int], is_made: bool) -> None:
-    """Of a block in the air, and on a corner that sticks: x' as in Python, and the corner stays where it is."""
-    feet = [Contact(name, f"b.{name}", type="point_line", friction=2) for name in "lr"]
-    model, q = of("b", block(0.2, 0.5), [0, 0, -G]), tilted(0.2, 0.2, 0.5)
+@pytest.mark.parametrize("name", MOVING)
+def test_steps_of_contacts_are_machine_code(name: str) -> None:
+    """x', its power and forces as in Python; closed contacts keep their gaps, and those that stick their places."""
+    modes, body, q, qd = MOVING[name]
+    kind: Any = "point_plane" if len(q) == 6 else "point_line"
+    feet = [Contact(each, f"b.{each}", type=kind, friction=0.3) for each in modes]
+    model, x = of("b", body, [0, 0, -G]), np.array([*q, *qd, 0.0], dtype=np.float64)
     conditions = read_conditions(model, Start(q), (0, 1), ["metric", "bias", "forces"])
     f = DecidedContacts(model, conditions.values, conditions.zero, conditions, feet)
     f.begin()
-    f.look(0.0, np.concatenate([q, np.zeros(4)]))
-    place = int(np.abs(f.gap).argmin())
-    # turning about the corner on which it stands
-    x = np.concatenate([q, np.linalg.svd(f.G[place, :2])[2][2], [0.0]])
-    f.modes[place], f.modes[1 - place] = [modes[0], 1, 0], 0
+    f.look(0.0, x)
+    f.modes[:, 0], f.modes[:, 1], f.modes[:, 3] = list(modes.values()), 1, f.yields(np.arange(len(feet)))
     rates = f.compiled()
-    assert (rates is not None) == is_made
-    if rates is not None:
-        found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.0, x)
-        np.testing.assert_allclose(found, f(0.0, x), rtol=1e-11, atol=1e-11)
-        stays = f.G[place, :2] @ found[3:6] + f.bias[place, :2]
-        assert (np.abs(stays).max() < 1e-11) == (modes[0] == STICK)
+    assert rates is not None
+    found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.0, x)
+    second, _, power = f.evaluate(0.0, x)
+    np.testing.assert_array_equal(found, [*qd, *second, power])
+    force = f.force.copy()
+    second, _, power = ContactMotion.evaluate(f, 0.0, x)
+    size = max(1.0, float(np.abs(second).max()))
+    np.testing.assert_allclose(found[len(q) :], [*second, power], rtol=1e-11, atol=1e-11 * size)
+    np.testing.assert_allclose(force, f.force, rtol=1e-9, atol=1e-9 * max(1.0, float(np.abs(force).max())))
+    kept = (f.G @ found[len(q) : -1] + f.bias)[f.modes[:, 0] > 0, 0]
+    np.testing.assert_allclose(kept, 0, atol=1e-11 * size)
+    assert (force[:, 0] != 0).tolist() == (f.modes[:, 0] > 0).tolist()
 
 
 def test_what_rests_is_right_however_long() -> None:
@@ -306,6 +324,34 @@ def test_a_disc_stays_where_it_falls_on_sixteen_points() -> None:
     np.testing.assert_allclose(motion.q[1:], [[0.2 * fall, 0.1 * fall, 0.05, 0, 0, 0]] * 2, atol=1e-9)
     assert np.abs(motion.qd[1:]).max() < 1e-12
     np.testing.assert_allclose(motion.series["contact_forces"][-1, :, 0], 2 * G / 16, rtol=1e-6)
+
+
+def test_a_thin_disc_settles_point_by_point() -> None:
+    """Tilted onto eight points, of which some begin to slip slowly: friction is against their accelerations then."""
+    rim = [Contact(f"p{k}", f"b.p{k}", friction=0.4) for k in range(8)]
+    model = of("b", disc(8, 1.0, 0.01, (0.1 * 0.0253, 0.005)), [0, 0, -G])
+    motion = move(model, [0, 0, 0.1, 0, 0.1, 0.2], [0] * 6, 0.4, rim)
+    assert motion.is_right, motion.checks
+    assert motion.steps < 2000
+    assert motion.q[-1, 2:] == pytest.approx([0.01, motion.q[-1, 3], 0, 0], abs=1e-9)
+    assert np.abs(motion.qd[-1]).max() < 1e-9
+
+
+def test_a_slip_from_rest_has_the_way_of_its_acceleration() -> None:
+    """Pushed beyond friction by a force that turns: v x (F - mu m g v/|v|) = 0 from rest on, by another integrator."""
+    loads = [{"type": "joint", "name": f"push_{a}", "coordinate": f"b.{a}", "force": text}
+             for a, text in (("x", "6 + t"), ("y", "4*t^2"))]  # fmt: skip
+    contacts = [Contact("c", "b.body", friction=0.3)]
+    motion = move(of("b", point(), [0, 0, -G], loads=loads), [0, 0, 0], [0, 0, 0], 0.5, contacts)
+
+    def rates(t: float, x: Array) -> Array:
+        force = np.array([6 + t, 4 * t * t]) - 0.6 * G * x[2:] / max(np.hypot(*x[2:]), 1e-12)
+        return np.concatenate([x[2:], force / 2])
+
+    start = [0, 0, 1e-6 * (6 - 0.6 * G) / 2, 0]
+    right = scipy.integrate.solve_ivp(rates, (1e-6, 0.5), start, "Radau", rtol=1e-11, atol=1e-14).y[:, -1]
+    assert [*motion.q[-1, :2], *motion.qd[-1, :2]] == pytest.approx(right, abs=1e-8)
+    assert motion.is_right, motion.checks
 
 
 def test_a_rod_that_jams_is_told() -> None:

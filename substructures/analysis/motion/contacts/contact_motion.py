@@ -14,7 +14,6 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -22,8 +21,8 @@ from numpy.typing import NDArray
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.contacts.complementarity import LEAST, least
+from substructures.analysis.motion.contacts.pressing import NONE, Rows, Slips, independent, slipping
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
-from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
 from substructures.analysis.motion.right_hand_side import RightHandSide
@@ -36,7 +35,7 @@ from substructures.tree.model import Model
 #: of a contact; one that passes is below its plane, where it did not act when it came there; a full one has all of its
 #: friction, as one that slips, but others hold it; one that starts slips from rest in two directions
 PASSING, OPEN, STICK, FULL, SLIP, STARTS = -1, 0, 1, 2, 3, 4
-#: by contact (k, 3): one of these, and the way (2,) of its slip
+#: by contact (k, 4): one of these, the way (2,) of its slip, and A_NN of it alone
 Modes = Array
 #: of the velocity below which restitution ends, 1e-4 m/s at most: an approach that is an impact, and a slip that is
 #: none where contacts change; by so much a point slips back before its stop is seen
@@ -73,7 +72,8 @@ class ContactMotion(RightHandSide):
         super().__init__(model, values, zero, conditions, folder)
         self.has_power, self.contacts, self._model = True, tuple(contacts), model
         k, n = len(self.contacts), self.n
-        self.modes: Modes = np.zeros((k, 3))
+        self.modes: Modes = np.zeros((k, 4))
+        self._rows: tuple[bytes, Rows] = b"", NONE
         self.friction = np.array([contact.friction for contact in self.contacts])
         count = np.array([TANGENTS[contact.type] for contact in self.contacts])
         self.tangents = (np.arange(2) < count[:, None]) & (self.friction > 0)[:, None]
@@ -110,6 +110,11 @@ class ContactMotion(RightHandSide):
         """Contacts that are closed (k,)."""
         return self.modes[:, 0] >= STICK
 
+    @property
+    def turns(self) -> NDArray[np.bool_]:
+        """Contacts that slip along a way with two directions (k,)."""
+        return np.asarray((self.modes[:, 0] == SLIP) & self.tangents.all(axis=1))
+
     def require_above(self, t: float, x: Array) -> None:
         """Raises InvalidArgument (``/q``) for a start at which a contact that acts is below its plane."""
         self.look(t, x)
@@ -145,40 +150,31 @@ class ContactMotion(RightHandSide):
         """(q'', pivots of the metric, power)."""
         free, pivots, power = super().evaluate(t, x)
         self.force[:] = 0.0
-        closed = np.flatnonzero(self.closed)
-        if not len(closed):
+        if not self.closed.any():
             return free, pivots, power
         self.look(t, x)
-        ways, G = self._ways(self.velocities(x)), self.G[closed]
-        of, tangent = np.nonzero(self.tangents & (self.modes[:, :1] == STICK))
-        at = np.searchsorted(closed, of)
-        # rows J q'' = -bias; forces F = (G_N - mu d . G_T)^T, G_T^T, over g
-        W = np.linalg.solve(self.g, G.reshape(-1, self.n).T).reshape(self.n, -1, 3)
-        pressed = W[:, :, 0] - (self.friction[closed, None] * ways[closed] * W[:, :, 1:]).sum(axis=2)
-        J, F = np.concatenate([G[:, 0], G[at, 1 + tangent]]), np.hstack([pressed, W[:, at, 1 + tangent]])
-        bias = np.concatenate([self.bias[closed, 0], self.bias[of, 1 + tangent]])
-        yields = np.maximum(np.einsum("ia,ai->i", G[:, 0], W[:, :, 0]), LEAST)
-        found = least(J @ F, -(J @ free + bias), np.concatenate([yields, yields[at]]))
-        self.force[closed, 0] = found[: len(closed)]
-        self.force[:, 1:] = -self.friction[:, None] * self.force[:, :1] * ways
-        self.force[of, 1 + tangent] = found[len(closed) :]
-        second = free + F @ found
-        second[np.abs(second) <= NOTHING * (np.abs(free) + np.abs(F) @ np.abs(found))] = 0.0
+        slips = Slips(self.friction, self.ways(self.velocities(x)), self.modes[:, 0] == STARTS)
+        found, slips = slipping(self.g, self.G, self.bias, self.independent(), free, slips)
+        self.force[:] = found.force
+        self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * slips.ways
+        second = found.second
+        second[np.abs(second) <= NOTHING * found.size] = 0.0
         return second, pivots, power + self.power(x)
 
-    def _ways(self, v: Array) -> Array:
-        """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: not turned back where
-        one would slip back after a stop, and shorter where a way ends that turns.
+    def independent(self) -> Rows:
+        """Of what is closed and what sticks, chosen where these modes are looked at first."""
+        if (key := self.modes.tobytes()) != self._rows[0]:
+            holds = np.column_stack((self.closed, self.tangents & (self.modes[:, :1] == STICK)))
+            self._rows = key, independent(self.g, self.G, holds, self.modes[:, 3])
+        return self._rows[1]
+
+    def ways(self, v: Array) -> Array:
+        """The unit vectors d (k, 2) along which points slip at velocities (k, 3), 0 of others: a way with two
+        directions turns, and is shorter where it ends.
         """
-        slips, before = self.modes[:, 0] >= FULL, self.modes[:, 1:]
-        turns = (self.modes[:, 0] == SLIP) & self.tangents.all(axis=1)
-        v_T = np.where(self.tangents, v[:, 1:], 0.0)
-        speed = np.linalg.norm(v_T, axis=1)
-        there = v_T / np.maximum(speed, 1e-300)[:, None]
-        there *= np.where((there * before).sum(axis=1) < 0, -1.0, 1.0)[:, None]
-        there = np.where((speed > self.approach)[:, None], there, before)
-        there[turns] = (v_T / np.maximum(speed, STOPS * self.approach)[:, None])[turns]
-        return np.where(slips[:, None], there, 0.0)
+        speed = np.maximum(np.linalg.norm(v[:, 1:], axis=1), STOPS * self.approach)
+        there = np.where(self.turns[:, None], v[:, 1:] / speed[:, None], self.modes[:, 1:3])
+        return np.where(self.modes[:, :1] >= FULL, there, 0.0)
 
     def land(self, t: float, x: Array, closed: NDArray[np.bool_], still: NDArray[np.bool_] | None) -> Array:
         """The nearest state in the metric whose ``closed`` gaps (k,) are zero and stay so, and whose points ``still``
@@ -211,34 +207,13 @@ class ContactMotion(RightHandSide):
         """G_N g^-1 G_N^T of each of these contacts, of the state that was looked at."""
         return np.maximum(np.einsum("ia,ai->i", self.G[some, 0], np.linalg.solve(self.g, self.G[some, 0].T)), LEAST)
 
-    def stepper(self, plain: Stepper) -> Stepper:
-        """Steps that land on closed contacts where they have drifted from them."""
-
-        def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
-            """A stepper of f from x at start to end."""
-            solver = plain(f, start, x, end, **first_step)
-            step: Callable[[], str | None] = solver.step
-
-            def landed() -> str | None:
-                """A step, and the state on the contacts."""
-                message = step()
-                if solver.status != "failed" and self._has_drifted(solver.t, solver.y):
-                    solver.y = self.land(solver.t, solver.y, self.closed, self.modes[:, 0] == STICK)
-                    solver.f = solver.fun(solver.t, solver.y)
-                return message
-
-            solver.step = landed
-            return solver
-
-        return make
-
-    def _has_drifted(self, t: float, x: Array) -> bool:
-        closed = self.closed
-        if not closed.any():
+    def has_drifted(self, t: float, x: Array) -> bool:
+        """Whether contacts that are closed are not closed well enough."""
+        if not self.closed.any():
             return False
         self.look(t, x)
-        rates = self._kept(self.velocities(x), closed, self.modes[:, 0] == STICK)
-        return bool(np.abs([*self.gap[closed], *rates]).max() > DRIFT)
+        rates = self._kept(self.velocities(x), self.closed, self.modes[:, 0] == STICK)
+        return bool(np.abs([*self.gap[self.closed], *rates]).max() > DRIFT)
 
     def watches(self) -> list[Watch]:
         """A gap closes, or a point comes back; a contact lifts off, stops, or sticks no more."""
@@ -279,8 +254,11 @@ class ContactMotion(RightHandSide):
 
         def g(t: float, x: Array) -> float:
             """Of a state."""
-            v = self._seen(t, x)[1][i, 1:]
-            along, speed = float(self.modes[i, 1:] @ v), math.hypot(*v)
+            _, velocities, forces = self._seen(t, x)
+            v, way = velocities[i, 1:], self.modes[i, 1:3]
+            if mode == STARTS:  # against its friction
+                way = -forces[i, 1:] / max(self.friction[i] * forces[i, 0], LEAST)
+            along, speed = float(way @ v), math.hypot(*v)
             if mode == SLIP:
                 return min(along - speed / 2, speed - STOPS * fast)
             along += self.rest[i]

@@ -2,22 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.motion.contacts.contact_motion import OPEN
+from substructures.analysis.motion.contacts.contact_motion import OPEN, STICK
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry
+from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.integration import (
     IntegratedMotion,
     IntegratorSettings,
     TimeReport,
     integrate,
 )
+from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
@@ -72,10 +74,35 @@ def integrate_contacts(
 ) -> ContactRun:
     """As :func:`~substructures.analysis.motion.integrators.integration.integrate`, from one change to the next."""
     f.begin()
-    landing = replace(settings, stepper=f.stepper(settings.stepper))
-    run = integrate_dry(f, x, span, outputs, landing, watches, breaks, progress, ContactRun())
+    landed = replace(settings, stepper=landing(f, settings.stepper))
+    run = integrate_dry(f, x, span, outputs, landed, watches, breaks, progress, ContactRun())
     f.at = run.at
     return run
+
+
+def landing(contacts: DecidedContacts, plain: Stepper) -> Stepper:
+    """Steps that land on closed contacts where they have drifted from them."""
+
+    def make(f: Any, start: float, x: Array, end: float, **first_step: float) -> Any:
+        """A stepper of f from x at start to end."""
+        solver = plain(f, start, x, end, **first_step)
+        step: Callable[[], str | None] = solver.step
+
+        def landed() -> str | None:
+            """A step, and the state on the contacts."""
+            message = step()
+            if solver.status != "failed" and contacts.has_drifted(solver.t, solver.y):
+                y = contacts.land(solver.t, solver.y, contacts.closed, contacts.modes[:, 0] == STICK)
+                if isinstance(solver, CompiledStepper):
+                    solver.go_on(y)
+                else:
+                    solver.y, solver.f = y, solver.fun(solver.t, y)
+            return message
+
+        solver.step = landed
+        return solver
+
+    return make
 
 
 def again(
@@ -83,6 +110,7 @@ def again(
 ) -> IntegratedMotion:
     """A step once more, with contacts as they were then."""
     f.modes = f.at((span[0] + span[1]) / 2)
+    f.evaluate(span[0], x)
     return integrate(f, x, span, outputs, settings, enter=f.enter)
 
 

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.equations.kernels import program_kernel
-from substructures.analysis.motion.contacts.complementarity import LEAST, Cones, coulomb
+from substructures.analysis.motion.contacts.complementarity import Cones, coulomb
 from substructures.analysis.motion.contacts.contact_motion import (
     EDGE,
     FULL,
@@ -28,17 +28,18 @@ from substructures.analysis.motion.contacts.contact_motion import (
     SLOW,
     STARTS,
     STICK,
+    STOPS,
     TOUCHING,
     ContactMotion,
     Modes,
 )
 from substructures.analysis.motion.friction.dry_rates import DYNAMICS
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Crossing
 from substructures.array import Array
 from substructures.compile.machine import BoundCall
-from substructures.compile.motion import CompiledRates, SaddlePoint
-from substructures.mechanics.closure_rows import rank_of
+from substructures.compile.motion import CompiledRates, CompiledRun, SaddlePoint
 
 #: of the largest acceleration: what is none
 NONE = 1e-11
@@ -66,37 +67,60 @@ class DecidedContacts(ContactMotion):
     begun: bool
     #: the modes at a time of the last motion
     at: Callable[[float], Modes]
+    #: in machine code with these modes
+    _made: tuple[bytes, CompiledRun | None, SaddlePoint | None] = b"", None, None
 
     def begin(self) -> None:
         """All contacts are open, and nothing has happened."""
-        self.modes = np.zeros((len(self.contacts), 3))
+        self.modes = np.zeros((len(self.contacts), 4))
         self.told, self.impacts, self.begun = [], [], False
 
     def compiled(self) -> CompiledRates | None:
-        """As the modes are now, with rows J q'' = -bias of what is closed and what sticks, where no friction depends on
-        what a point presses with, and forces are unique.
+        """As the modes are now, but for slips that begin, whose ways are found, and for what many hold at rest, where
+        rounding would move it.
         """
         rates, closed = RightHandSide.compiled(self), self.closed
         if rates is None or not closed.any():
             return rates
-        rubs = closed & (self.modes[:, 0] != STICK) & self.tangents.any(axis=1)
-        rows = np.flatnonzero(np.column_stack((closed, self.tangents & (self.modes[:, :1] == STICK))))
-        G = self.G.reshape(-1, self.n)
-        lengths = np.linalg.norm(G[rows], axis=1, keepdims=True)
-        if rubs.any() or self._model.driven or rank_of(G[rows] / np.maximum(lengths, LEAST)) < len(rows):
+        rows = self.independent()
+        rubs = self.modes[:, 0] >= FULL
+        rests = len(rows.kept) == self.n and (len(rows.inverse) > 0 or bool(self.tangents[rubs].any()))
+        if self._model.driven or rests or (self.modes[:, 0] == STARTS).any():
             return None
-        call, (g, Q, bias) = self._dynamics
+        call, (Q, bias) = self._dynamics
         calls = tuple(each for each in (self._see, call) if isinstance(each, BoundCall))
-        saddle = SaddlePoint(g, G, self.bias.reshape(-1), Q, bias, rows, np.arange(self.n))
+        turns = self.turns
+        slow = np.where(turns, STOPS * self.approach, 0.0)
+        slips = np.where(rubs, self.friction, 0.0)
+        laws = np.column_stack((slips, slow, self.modes[:, 1:3]))
+        contacts = rows.pressing(self.rate.reshape(-1), self._x[0, self.n :], laws, self._out[2])
+        place = self.G.reshape(-1, self.n), self.bias.reshape(-1), Q, bias, rows.kept, np.arange(self.n)
+        saddle = SaddlePoint(self.g, *place, pressing=contacts)
         return replace(rates, calls=(*rates.calls, *calls), saddle=saddle) if len(calls) == 2 else None
+
+    def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
+        """(q'', pivots of the metric, power), in machine code where that may be."""
+        if self.modes.tobytes() != self._made[0]:
+            # rows are chosen where they are
+            self.look(t, x)
+            rates = self.compiled() if self.closed.any() else None
+            run = None if rates is None else CompiledRun(TABLEAUX["DOP853"], rates, (1.0, 1.0))
+            self._made = self.modes.tobytes(), run, None if rates is None else rates.saddle
+        _, run, saddle = self._made
+        if run is None or saddle is None or saddle.pressing is None:
+            return super().evaluate(t, x)
+        found = run.rates(t, x)
+        self.independent().forces(saddle.pressing, self.force)
+        self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * self.ways(self.velocities(x))
+        return found[self.n : 2 * self.n], self._out[1][0], float(found[-1])
 
     @cached_property
     def _dynamics(self) -> tuple[Callable[[], None], list[Array]]:
-        """What is called for the metric, forces and what depends on velocities, and these."""
-        n = self.n
-        out = dict(zip(DYNAMICS, (np.zeros((1, n, n)), np.zeros((1, n)), np.zeros((1, n))), strict=True))
+        """What is called for the metric, forces and what depends on velocities, and the last two."""
+        sides = [np.zeros((1, self.n)) for _ in range(2)]
+        out = dict(zip(DYNAMICS, (self.g[None], *sides), strict=True))
         call = self.bound(program_kernel(self._model.program.select(list(out))), out)
-        return call, [x[0] for x in out.values()]
+        return call, [x[0] for x in sides]
 
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
@@ -181,7 +205,8 @@ class DecidedContacts(ContactMotion):
         mode = np.where(slips | begins | smooth, SLIP, STICK)
         mode[begins & self.tangents[some].all(axis=1)] = STARTS
         self.modes[some, 0] = np.where(pressed, mode, OPEN)
-        self.modes[some, 1:] = np.where(begins[:, None], _unit(w_T), d)
+        self.modes[some, 1:3] = np.where(begins[:, None], _unit(w_T), d)
+        self.modes[some, 3] = cones.yields
         # what forces there are about
         self.scale[some] = np.maximum(p[:, 0], np.abs(b).max() / cones.yields)
         self._share(t, x, len(some))
@@ -196,7 +221,7 @@ class DecidedContacts(ContactMotion):
             if not (pulls | drags).any():
                 return
             self.modes[pulls, 0], self.modes[drags, 0] = OPEN, FULL
-            self.modes[drags, 1:] = -_unit(self.force[drags, 1:])
+            self.modes[drags, 1:3] = -_unit(self.force[drags, 1:])
 
     def _tell(self, t: float, x: Array, before: Array) -> None:
         """Contacts that lift off, and those that begin to stick or to slip."""

@@ -1,0 +1,156 @@
+"""Forces of closed contacts, of which independent rows decide.
+
+Contacts that are closed, and directions in which they stick, have rows J q'' = -c, and forces x along the columns of
+F = (G_N - mu d . G_T)^T, G_T^T. Where rows depend on each other many x hold them; taken are those of contacts that
+yield by D x, D = A_NN of each alone, less and less. What they yield is a motion of the mechanism, and so is S J_r^T y:
+
+    g q'' = g q''_free + F x,    D x = J S J_r^T y,    J_r q'' = -c_r
+
+with as many independent rows J_r as there are. S = diag(1 / g_aa) changes y alone.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+import scipy
+from numpy.typing import NDArray
+
+from substructures.analysis.motion.contacts.complementarity import JAMMED
+from substructures.array import Array
+from substructures.compile.motion import Pressing
+
+#: rows that add less than this part of their length, in the metric, depend on others
+DEPENDENT = 1e-7
+#: most steps to ways of slips that begin, none longer than this [rad], and the last one, of which the square is left
+STEPS, FAR, FOUND = 30, 1.0, 1e-7
+
+
+@dataclass(frozen=True)
+class Rows:
+    """``held`` (m,): which of the 3 k velocities stay as they are, by contact; ``kept`` (r,): independent ones;
+    ``inverse`` (m,) = 1/D and ``scales`` (n,) = S; no 1/D where no row depends on others.
+    """
+
+    held: NDArray[np.int64]
+    kept: NDArray[np.int64]
+    inverse: Array
+    scales: Array
+
+    def pressing(self, rate: Array, velocities: Array, laws: Array, power: Array) -> Pressing:
+        """The same in machine code. ``rate`` G_0 (3 k,); ``laws`` (k, 4): mu, v_0 where ways turn, and ways."""
+        n, m, r = len(velocities), len(self.inverse), len(self.kept)
+        written = np.zeros((len(rate), n)), np.zeros((m, r)), np.zeros((r, n)), np.zeros(r)
+        return Pressing(rate, velocities, laws, self.held[:m], self.inverse, self.scales, *written, power)
+
+    def forces(self, made: Pressing, force: Array) -> None:
+        """x into ``force`` (k, 3), as machine code has found it."""
+        force[:] = 0.0
+        force.reshape(-1)[self.held] = made.shares @ made.pressed if len(self.inverse) else made.pressed
+
+
+NONE = Rows(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
+
+
+def independent(g: Array, G: Array, holds: NDArray[np.bool_], yields: Array) -> Rows:
+    """Of rows G (k, 3, n) those that hold, by ``holds`` (k, 3); ``yields`` (k,): D. Raises LinAlgError."""
+    held, J = np.flatnonzero(holds), G.reshape(-1, len(g))
+    # lengths and angles in the metric, whatever the coordinates
+    rows = np.linalg.solve(np.linalg.cholesky(g), J[held].T)
+    R, order = scipy.linalg.qr(rows / np.maximum(np.linalg.norm(rows, axis=0), 1e-300), mode="r", pivoting=True)
+    rank = int((np.abs(np.diagonal(R)) > DEPENDENT).sum())
+    kept = held[np.sort(order[:rank])]
+    inverse = 1 / yields[held // 3] if rank < len(held) else np.zeros(0)
+    return Rows(held, kept, inverse, 1 / np.diagonal(g))
+
+
+class Pressed(NamedTuple):
+    """q'' (n,), the sum of the ``size`` of its parts (n,), the forces x (k, 3), and what makes of a force on the
+    coordinates (n, ...) its part of q''.
+    """
+
+    second: Array
+    size: Array
+    force: Array
+    moved: Callable[[Array], Array]
+
+
+def pressed(g: Array, G: Array, bias: Array, rows: Rows, free: Array, F: Array) -> Pressed:
+    """Of contacts with rows G (k, 3, n) and ``bias`` c (k, 3); ``free`` (n,): q'' without them; ``F`` (k, 3, n).
+
+    Raises ArithmeticError where no forces hold them.
+    """
+    n = len(g)
+    J, F, c = G.reshape(-1, n), F.reshape(-1, n), bias.reshape(-1)
+    kept = J[rows.kept]
+    if len(rows.inverse):
+        shares = rows.inverse[:, None] * (J[rows.held] @ (kept * rows.scales).T)
+        columns = F[rows.held].T @ shares
+    else:
+        columns = F[rows.kept].T
+    try:
+        inverse = np.linalg.inv(g)
+        W = inverse @ columns
+        A = np.linalg.inv(kept @ W)
+    except np.linalg.LinAlgError as error:
+        raise ArithmeticError(JAMMED) from error
+    y = A @ -(kept @ free + c[rows.kept])
+    x = np.zeros(len(J))
+    x[rows.held] = shares @ y if len(rows.inverse) else y
+
+    def moved(force: Array) -> Array:
+        """q'' of a force beside, with the contacts as they are."""
+        alone = inverse @ force
+        return np.asarray(alone - W @ (A @ (kept @ alone)))
+
+    return Pressed(free + W @ y, np.abs(free) + np.abs(W) @ np.abs(y), x.reshape(-1, 3), moved)
+
+
+class Slips(NamedTuple):
+    """Friction of contacts at a state: ``friction`` mu (k,), unit vectors ``ways`` d (k, 2), 0 of those that do not
+    slip, and which of them ``begin`` (k,), whose ways are those of their accelerations.
+    """
+
+    friction: Array
+    ways: Array
+    begin: NDArray[np.bool_]
+
+    def columns(self, G: Array) -> Array:
+        """F (k, 3, n)."""
+        F = G.copy()
+        F[:, 0] -= np.einsum("i,ia,ian->in", self.friction, self.ways, G[:, 1:])
+        return F
+
+    def turned(self, step: Array) -> Slips:
+        """With the ways of those that begin turned by angles (s,)."""
+        ways, (a, b) = self.ways.copy(), self.ways[self.begin].T
+        c, s = np.cos(step), np.sin(step)
+        ways[self.begin] = np.column_stack((c * a - s * b, s * a + c * b))
+        return self._replace(ways=ways)
+
+
+def slipping(g: Array, G: Array, bias: Array, rows: Rows, free: Array, slips: Slips) -> tuple[Pressed, Slips]:
+    """As :func:`pressed`, with ways of slips that begin along their accelerations w: d x w = 0, by Newton's method.
+
+    A slip from rest in two directions has no way of its own: its velocity follows its acceleration, and friction, which
+    is against that, decides this at once.
+    """
+    found, begin = pressed(g, G, bias, rows, free, slips.columns(G)), slips.begin
+    for _ in range(STEPS if begin.any() else 0):
+        G_T, d = G[begin, 1:], slips.ways[begin]
+        across = np.einsum("ia,ian->in", np.column_stack((-d[:, 1], d[:, 0])), G_T)
+        along = np.einsum("ia,ian->in", d, G_T)
+        w, c = found.second, bias[begin, 1:]
+        left = across @ w - d[:, 1] * c[:, 0] + d[:, 0] * c[:, 1]
+        # what turns of the friction do: -mu N across^T
+        drag = slips.friction[begin] * found.force[begin, 0]
+        slopes = -(across @ found.moved(across.T * drag)) - np.diag(along @ w + (d * c).sum(axis=1))
+        step = np.clip(np.linalg.lstsq(slopes, -left, rcond=None)[0], -FAR, FAR)
+        slips = slips.turned(step)
+        found = pressed(g, G, bias, rows, free, slips.columns(G))
+        if np.abs(step).max() <= FOUND:
+            break
+    return found, slips
