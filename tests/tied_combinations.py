@@ -121,9 +121,11 @@ def request_of(name: str, source: Source) -> Plain:
     q = [float(turned.get(c, 0.5 if c == moving else 0.2)) for c in model.positions]
     still = [float(turned.get(c, 0)) for c in model.positions]
     motion = {
-        k: np.random.default_rng(i).uniform(-1, 1, (60, len(q))).tolist()
+        k: np.random.default_rng(i).uniform(-1, 1, (60, model.dof)).tolist()
         for i, k in enumerate(("q", "qd", "qdd", "tau"))
     }
+    if model.balls:
+        motion["q"] = [q] * 60
     effort = f"tau.{moving}"
     control = {
         "controls": [effort],

@@ -215,12 +215,12 @@ def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (RE
     values = symbol_values(view, vars(motion), states, ())
     values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(base.coordinates)}
     # one position for all accelerations, ...
-    q, qd, qdd = (np.broadcast_to(x, (states.count, states.q.shape[1])) for x in (states.q, states.qd, states.qdd))
+    q, qd, qdd = (np.broadcast_to(x, (states.count, x.shape[1])) for x in (states.q, states.qd, states.qdd))
     return _Data(q, qd, qdd, interpret_in_blocks(base.program, values, names, states.count))
 
 
 def _view(base: BaseParameters) -> Model:
-    return Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+    return Model(base.program, base.coordinates, base.joints, (), base.parameters, {}, balls=base.balls)
 
 
 def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
@@ -229,8 +229,8 @@ def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
     if isinstance(given, Mapping):
         given = by_name(_view(base), given, "tau")
     tau = np.atleast_2d(numeric(given, "/tau"))
-    if tau.shape != data.q.shape:
-        message = f"shape {tau.shape} found, {data.q.shape} expected"
+    if tau.shape != data.qd.shape:
+        message = f"shape {tau.shape} found, {data.qd.shape} expected"
         raise InvalidArgument.at("/tau", "wrong-length", message)
     return tau
 

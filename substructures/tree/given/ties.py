@@ -102,7 +102,7 @@ TAKES_BALLS = (
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
     *("parameter_sensitivity", "equivalences", "columns of equilibria and linearisations", "columns of reach"),
     *("optimal-parameters", "first_integrals", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
-    "steady-motions",
+    *("steady-motions", "base_parameters", "base_regressor", "excitations", "identifications"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
