@@ -110,7 +110,7 @@ TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
     *("velocity_dynamics", "frequency-responses", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
-    *("regulators", "state_space"),
+    *("regulators", "state_space", "excitations", "identifications"),
 )
 TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them
