@@ -102,7 +102,10 @@ is (`ignored`), a linear velocity constraint, a point above the floor (`contacts
 `has-contacts` or `has-balls`, and told what to take in its place. Formulas of the tree
 itself (`metric`, `christoffel`, `forces`, ...), evaluations of them and exports in languages take all kinds, and are
 those without velocity constraints and contacts; FMUs have both. In a tree of several kinds the `no` of one is the
-`no` of all; balls go with the reduced level, and with no other tie.
+`no` of all; balls go with the reduced level, and with no other tie. Identification is of motions that are measured in
+all coordinates: where some are `driven` or `ignored` it is that of the tree without, whose forces of the drives are
+measured, too. On closures and with velocity constraints motions tell fewer base parameters than formulas have:
+`excitations` and `identifications` find in numbers which.
 """
 
 
@@ -121,9 +124,11 @@ def request_of(name: str, source: Source) -> Plain:
     q = [float(turned.get(c, 0.5 if c == moving else 0.2)) for c in model.positions]
     still = [float(turned.get(c, 0)) for c in model.positions]
     motion = {
-        k: np.random.default_rng(i).uniform(-1, 1, (60, len(q))).tolist()
+        k: np.random.default_rng(i).uniform(-1, 1, (60, model.dof)).tolist()
         for i, k in enumerate(("q", "qd", "qdd", "tau"))
     }
+    if model.balls:
+        motion["q"] = [q] * 60
     effort = f"tau.{moving}"
     control = {
         "controls": [effort],

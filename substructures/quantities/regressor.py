@@ -29,7 +29,7 @@ from substructures.mechanics.composite_form import Inertia, moments_of_inertia, 
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
-from substructures.mechanics.state_names import BallRow, ball_rows
+from substructures.mechanics.state_names import BallRow, ball_rows, positions_of
 from substructures.part.inertia_symbols import inertia_names
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
@@ -87,6 +87,11 @@ class RegressorModel:
     driven: tuple[str, ...] = ()
     balls: tuple[BallRow, ...] = field(default=(), hash=False)
     reduced: tuple[str, ...] = ()
+
+    @property
+    def positions(self) -> tuple[str, ...]:
+        """What states q are, as those of a model."""
+        return positions_of(self.coordinates, self.balls)
 
     @property
     def labels(self) -> Mapping[str, Any]:
@@ -185,12 +190,18 @@ def _regrouping(assembly: Assembly) -> Program:
     """Relations between columns. ``assembly``: one of its own, so that no constant is written in coordinates."""
     graph = assembly.scope.graph
     # nothing that is constant depends on where the joints are
-    resting = [replace(m, bindings={**m.bindings, **dict.fromkeys(m.part.coordinates, 0)}) for m in assembly.mounted]
+    resting = [replace(m, bindings={**m.bindings, **_resting(m.part)}) for m in assembly.mounted]
     run = bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
     loops = [cut for cut in assembly.full().cuts if cut.rows.name in assembly.dependent.loops]
     rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed, loops)
     entries: dict[tuple[int, ...], Scalar] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
     return program(graph, {"relations": Formulas((len(rows), columns), entries)}, assembly.scope.symbols)
+
+
+def _resting(part: Part) -> dict[str, Scalar]:
+    """A position of a part, in which nothing is turned or shifted."""
+    turned = {x: int(x == ball.quaternion[0]) for ball in part.topology.balls for x in ball.positions}
+    return {**dict.fromkeys(part.coordinates, 0), **turned}
 
 
 def _pairs(assembly: Assembly) -> Iterator[tuple[Instance, MountedPart]]:

@@ -154,9 +154,11 @@ def test_the_response_of_a_sledge() -> None:
     found = frequency_response(model, [0, 0], frequencies=[1.0, 2.0], of_inputs=["tau.s.x"])
     assert found.response[:, 0, 0] == pytest.approx([-1 / 4, -1 / 16], rel=1e-12)
     assert np.abs(found.response[:, 1, 0]).max() < 1e-14
+    assert regulator(model, [0, 0], weights={"s.x": 1}).gain[0] == pytest.approx([1, np.sqrt(8)], rel=1e-9)
+    assert "'s.y'" in regulator(model, [0, 0], weights={"s.x": 1, "s.y": 1}).message
     with pytest.raises(InvalidInput) as caught:
         regulator(model, [0, 0])
-    assert caught.value.faults[0].code == "has-velocity-constraints"
+    assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == ("/weights", "missing")
 
 
 def test_what_no_input_moves_and_no_weight_sees_is_told() -> None:

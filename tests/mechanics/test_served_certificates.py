@@ -137,6 +137,9 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
         "rates_by_position",
     ),
     "motion with velocity constraints": (lambda: solved.solved(tied(), ["x.u"]), "second"),
+    "state space with velocity constraints": (
+        lambda: solved.state_space(tied(), ["x.x*y.y' + x.u^2", "sin(y.x)*x.x'"], CONTROLS), "A",
+    ),
     "variation with velocity constraints": (lambda: solved.varied(tied(), ["x.l"]), "rates_variation"),
     "velocity equations of closed loops": (
         lambda: quasi_velocities.quasi_velocity_equations(model(closed=True), [Closed("r")]),
@@ -219,6 +222,7 @@ def clear() -> None:
     steady._steady_formulas.cache_clear()
     solved._solved.cache_clear()
     solved._varied.cache_clear()
+    solved._state_space.cache_clear()
 
 
 def halved(function: Callable[..., list[Expr]]) -> Callable[..., list[Expr]]:

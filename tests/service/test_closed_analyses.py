@@ -173,7 +173,6 @@ def test_identification_of_a_closed_tree(swing: TestClient) -> None:
 REFUSED = [
     ("forward_dynamics", {}, "evaluate it"),
     ("forward_dynamics_derivative", {}, "linearisations"),
-    ("state_space", {}, "perturbation"),
     ("curvature", {}, "independent coordinates"),
     ("routhian", {}, "first integrals"),
     ("base_parameters", {}, "regressor"),

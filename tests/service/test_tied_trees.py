@@ -139,6 +139,26 @@ def test_formulas_of_what_perturbs_a_motion(tied: TestClient) -> None:
     assert tied.get("/v1/trees/sleigh/parameter_sensitivity?parameters=s.a").status_code == 200
 
 
+def test_a_state_space_in_independent_velocities(tied: TestClient) -> None:
+    """x = (q, v); without constraints no velocities are chosen."""
+    found = tied.get("/v1/trees/sleigh/state_space?independent=s.x,s.f&outputs=s.y'").json()
+    assert found["state"] == ["s.x", "s.y", "s.f", "s.x'", "s.f'"]
+    assert [found["outputs"][name]["shape"] for name in "ABC"] == [[5, 5], [5, 3], [1, 5]]
+    refused = tied.get("/v1/trees/free/state_space?independent=s.x")
+    assert [(e["pointer"], e["code"]) for e in refused.json()["errors"]] == [("/query/independent", "not-supported")]
+
+
+def test_a_regulator_keeps_the_line(tied: TestClient) -> None:
+    """Of a sleigh that glides along x; at rest it cannot be moved aside."""
+    asked = {"q": [0, 0, 0], "qd": [1, 0, 0], "weights": {"s.y": 1}, "of_inputs": ["tau.s.f"]}
+    found = tied.post("/v1/trees/sleigh/regulators", json=asked).json()
+    assert (found["states"], found["is_right"]) == (["s.y", "s.f", "s.f'"], True)
+    still = tied.post("/v1/trees/sleigh/regulators", json={**asked, "qd": [0, 0, 0]}).json()
+    assert (still["status"], still["controllable"], still["reached"][0]["parts"]) == ("failed", False, ["s.y"])
+    sliding = tied.post("/v1/trees/sleigh/regulators", json={**asked, "qd": [1, 0, 1]})
+    assert [(e["pointer"], e["code"]) for e in sliding.json()["errors"]] == [("/q", "not-steady")]
+
+
 def test_dynamics_in_independent_velocities(tied: TestClient) -> None:
     """As formulas, in code, and as an FMU; where they are singular is said."""
     found = tied.get("/v1/trees/sleigh/velocity_dynamics?independent=s.f,s.x")
@@ -173,7 +193,6 @@ def test_best_parameters(tied: TestClient) -> None:
 
 REFUSED: list[tuple[str, dict[str, Any]]] = [
     ("curvatures", {"q": [0, 0, 0]}),
-    ("regulators", {"q": [0, 0, 0]}),
     ("loop-states", {"q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["forward_dynamics"], "q": [0, 0, 0]}),
     ("evaluations", {"quantities": ["reactions"], "q": [0, 0, 0], "qdd": [0, 0, 0]}),
@@ -190,7 +209,7 @@ def test_what_would_ignore_them_says_so(tied: TestClient, path: str, body: dict[
     assert "take simulations, linearisations, velocity-equations" in fault["message"]
 
 
-@pytest.mark.parametrize("path", ["state_space", "routhian", "curvature", "report", "export?target=simulink"])
+@pytest.mark.parametrize("path", ["routhian", "curvature", "report", "export?target=simulink"])
 def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
     answer = tied.get(f"/v1/trees/sleigh/{path}")
     assert answer.status_code == 422, answer.text[:300]

@@ -116,6 +116,7 @@ QUESTIONS: list[Row] = [
     ("steady-motions", {}, "/momenta/slide.x", measured(2, "kN s"), 2000.0, "N m s"),
     ("steady-motions", {"rates": {}}, "/starts", [HANDS[0]], [HANDS[1]], "s"),
     ("steady-motions", {"rates": {}}, "/reach", MM, 0.25, "rad"),
+    ("steady-motions", {"rates": {}}, "/precession", measured(60, "rpm"), 2 * pi, "m/s"),
     ("steady-motions", {"rates": {}}, "/parameters/arm.m", measured(250, "g"), 0.25, "m"),
     ("steady-motions", {"rates": {}}, "/inputs/tau.arm.q", measured(25, "N cm"), 0.25, "N"),
     ("steady-motions", {"vary": "arm.l"}, "/between", [MM, 1], [0.25, 1], "rad"),

@@ -34,7 +34,8 @@ OPTIONS = {
     "running": "cost per second, an expression in coordinates, velocities, inputs, parameters and t (adjoint)",
     "terminal": "cost at the end, an expression in coordinates, velocities, parameters and t (adjoint)",
     "joints": "coordinates of joints, and instance.base of seats (reactions; default all)",
-    "independent": "coordinates whose velocities describe the motion (velocity_dynamics; default chosen)",
+    "independent": "coordinates whose velocities describe the motion (velocity_dynamics, and state_space with velocity"
+    " constraints; default chosen)",
     "drives": "armature, viscous, coulomb, offset: columns of drives (base_parameters, base_regressor)",
 }
 

@@ -23,14 +23,15 @@ def velocity_equations_of(source: Source, body: Any) -> Made:
     Raises InvalidInput with pointers into the body, TooLarge.
     """
     found = quasi_velocity_equations(source.model, **arguments(read_constraints(body)))
-    members = _members(found)
+    members = members_of(found)
     size, limit = len(found.program), source.limits.program_nodes
     if size > limit:
         raise TooLarge("the formulas (in operations)", size, limit)
     return Made(found.program, members)
 
 
-def _members(found: QuasiVelocities) -> dict[str, Any]:
+def members_of(found: QuasiVelocities) -> dict[str, Any]:
+    """What the axes of formulas in quasi-velocities are, with a warning where these do not describe the motion."""
     names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
     members: dict[str, Any] = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
     if found.singular:
@@ -41,14 +42,18 @@ def _members(found: QuasiVelocities) -> dict[str, Any]:
     return members
 
 
-def _velocity_dynamics(source: Source, options: Options) -> Made:
+def motion_equations(source: Source, options: Options) -> QuasiVelocities:
     """In velocities of coordinates, by default those that describe the motion well where all coordinates are 0."""
     model, independent = source.model, options.get("independent")
     near = None if independent else place_of_zero(model)
     if independent and {*independent} <= {*model.coordinates}:
         independent = tuple(sorted(independent, key=model.coordinates.index))
-    found = quasi_velocity_equations(model, closing(model), independent=independent, near=near)
-    return Made(dynamics(found), _members(found))
+    return quasi_velocity_equations(model, closing(model), independent=independent, near=near)
+
+
+def _velocity_dynamics(source: Source, options: Options) -> Made:
+    found = motion_equations(source, options)
+    return Made(dynamics(found), members_of(found))
 
 
 def read_constraints(body: Any) -> BaseModel:

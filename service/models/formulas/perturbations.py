@@ -4,14 +4,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from service.models.formulas.constraints import members_of, motion_equations
 from service.models.formulas.entry import Made, Options, Quantity
 from service.models.source import Source
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.nonholonomic.linearised import linearised
+from substructures.analysis.equations.nonholonomic.solved import state_space as constrained_state_space
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.perturbation import perturbation, state_space
 from substructures.analysis.motion.parameter_sensitivity import QUANTITIES as VARIED
 from substructures.analysis.motion.parameter_sensitivity import sensitivity_formulas
+from substructures.errors import InvalidDocument
 
 
 def _perturbation(source: Source, _: Options) -> Made:
@@ -31,6 +34,13 @@ def _state_space(source: Source, options: Options) -> Made:
     state = [*model.coordinates, *(f"{name}'" for name in model.coordinates)]
     members = {"state": state, "inputs": list(inputs or inputs_of(model)), "expressions": list(outputs)}
     members |= {"positions": list(model.positions)} if model.balls else {}
+    if model.velocity_constraints or model.closures:
+        equations = motion_equations(source, options)
+        members["state"] = [*model.coordinates, *equations.velocities]
+        return Made(constrained_state_space(equations, outputs, inputs), members | members_of(equations))
+    if "independent" in options:
+        message = "without closures and velocity constraints all coordinates have velocities of their own"
+        raise InvalidDocument.at("/independent", "not-supported", message)
     return Made(state_space(model, outputs, inputs), members)
 
 
@@ -41,6 +51,6 @@ def _sensitivity(source: Source, options: Options) -> Made:
 
 QUANTITIES = {
     "perturbation": Quantity(_perturbation),
-    "state_space": Quantity(_state_space, ("inputs", "outputs")),
+    "state_space": Quantity(_state_space, ("inputs", "outputs", "independent")),
     "parameter_sensitivity": Quantity(_sensitivity, ("parameters", "quantities")),
 }

@@ -48,14 +48,14 @@ def _with_parts(source: Source, read: IdentificationRequest, base: BaseParameter
 
 
 def _base(source: Source, drives: tuple[str, ...]) -> BaseParameters:
-    """Those of the tree without closures."""
+    """Those of the tree without closures and velocity constraints."""
     if not source.model.closures:
         return base_of(source, drives)
     return base_parameters(replace(source.regressor(), closures=()), drives)
 
 
 def _closed(source: Source) -> Model | None:
-    return source.model if source.model.closures else None
+    return source.model if source.model.closures or source.model.velocity_constraints else None
 
 
 def _motion(read: ExcitationRequest) -> dict[str, Any]:

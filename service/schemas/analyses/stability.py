@@ -131,6 +131,9 @@ class SteadyMotionsRequest(DocumentPart):
     independent: tuple[str, ...] | None = Field(
         None, max_length=500, description="with velocity constraints: or the coordinates whose velocities they are"
     )
+    precession: Annotated[Real | Literal["any"] | None, RADIANS_PER_SECOND] = Field(
+        None, description="with ball joints: of all about the vertical, rad/s; `any` that keeps the `starts`"
+    )
 
 
 class RootLocusRequest(DocumentPart):

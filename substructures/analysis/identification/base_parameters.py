@@ -46,6 +46,7 @@ from substructures.expr.replay import replay
 from substructures.expr.rings.expand import expand
 from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
+from substructures.mechanics.state_names import BallRow
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.closures import require_open
@@ -91,6 +92,7 @@ class BaseParameters:
     unseen: tuple[str, ...]
     drives: tuple[str, ...]
     parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
+    balls: tuple[BallRow, ...] = field(default=(), hash=False)
 
     def __repr__(self) -> str:
         sizes = f"base={self.count}, standard={len(self.standard)}, unseen={len(self.unseen)}"
@@ -159,9 +161,8 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     unseen = tuple(columns.names[j] for j, c in found.others.items() if not c)
     used = {symbol.name for symbol in result.symbols}
     parameters = {name: value for name, value in Y.parameters.items() if name in used}
-    return BaseParameters(
-        result, Y.coordinates, Y.joints, columns.names, columns.units, found.base, unseen, columns.drives, parameters
-    )
+    own = Y.coordinates, Y.joints, columns.names, columns.units
+    return BaseParameters(result, *own, found.base, unseen, columns.drives, parameters, Y.balls)
 
 
 def _certify(Y: RegressorModel, columns: _Columns, base: Sequence[int], result: Program) -> list[str]:
@@ -221,7 +222,8 @@ class _Columns:
     def functions(self) -> Functions:
         """The functions of q alone, with a field that holds all square roots that occur."""
         names = [s.name for s in self.Y.program.symbols if s.kind == "parameter"]
-        angular = [joint == "R" for joint in self.Y.joints]
+        turns = {name for name, joint in zip(self.Y.coordinates, self.Y.joints, strict=True) if joint == "R"}
+        angular = [name in turns for name in self.Y.positions]
         for _ in range(MAX_FIELDS):
             field = Field([self.Y.program, self.regrouping])
             symbols = {name: field.draw() for name in names}
@@ -241,7 +243,7 @@ class _Columns:
         raise NoSquareRoot
 
     def _at_random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
-        at = {**symbols, **{name: field.draw() for name in self.Y.coordinates}}
+        at = {**symbols, **{name: field.draw() for name in self.Y.positions}}
 
         def regressor(motion: Mapping[str, int]) -> dict[tuple[int, ...], int]:
             """Y at a random position in the field, for a motion."""
@@ -251,7 +253,9 @@ class _Columns:
 
     def _exact(self, graph: Graph, q: Sequence[Expr]) -> list[dict[int, Expr]]:
         """Rows of formulas at q."""
-        at = dict(zip(self.Y.coordinates, q, strict=True))
+        at = dict(zip(self.Y.positions, q, strict=True))
+        # quaternions are not 0
+        at |= {ball["positions"][-4]: at[ball["positions"][-4]] + 1 for ball in self.Y.balls}
         return self._rows(lambda motion: self.regressor(graph, {**at, **motion}), graph.zero, graph.one)
 
     def _known(self, graph: Graph) -> list[dict[int, Expr]]:

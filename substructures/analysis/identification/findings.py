@@ -56,8 +56,8 @@ class Identification:
     that took no part, None without such; ``excitation``. ``status``: identified; failed where the motion does
     not excite all base parameters (``values`` is then the solution of least length). ``inertia``: of every body, where
     it was asked for, and ``parts``: by instance the definition of the next version with it. On closures ``residual``
-    is of the ``independent`` coordinates, and the parameters are ``combinations`` of those of the tree without them:
-    coefficients by name."""
+    is of the ``independent`` coordinates (with velocity constraints along the allowed velocities nearest to theirs),
+    and the parameters are ``combinations`` of those of the tree without them: coefficients by name."""
 
     names: tuple[str, ...]
     units: tuple[str, ...]

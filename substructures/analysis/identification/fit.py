@@ -27,6 +27,7 @@ from substructures.analysis.given import StateArray
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.findings import LIMIT, Excitation, Identification
 from substructures.analysis.identification.on_closures import Loops
+from substructures.analysis.identification.on_constraints import Rolled
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument
@@ -77,14 +78,14 @@ def excitation(
     """How well a motion shows the base parameters: singular values of the scaled regressor W = [Y_B(q, q', q'')].
 
     ``q``, ``qd``, ``qdd`` (N, n), or columns by coordinate [rad, m, s]; ``qd`` None: at rest. ``parameters``: kinematic
-    ones, in place of their defaults; ``closed``: the tree, where it has closures. Raises InvalidInput (``/q``,
-    ``/qdd``, ``/parameters/name``, ...) and MissingValue. Source: J. Swevers et al., IEEE Transactions on Robotics and
-    Automation 13(5), 1997.
+    ones, in place of their defaults; ``closed``: the tree, where it has closures or velocity constraints. Raises
+    InvalidInput (``/q``, ``/qdd``, ``/parameters/name``, ...) and MissingValue. Source: J. Swevers et al., IEEE
+    Transactions on Robotics and Automation 13(5), 1997.
     """
     data = _stacked(base, _Motion(q, qd, qdd, parameters or {}))
     if closed is None:
         return _excitation(base.names, data.outputs[REGRESSOR])
-    loops = Loops.of(closed, base, data.q, parameters or {})
+    loops = _tied(closed).of(closed, base, data.q, parameters or {})
     fewer, W, _ = loops.reduced(base, data.q, data.outputs[REGRESSOR], None)
     return _excitation(fewer.names, W)
 
@@ -107,13 +108,13 @@ def identify(
     ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N], or columns by coordinate; ``qd`` None: at rest.
     ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and armature
     are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is explained
-    by the base parameters alone. ``closed``: the tree, where it has closures: ``base`` are those without them, of which
-    closed motions tell ``combinations``, from what forces do along the independent coordinates. ``held_out``: part of
-    the samples, the last ones, that is predicted and not fitted. Checks: the normal equations hold; the force that is
-    not explained, and the force that any one standard deviation of a parameter makes, are parts of the force of every
-    joint (root mean squares) that may reach ``error_limit``. A motion that does not excite all of them is a result with
-    status ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M.
-    Gautier, IEEE ICRA 1997.
+    by the base parameters alone. ``closed``: the tree, where it has closures or velocity constraints: ``base`` are
+    those without them, of which motions with them tell ``combinations``, from what forces do along the independent
+    coordinates. ``held_out``: part of the samples, the last ones, that is predicted and not fitted. Checks: the normal
+    equations hold; the force that is not explained, and the force that any one standard deviation of a parameter makes,
+    are parts of the force of every joint (root mean squares) that may reach ``error_limit``. A motion that does not
+    excite all of them is a result with status ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...;
+    ``too-few``) and MissingValue. Source: M. Gautier, IEEE ICRA 1997.
     """
     motion = _Motion(q, qd, qdd, parameters or {})
     data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
@@ -122,11 +123,16 @@ def identify(
     inertial, W = force if model is None else force - _known(model, motion, data), data.outputs[REGRESSOR]
     told: dict[str, Any] = {}
     if closed is not None:
-        loops = Loops.of(closed, base, data.q, motion.parameters)
+        loops = _tied(closed).of(closed, base, data.q, motion.parameters)
         told = {"independent": loops.independent, "combinations": loops.combinations(base)}
         base, W, inertial = loops.reduced(base, data.q, W, inertial)
     found = replace(_fitted(base, W[:kept], inertial[:kept], limit), **told)
     return found if kept == len(W) else _predicted(found, W[kept:], inertial[kept:], limit)
+
+
+def _tied(model: Model) -> type[Loops]:
+    """Closures, or velocity constraints with them."""
+    return Rolled if model.velocity_constraints else Loops
 
 
 def _fitted_samples(count: int, held_out: float) -> int:
@@ -215,12 +221,12 @@ def _stacked(base: BaseParameters, motion: _Motion, names: tuple[str, ...] = (RE
     values = symbol_values(view, vars(motion), states, ())
     values |= {f"{name}''": states.qdd[:, a] for a, name in enumerate(base.coordinates)}
     # one position for all accelerations, ...
-    q, qd, qdd = (np.broadcast_to(x, (states.count, states.q.shape[1])) for x in (states.q, states.qd, states.qdd))
+    q, qd, qdd = (np.broadcast_to(x, (states.count, x.shape[1])) for x in (states.q, states.qd, states.qdd))
     return _Data(q, qd, qdd, interpret_in_blocks(base.program, values, names, states.count))
 
 
 def _view(base: BaseParameters) -> Model:
-    return Model(base.program, base.coordinates, base.joints, (), base.parameters, {})
+    return Model(base.program, base.coordinates, base.joints, (), base.parameters, {}, balls=base.balls)
 
 
 def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
@@ -229,8 +235,8 @@ def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
     if isinstance(given, Mapping):
         given = by_name(_view(base), given, "tau")
     tau = np.atleast_2d(numeric(given, "/tau"))
-    if tau.shape != data.q.shape:
-        message = f"shape {tau.shape} found, {data.q.shape} expected"
+    if tau.shape != data.qd.shape:
+        message = f"shape {tau.shape} found, {data.qd.shape} expected"
         raise InvalidArgument.at("/tau", "wrong-length", message)
     return tau
 

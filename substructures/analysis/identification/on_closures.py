@@ -68,10 +68,13 @@ class Loops:
         s.move(0.0, states[0], np.zeros(s.n))
         named = model.reduction.independent if model.reduction else ()
         independent = named or tuple(model.coordinates[a] for a in independent_coordinates(s.balanced))
-        loops = cls(model, values, independent, (), np.zeros((0, base.count)))
-        W = loops.tangential(loops.tangents(states), loops.regressor(base, states))
+        return cls(model, values, independent, (), np.zeros((0, base.count))).told(base, states)
+
+    def told(self, base: BaseParameters, states: Array) -> Loops:
+        """With what random motions at positions (N, n) tell of the parameters."""
+        W = self.tangential(self.tangents(states), self.regressor(base, states))
         kept, regrouping = _dependencies(W.reshape(-1, base.count))
-        return replace(loops, kept=kept, regrouping=regrouping)
+        return replace(self, kept=kept, regrouping=regrouping)
 
     def tangents(self, q: Array) -> Array:
         """N (N, n, r) at positions (N, n): dq = N dy of the independent coordinates y."""
@@ -86,13 +89,17 @@ class Loops:
 
     def regressor(self, base: BaseParameters, q: Array) -> Array:
         """Y_B (N, n, b) at positions with random velocities and accelerations that the closures allow."""
+        values = {**self.values, **self._columns(q, *self.moving(q))}
+        return interpret_in_blocks(base.program, values, ["base_regressor"], len(q))["base_regressor"]
+
+    def moving(self, q: Array) -> tuple[Array, Array]:
+        """These velocities and accelerations, (N, n) each."""
         rng, N = np.random.default_rng(7), self.tangents(q)
         qd, way = (np.einsum("nar,nr->na", N, rng.uniform(-1, 1, N[:, 0].shape)) for _ in range(2))
         found = self._outputs(q, qd, "closure.jacobian", "closure.acceleration")
         # G q'' = -c
         short = np.einsum("nak,nk->na", np.linalg.pinv(found["closure.jacobian"]), found["closure.acceleration"])
-        values = {**self.values, **self._columns(q, qd, way - short)}
-        return interpret_in_blocks(base.program, values, ["base_regressor"], len(q))["base_regressor"]
+        return qd, way - short
 
     def tangential(self, N: Array, rows: Array) -> Array:
         """N^T of rows (N, n, ...)."""

@@ -38,11 +38,12 @@ LENGTH = "|Q|"
 
 
 def bounded_by_integrals(
-    model: Model, values: Mapping[str, float], moving: Sequence[int], zero: Sequence[str] = ()
+    model: Model, values: Mapping[str, float], shifts: Array, zero: Sequence[str] = ()
 ) -> str | None:
-    """Why the steady motion at ``values`` (of all symbols; s = ``moving``) is stable, None where this does not tell.
+    """Why the steady motion at ``values`` (of all symbols) is stable, None where this does not tell.
 
-    ``zero``: parameters that are 0. All inputs are 0, and the energy is constant. No closures.
+    ``shifts`` (k, m + n): changes of a state that lead along the motion, see :func:`shifts_along`. ``zero``: parameters
+    that are 0. All inputs are 0, and the energy is constant. No closures.
     """
     if model.dof > MOST:
         return None
@@ -53,7 +54,6 @@ def bounded_by_integrals(
     if not all(np.isfinite(x).all() for x in found.values()):
         return None
     # z = (x, q'): without the shifts s
-    shifts = _shifts(model, values, moving)
     z = scipy.linalg.null_space(shifts) if len(shifts) else np.eye(shifts.shape[1])
     H = names.index("energy")
     used = [k for k in range(len(names)) if k != H and _is_invariant(found["first"][k], shifts)]
@@ -102,11 +102,11 @@ def _derivatives(known: Known, zero: frozenset[str]) -> tuple[tuple[str, ...], P
     return names, program(graph, formulas, symbols)
 
 
-def _shifts(model: Model, values: Mapping[str, float], moving: Sequence[int]) -> Array:
-    """Changes (k, m + n) of a state with each of the coordinates s, of ball joints turns about axes of the body."""
+def shifts_along(model: Model, values: Mapping[str, float], displacements: Array) -> Array:
+    """Changes (k, m + n) of a state with ``displacements`` (k, n), of ball joints turns about axes of the body."""
     states = model.positions, model.coordinates, model.balls
     displaced = np.linalg.pinv(by_displacements(*states, np.array([values[name] for name in model.positions])))
-    return np.concatenate((displaced.T, np.zeros((model.dof, model.dof))), axis=1)[list(moving)]
+    return np.concatenate((displacements @ displaced.T, np.zeros((len(displacements), model.dof))), axis=1)
 
 
 def _is_invariant(first: Array, shifts: Array) -> bool:

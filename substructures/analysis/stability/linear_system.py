@@ -21,16 +21,20 @@ from substructures.tree.model import Model
 
 #: relative distances to an uncontrollable pair: below the first it is one, above the second it is none
 LOST, SURE = 1e-10, 1e-7
+#: of a vector of length 1, what is told of it
+PART = 0.3
 
 
 @dataclass(frozen=True)
 class Reach:
     """How far a mode is from what inputs do not move, or outputs do not see: ``eigenvalue`` [1/s], ``distance`` the
-    least singular value of (A - s, B), or of (A - s, C), states and inputs scaled, relative to its largest.
+    least singular value of (A - s, B), or of (A - s, C), states and inputs scaled, relative to its largest; ``parts``:
+    names of the components of x of which what is not moved (not seen) mostly consists, the largest first.
     """
 
     eigenvalue: complex
     distance: float
+    parts: tuple[str, ...] = ()
 
 
 def linear_system(
@@ -58,16 +62,21 @@ def eigenvalues(A: Array) -> ComplexArray:
     return found[np.lexsort((found.imag, found.real))]
 
 
-def reach(A: Array, B: Array) -> tuple[Reach, ...]:
-    """The test of Popov, Belevitch and Hautus for every mode, slowest first; columns of B of equal size."""
+def reach(A: Array, B: Array, names: Sequence[str]) -> tuple[Reach, ...]:
+    """The test of Popov, Belevitch and Hautus for every mode, slowest first; columns of B of equal size; ``names``: of
+    the components of x.
+    """
     balanced, (scales, _) = scipy.linalg.matrix_balance(A, permute=False, separate=True)
     sizes = np.linalg.norm(B / scales[:, None], axis=0)
     columns = (B / scales[:, None])[:, sizes > 0] / sizes[sizes > 0]
     columns = columns * max(1.0, float(np.linalg.norm(balanced, 2)))
     found = []
     for s in sorted(eigenvalues(A), key=lambda x: (abs(x), x.imag)):
-        values = scipy.linalg.svdvals(np.hstack([balanced - s * np.eye(len(A)), columns]))
-        found.append(Reach(complex(s), float(values[len(A) - 1] / values[0]) if values[0] > 0 else 0.0))
+        U, values, _ = scipy.linalg.svd(np.hstack([balanced - s * np.eye(len(A)), columns]), full_matrices=False)
+        distances = values / values[0] if values[0] > 0 else np.zeros(len(A))
+        shares = np.linalg.norm(U[:, distances < SURE], axis=1)
+        worst = [int(i) for i in np.argsort(-shares, kind="stable") if shares[i] > PART]
+        found.append(Reach(complex(s), float(distances[-1]), tuple(names[i] for i in worst)))
     return tuple(found)
 
 

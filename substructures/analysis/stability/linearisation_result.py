@@ -123,9 +123,10 @@ class ConstrainedLinearisation(MovingLinearisation):
 
     For p quasi-``velocities`` and the ``constraints`` that hold: M, D (p, p), K (p, n), F (p, m), A (n+p, n+p),
     B (n+p, m), C (k, n+p), R (n, n), T (n, p). ``q``, ``qd`` (n,), ``v``, ``vd`` (p,): the state and v' about which is
-    linearised; ``residual`` (p,). ``ignorable``: coordinates that change nothing but rates of such. Where v' = 0 and
-    all others rest the motion is steady: ``modes`` of its neighbours that keep the gaps, shapes in all coordinates, and
-    ``stability`` of what is not ignorable.
+    linearised; ``residual`` (p,). ``gaps`` (k, n): dq keeps closed what is closed where gaps dq = 0. ``ignorable``:
+    coordinates that change nothing but rates of such; ``varying``: those of them whose linearised rates change on the
+    way (the place on the plane in a turn). Where v' = 0 and all others rest the motion is steady: ``modes`` of its
+    neighbours that keep the gaps, shapes in all coordinates, and ``stability`` of what is not ignorable.
     """
 
     velocities: tuple[str, ...]
@@ -136,4 +137,6 @@ class ConstrainedLinearisation(MovingLinearisation):
     vd: Array
     R: Array
     T: Array
+    gaps: Array
     ignorable: tuple[str, ...]
+    varying: tuple[str, ...] = ()

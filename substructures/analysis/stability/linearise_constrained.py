@@ -42,6 +42,8 @@ MATRICES = ("metric", "damping", "stiffness", "input", "residual", "T", "rates_b
 NOTHING = 1e-10
 #: quasi-accelerations and rates of a steady motion, of what a unit change causes
 STEADY = 1e-8
+#: how far the fastest has moved where rates are compared [rad, m]
+LATER = (0.37, 1.9, 4.3)
 #: how far beside a steady motion others are looked for [rad, m, 1/s, ...], in how many steps, and what rounding leaves
 BESIDE, STEPS, ROUNDED = 0.1, 40, 1e-12
 
@@ -152,6 +154,7 @@ def _assembled(
         vd=vd,
         R=R,
         T=T,
+        gaps=found.get("gaps_by_position", np.zeros((0, n))),
         ignorable=(),
     )
 
@@ -167,14 +170,23 @@ def _judged(
     moves = np.abs(linear.vd) > STEADY * np.fmax(1.0, np.abs(linear.A[len(linear.q) :]).max(axis=1, initial=0))
     if "t" in matrices.needs(matrices.outputs) or moves.any() or (np.abs(linear.qd[kept]) > STEADY).any():
         return linear
-    gaps = np.zeros((0, len(linear.coordinates)))
-    if equations.gaps:
-        gaps = interpret(matrices, values, ["gaps_by_position"])["gaps_by_position"]
-    modes = _modes(linear, kept, order, gaps)
+    modes = _modes(linear, kept, order)
     found = stability(modes, linear.D, linear.K, has_potential=False)
     if found.verdict == "undecided":
-        found = _beside_others(modes, found, _Neighbours(linear, equations, values, kept, gaps))
-    return replace(linear, modes=modes, stability=found)
+        found = _beside_others(modes, found, _Neighbours(linear, equations, values, kept))
+    varying = _varying(linear, matrices, values) if linear.qd.any() else ()
+    return replace(linear, modes=modes, stability=found, varying=varying)
+
+
+def _varying(linear: ConstrainedLinearisation, matrices: Program, values: Mapping[str, float]) -> tuple[str, ...]:
+    """Coordinates whose rows of R and T are others where those lead that move."""
+    changed, scale = np.zeros(len(linear.q)), float(np.abs(linear.qd).max())
+    for t in LATER:
+        there = dict(zip(linear.coordinates, (linear.q + linear.qd * (t / scale)).tolist(), strict=True))
+        found = interpret(matrices, {**values, **there}, ["T", "rates_by_position"])
+        for name, x in (("T", linear.T), ("rates_by_position", linear.R)):
+            changed = np.fmax(changed, np.abs(found[name] - x).max(axis=1, initial=0) / (np.abs(x).max(initial=0) or 1))
+    return tuple(name for name, x in zip(linear.coordinates, changed, strict=True) if x > STEADY)
 
 
 def _beside_others(modes: tuple[Mode, ...], found: Stability, neighbours: _Neighbours) -> Stability:
@@ -203,13 +215,13 @@ class _Neighbours:
     equations: QuasiVelocities
     values: Mapping[str, float]
     kept: NDArray[np.int64]
-    gaps: Array
 
     def are_a_family(self, count: int) -> bool:
         """Whether there are such in all directions of the null space of dy'/dy, which has this dimension."""
         n, p = len(self.linear.q), len(self.linear.v)
         rest = np.concatenate((self.kept, np.arange(n, n + p)))
-        still = np.hstack([self.gaps[:, self.kept], np.zeros((len(self.gaps), p))])
+        gaps = self.linear.gaps
+        still = np.hstack([gaps[:, self.kept], np.zeros((len(gaps), p))])
         J = np.vstack([self.linear.A[np.ix_(rest, rest)], still])
         ways = scipy.linalg.null_space(J, rcond=STEADY)
         if ways.shape[1] != count:
@@ -265,11 +277,9 @@ def ignorable_coordinates(
         order += more
 
 
-def _modes(
-    linear: ConstrainedLinearisation, kept: NDArray[np.int64], order: Sequence[int], gaps: Array
-) -> tuple[Mode, ...]:
+def _modes(linear: ConstrainedLinearisation, kept: NDArray[np.int64], order: Sequence[int]) -> tuple[Mode, ...]:
     """Of the motions that keep the gaps, without coordinates that are ignorable; slowest first."""
-    n, p = len(linear.q), len(linear.v)
+    n, p, gaps = len(linear.q), len(linear.v), linear.gaps
     rest = np.concatenate((kept, np.arange(n, n + p)))
     # dq = N y with d(gaps) = 0, which A keeps
     N = scipy.linalg.block_diag(scipy.linalg.null_space(gaps[:, kept]) if len(gaps) else np.eye(len(kept)), np.eye(p))

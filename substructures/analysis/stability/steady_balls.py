@@ -1,91 +1,206 @@
 """Steady motions with ball and floating joints: cyclic rates are constant, and everything else keeps still.
 
 A rate of a ball joint is cyclic where its body is the same turned about this axis of its own (the spin of a top), a
-coordinate where nothing depends on it (a wheel). Places are those of rest at these rates, ID(q, v, v' = 0) = 0, and
-disturbances those of all displacements and rates, in the axes of bodies. Turning about the vertical, as a precession,
-is no rate of a joint: what goes round steadily is found where a coordinate turns it.
+coordinate where nothing depends on it (a wheel). Where the angular momentum L about an axis of the world is constant,
+all may turn about it, too, at a rate Omega (a precession). With g = M^-1 dL/dv, the rates v of turning about it alone,
+and the axes e_c of cyclic rates a motion is steady where
+
+    ID(q, v, v') = 0      v = Omega g + sigma_c e_c      v' = -sigma_c e_c x v in the joint of a spin c
+
+(:mod:`substructures.analysis.equations.precession`). Places are searched in all numbers of q, and disturbances are
+those of all displacements and rates; of bodies that spin in axes that do not, dq' = dv + (R + S) dq with S = sigma_c
+e_c x, in which the coefficients are constant (relative equilibria: J. E. Marsden, Lectures on Mechanics, 1992).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from itertools import product
 
 import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.stability.energy_integrals import bounded_by_integrals
-from substructures.analysis.stability.equilibrium_search import NEEDS, BallSearch, RestConditions, SearchRange
+from substructures.analysis.equations.precession import BallRequest, Turning
+from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
+from substructures.analysis.stability.equilibrium_search import (
+    NEEDS,
+    NOTHING,
+    RESIDUAL,
+    SAME,
+    BallSearch,
+    RestConditions,
+    SearchRange,
+)
 from substructures.analysis.stability.found_places import confirmed
-from substructures.analysis.stability.linearisation_result import Linearisation
+from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.steady_result import SteadyMotion, SteadyMotions
-from substructures.analysis.stability.vibrations import Stability
+from substructures.analysis.stability.vibrations import Stability, modes, stability
 from substructures.array import Array
-from substructures.errors import Fault, InvalidArgument, listed
+from substructures.mechanics.state_names import resting_state
+from substructures.quantities.numbers.quaternions import by_displacements, moved_on
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 Linearised = Callable[[Array, Array], Linearisation]
 CHANGES = "its disturbances do not keep their equations along the motion: there are no modes, and no verdict by them"
+#: of displacements, by which rates are differentiated, and what of a root may be imaginary
+STEP, REAL = 6e-6, 1e-7
+#: what momenta may differ from those that are given, of the largest
+MET = 1e-9
+#: of a turn, from where places that may be one are slid together [rad]
+THIRDS = (0.0, 2.1, 4.2)
 
 
 @dataclass(frozen=True, repr=False)
 class BallSteadyMotion(SteadyMotion):
-    """``q`` (m,) by ``positions``; M, D, K (n, n) are those of M dv' + D dv + K dq = 0, dq' = dv + R dq, for
-    displacements dq and all rates v.
+    """``q`` (m,) by ``positions``; M, D, K (n, n) are those of M dv' + D dv + K dq = 0, dq' = dv + (R + S) dq, for
+    displacements dq and all rates v. ``precession``: the rate of all about the ``axis`` of the world [rad/s], and the
+    ``angular_momentum`` about it [N m s]; ``v`` (n,): the rates, which turn with sigma_c where there is a precession.
     """
 
     positions: tuple[str, ...] = ()
+    v: Array = field(default_factory=lambda: np.zeros(0))
+    axis: str = ""
+    precession: float = 0.0
+    angular_momentum: float = 0.0
 
     def __repr__(self) -> str:
         place = ", ".join(f"{name}={x:.6g}" for name, x in zip(self.positions, self.q.tolist(), strict=True))
         rates = ", ".join(f"{name}'={w:.6g}" for name, w in zip(self.moving, self.rates.tolist(), strict=True))
+        about = f"precession={self.precession:.6g}" if self.precession else ""
         finding = self.message if self.stability is None else f"{self.stability.verdict}: {self.stability.reason}"
-        return f"SteadyMotion({', '.join(filter(None, (place, rates)))})\n{finding}"
+        return f"SteadyMotion({', '.join(filter(None, (place, rates, about)))})\n{finding}"
 
 
 class _Search(BallSearch):
-    """At rates (n,)."""
+    """At rates that turn with the places."""
 
-    def __init__(self, model: Model, within: SearchRange, conditions: RestConditions, rates: Array) -> None:
-        self.rates = rates
+    def __init__(self, within: SearchRange, conditions: RestConditions, turning: Turning) -> None:
+        model = turning.model
+        n, self.given = model.dof, turning
+        self.v, self.second, self.D, self.M = (
+            np.zeros((1, n)),
+            np.zeros((1, n)),
+            np.zeros((1, n, n)),
+            np.zeros((1, n, n)),
+        )
+        self.g, self.L, self.at_q = np.zeros((1, n, n)), np.zeros((1, n, 3)), np.zeros((1, len(model.positions)))
+        values = _values(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
+        outputs = {"metric": self.g, "angular_momentum": self.L}
+        columns = [(list(model.positions), self.at_q)]
+        self.inertia = program_kernel(model.program.select(list(outputs))).bind(outputs, values, columns=columns)
         super().__init__(model, within, conditions)
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
-        """The rates."""
-        return {}, [([f"{name}'" for name in self.model.coordinates], self.rates[None])]
+        """The rates and their derivatives, and what these multiply."""
+        moving = (("'", self.v), ("''", self.second))
+        named = [([f"{name}{mark}" for name in self.model.coordinates], x) for mark, x in moving]
+        return {"damping": self.D, "metric": self.M}, named
+
+    def motion(self, q: Array) -> tuple[Array, Array, Array, float]:
+        """v, S, g and Omega at a place."""
+        self.at_q[0] = q
+        self.inertia()
+        return self.given.motion(self.g[0], self.L[0])
+
+    def _ran(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        v, S, _, turn = self.motion(values["q"])
+        self.v[0], self.second[0] = v, -S @ v
+        found = super()._ran(values)
+        if turn or self.given.field == "momenta":
+            # of what changes with the place: D dv/dq + M dv'/dq
+            model, ways = self.model, STEP * np.eye(self.model.dof)
+            state = model.positions, model.coordinates, model.balls
+            sides = [self._changed(moved_on(*state, values["q"], way)) for way in (*ways, *-ways)]
+            slopes = (np.array(sides[: model.dof]) - np.array(sides[model.dof :])).T / (2 * STEP)
+            by = np.hstack((self.D[0], self.M[0])) @ slopes
+            found["K"] = found["K"] + by @ by_displacements(*state, values["q"])
+        return found
+
+    def _changed(self, q: Array) -> Array:
+        """v and v' (2n,)."""
+        v, S, _, _ = self.motion(q)
+        return np.concatenate((v, -S @ v))
+
+    def _slopes(self, q: Array) -> Array:
+        """Of the largest: where momenta cannot be had they have no bound."""
+        found = super()._slopes(q)
+        return found / (np.abs(found).max(initial=0) or 1.0)
+
+    def is_singular(self, q: Array) -> bool:
+        """Whether the momenta that are given cannot be had at a place: upright all turning is spin."""
+        wanted, v = self.given.wanted, self.motion(q)[0]
+        left = np.abs(self.given.momenta(self.g[0], self.L[0]) @ v - wanted).max(initial=0)
+        return self.given.field == "momenta" and bool(left > MET * np.abs(wanted).max(initial=0))
+
+    def is_same(self, q: Array, other: Array, moving: Sequence[int]) -> bool:
+        """Also where one is the other turned far about the axis of the world, or in itself."""
+        if super().is_same(q, other, moving):
+            return True
+        (v, *_, g, turn), energy = self.motion(q), self._energy(q)
+        if not turn or abs(self._energy(other) - energy) > SAME * energy:
+            return False
+        state = self.model.positions, self.model.coordinates, self.model.balls
+        ways = [g, *(np.eye(self.model.dof)[c] for c in self.given.blocks)][:2]
+        for turns in product(THIRDS, repeat=len(ways)):
+            there = moved_on(*state, q, sum((x * way for x, way in zip(turns, ways, strict=True)), 0.0 * v))
+            if any(turns) and super().is_same(self.wound(there), other, moving):
+                return True
+        return False
+
+    def _energy(self, q: Array) -> float:
+        """Twice the kinetic one, which turning does not change."""
+        v = self.motion(q)[0]
+        return float(v @ self.g[0] @ v)
+
+    def precessions(self, q: Array) -> list[float]:
+        """All Omega that keep a place: ID is quadratic in it."""
+        rows = []
+        for turn in (-1.0, 0.0, 1.0):
+            self.given.wanted[-1] = turn
+            rows.append(self.at(q)[0])
+        square, linear = (rows[0] + rows[2]) / 2 - rows[1], (rows[2] - rows[0]) / 2
+        k = int(np.abs(np.stack((square, linear))).max(axis=0).argmax())
+        terms, found = np.array([square[k], linear[k], rows[1][k]]), []
+        terms[np.abs(terms) <= NOTHING * np.abs(terms).max()] = 0
+        for root in np.roots(terms):
+            self.given.wanted[-1] = float(root.real)
+            F, K = self.at(q)
+            is_kept = (np.abs(F) <= RESIDUAL * np.fmax(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all()
+            if abs(root.imag) <= REAL * abs(root) and is_kept:
+                found.append(float(root.real))
+        return sorted(found)
 
 
 def steady_with_balls(
-    model: Model, rates: Mapping[str, float], within: SearchRange, conditions: RestConditions, linearised: Linearised
+    model: Model, request: BallRequest, within: SearchRange, conditions: RestConditions, linearised: Linearised
 ) -> SteadyMotions:
-    """At the ``rates`` of cyclic ones by name, 0 of the others; ``linearised``: about a state (q, v). Raises
-    InvalidInput (``/rates/name``), MissingValue.
+    """As the ``request`` says; ``linearised``: about a state (q, v). Raises InvalidInput (``/rates/name``,
+    ``/precession``), MissingValue.
     """
     require_smooth(model)
     acting = [name for name, value in conditions.inputs.items() if value]
     zero = [name for name, value in conditions.parameters.items() if not value]
-    cyclic = first_integrals(model, acting, zero).cyclic
-    faults = [
-        Fault(f"/rates/{name}", "not-cyclic", f"'{name[:80]}' is no cyclic rate; there are: {listed(cyclic) or 'none'}")
-        for name in rates
-        if name not in cyclic
-    ]
-    if faults:
-        raise InvalidArgument(faults)
-    if not cyclic:
-        raise InvalidArgument.at("/rates", "no-cyclic-coordinate", "there is no rate that is constant by itself")
-    v = np.array([rates.get(name, 0.0) for name in model.coordinates])
-    search = _Search(model, within, conditions, v)
+    integrals = first_integrals(model, acting, zero)
+    search = _Search(within, conditions, request.turning(model, integrals))
     places = search.starts()
-    held = search.held(places)
-    moving = [a for a in range(search.n) if a not in held]
-    places[:, held] = places[0, held]
-    found, _ = search.places(places, moving)
-    motions, left_out = confirmed([_described(model, conditions, q, v, cyclic, linearised(q, v)) for q in found])
-    message = "" if motions else "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
-    return SteadyMotions(motions, cyclic, "momenta", message="; ".join(filter(None, (message, left_out))))
+    if request.precession == "any":
+        given = places[: len(places) - 1 - within.count]
+        found = [(q, turn) for q in given for turn in search.precessions(q)]
+        advice = "no rate of precession keeps the 'starts', which 'any' takes as they are: give other places or rates"
+    else:
+        held = search.held(places)
+        moving = [a for a in range(search.n) if a not in held]
+        places[:, held] = places[0, held]
+        found = [(q, search.motion(q)[-1]) for q in search.places(places, moving)[0]]
+        advice = "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
+    motions, left_out = confirmed([_described(search, q, turn, linearised) for q, turn in found])
+    message = "" if motions else advice
+    message = "; ".join(filter(None, (message, left_out)))
+    return SteadyMotions(motions, integrals.cyclic, "momenta", message=message)
 
 
 def _values(model: Model, conditions: RestConditions, q: Array, v: Array) -> dict[str, float]:
@@ -95,19 +210,40 @@ def _values(model: Model, conditions: RestConditions, q: Array, v: Array) -> dic
     return {name: float(np.ravel(x)[0]) for name, x in found.items()}
 
 
-def _described(
-    model: Model, conditions: RestConditions, q: Array, v: Array, cyclic: tuple[str, ...], at: Linearisation
-) -> BallSteadyMotion:
+def _described(search: _Search, q: Array, turn: float, linearised: Linearised) -> BallSteadyMotion:
     """With its linearisation."""
-    places = [model.coordinates.index(name) for name in cyclic]
-    named = model.coordinates, cyclic, model.coordinates
-    told = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
-    judged = at.stability
-    if judged is not None and judged.verdict == "undecided" and not any(conditions.inputs.values()):
-        zero = [name for name, value in conditions.parameters.items() if not value]
-        reason = bounded_by_integrals(model, _values(model, conditions, q, v), places, zero)
-        judged = judged if reason is None else Stability("stable", reason)
+    model, turning = search.model, search.given
+    if turning.axis is not None and turning.field == "rates":
+        turning.wanted[-1] = turn
+    v, S, _, turn = search.motion(q)
+    at, moving = linearised(q, v), list(turning.cyclic)
+    if turn and isinstance(at, BallLinearisation) and at.status != "failed":
+        # in axes that do not spin: dv' -> dv' - S dv
+        told = modes(at.M, at.D - at.M @ S, at.K, at.R + S)
+        at = replace(at, modes=told, D=at.D - at.M @ S, stability=stability(told, at.D, at.K, has_potential=False))
+    message = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
+    names = tuple(model.coordinates[c] for c in moving)
+    named = model.coordinates, names, model.coordinates
+    about = 0.0 if turning.axis is None else float(search.L[0][:, turning.axis] @ v)
+    judged = _judged(search, q, at.stability)
     return BallSteadyMotion(
-        *named, q, v[places], (at.M @ v)[places], at.M, at.D, at.K, at.qdd, at.modes, judged, told,
-        positions=model.positions,
+        *named, q, v[moving], (at.M @ v)[moving], at.M, at.D, at.K, at.qdd + S @ v, at.modes, judged, message,
+        positions=model.positions, v=v, axis="" if turning.axis is None else "xyz"[turning.axis], precession=turn,
+        angular_momentum=about,
     )  # fmt: skip
+
+
+def _judged(search: _Search, q: Array, judged: Stability | None) -> Stability | None:
+    """By the energy, where eigenvalues leave it open."""
+    model, turning, conditions = search.model, search.given, search.conditions
+    if judged is None or judged.verdict != "undecided" or any(conditions.inputs.values()):
+        return judged
+    v, _, g, turn = search.motion(q)
+    values, moving = _values(model, conditions, q, v), list(turning.cyclic)
+    shifts = shifts_along(model, values, np.vstack((np.eye(model.dof)[moving], *([g] if turn else []))))
+    for k, unit in enumerate(np.eye(len(moving))):
+        # rates turn in the axes of a body that is turned in itself
+        shifts[k, len(model.positions) :] = -turning.spin(unit) @ v
+    zero = [name for name, value in conditions.parameters.items() if not value]
+    reason = bounded_by_integrals(model, values, shifts, zero)
+    return judged if reason is None else Stability("stable", reason)

@@ -10,6 +10,7 @@ import numpy as np
 
 from substructures.analysis.arguments import reals
 from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.precession import BallRequest
 from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
@@ -92,15 +93,23 @@ def require_rates(rates: object, momenta: object, held: Held) -> None:
         raise InvalidArgument(faults)
 
 
-def require_plain_rates(rates: object, others: Mapping[str, object], held: Held) -> None:
-    """Raises InvalidArgument for what is not known with ball joints: all but ``rates``."""
-    message = "is not for trees with ball and floating joints, whose cyclic 'rates' are given: leave it out"
+def require_of_balls(request: BallRequest, others: Mapping[str, object], held: Held) -> None:
+    """Raises InvalidArgument for what is not known with ball joints."""
+    message = "is not for trees with ball and floating joints, whose rates or momenta are given: leave it out"
     given = {**others, "held": None if held == "momenta" else held}
     faults = [Fault(f"/{name}", "not-supported", f"'{name}' {message}") for name, x in given.items() if x is not None]
-    if not faults and rates is None:
-        faults = [Fault("/rates", "missing", "'rates' are needed, by name; those that are not named are 0")]
     if faults:
         raise InvalidArgument(faults)
+    if (request.rates is None) == (request.momenta is None):
+        message = "give either 'rates' or 'momenta', by name; those that are not named are 0"
+        raise InvalidArgument.at("/rates", "rates-or-momenta", message)
+
+
+def require_no_precession(precession: object) -> None:
+    """Raises InvalidArgument for a precession of a tree of which coordinates turn."""
+    if precession is not None:
+        message = "is for trees with ball and floating joints; else it is a rate or a momentum of a coordinate"
+        raise InvalidArgument.at("/precession", "not-supported", f"'precession' {message}")
 
 
 def require_no_velocities(velocities: object, independent: object) -> None:

@@ -22,13 +22,14 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.arguments import one_of, whole
+from substructures.analysis.arguments import one_of, real, whole
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.formulas import require_moving
+from substructures.analysis.equations.precession import BallRequest, Precession
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.constrained_families import constrained_motions
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
-from substructures.analysis.stability.energy_integrals import bounded_by_integrals
+from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
 from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
 from substructures.analysis.stability.found_places import confirmed
 from substructures.analysis.stability.linearisation_result import Linearisation
@@ -38,8 +39,9 @@ from substructures.analysis.stability.steady_conditions import (
     SteadyConditions,
     ends_of,
     given_of,
+    require_no_precession,
     require_no_velocities,
-    require_plain_rates,
+    require_of_balls,
     require_rates,
 )
 from substructures.analysis.stability.steady_families import DIFFERENCE, SINGULAR, FamilySearch
@@ -86,6 +88,7 @@ def steady_motions(
     steps: int = 50,
     velocities: Mapping[str, str] | None = None,
     independent: Sequence[str] | None = None,
+    precession: Precession = None,
 ) -> SteadyMotions:
     """Steady motions: Gamma_xbc w^b w^c = Q_x with s' = w constant and all other coordinates x still; with closures
     Gamma_xbc w^b w^c = Q_x + lambda_k G_kx and phi_k = 0.
@@ -101,6 +104,12 @@ def steady_motions(
     ``vary``: a parameter, or a moving coordinate, whose rate or momentum, whichever are given, varies ``between`` two
     values: families of steady motions, followed with ``steps`` or more points from those at both ends, and where they
     bifurcate: :mod:`substructures.analysis.stability.steady_families`.
+
+    With ball and floating joints the cyclic rates, or momenta, are those of bodies that are the same turned about an
+    axis of their joint (the spin of a top), and of wheels. ``precession``: the rate at which all turns about the
+    vertical [rad/s], or "any": all those with which the ``starts``, as they are, are kept (of Lagrange's top at a tilt
+    t and the given rate w the roots of A cos t p^2 - C w p + m g l = 0); among ``momenta`` it is
+    ``angular_momentum.z`` [N m s].
 
     In reduced systems (``ignored``) all others keep still: ``rates`` {}, ``vary`` a parameter of the momenta. With
     velocity constraints of the tree all coordinates keep still but those on which nothing depends (the place on a
@@ -124,11 +133,17 @@ def steady_motions(
     require_undriven(model.driven, "take the tree without it, or equilibria, which are relative to the drives")
     one_of(held, "held", ("momenta", "rates"))
     if model.balls:
-        require_plain_rates(rates, {"momenta": momenta, "vary": vary}, held)
+        request = BallRequest(
+            None if rates is None else numbers(rates, "rates"),
+            None if momenta is None else numbers(momenta, "momenta"),
+            precession if precession in (None, "any") else real(precession, "/precession"),
+        )
+        require_of_balls(request, {"vary": vary, "between": between}, held)
         conditions = _conditions(model, parameters, inputs)
         within, about = SearchRange(starts, count, reach, seed), {"parameters": parameters, "inputs": inputs}
         linearised = partial(_linearised, model, about)
-        return steady_with_balls(model, numbers(rates, "rates"), within, conditions, linearised)
+        return steady_with_balls(model, request, within, conditions, linearised)
+    require_no_precession(precession)
     ends = ends_of(model, vary, between)
     given, field = given_of(rates, momenta, held)
     constant = numbers(parameters, "parameters"), with_input_defaults(model, inputs or {})
@@ -217,7 +232,8 @@ def _judged(search: SteadySearch, x: Array, held: Held, found: tuple[Mode, ...],
     if first.verdict != "undecided":
         return Stability(first.verdict, f"linearised {kept}: {first.reason}" if found else first.reason)
     if held == "momenta" and not model.closures and not any(search.conditions.inputs.values()):
-        reason = bounded_by_integrals(model, values, search.moving, zero)
+        shifts = shifts_along(model, values, np.eye(model.dof)[list(search.moving)])
+        reason = bounded_by_integrals(model, values, shifts, zero)
         if reason is not None:
             return Stability("stable", reason)
     return Stability("undecided", f"linearised {kept}: {first.reason}")

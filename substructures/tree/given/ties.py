@@ -102,7 +102,7 @@ TAKES_BALLS = (
     *("frequency-responses", "regulators", "equilibria", "root-loci", "ensembles", "sensitivities"),
     *("parameter_sensitivity", "equivalences", "columns of equilibria and linearisations", "columns of reach"),
     *("optimal-parameters", "first_integrals", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
-    "steady-motions",
+    *("steady-motions", "base_parameters", "base_regressor", "excitations", "identifications"),
 )
 
 #: what takes the velocity constraints of a tree, and its contacts
@@ -110,6 +110,7 @@ TAKES_CONSTRAINTS = (
     *("simulations", "linearisations", "velocity-equations", "equilibria", "steady-motions", "first_integrals"),
     *("ensembles", "sensitivities", "root-loci", "optimal-parameters", "perturbation", "parameter_sensitivity"),
     *("velocity_dynamics", "frequency-responses", "optimal-controls", "cost-gradients", "adjoint", *ORBITS),
+    *("regulators", "state_space", "excitations", "identifications"),
 )
 TAKES_CONTACTS = ("simulations", "ensembles", "sweep")
 #: with the kind of motion that has them

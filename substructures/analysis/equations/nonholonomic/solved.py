@@ -24,12 +24,17 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property, lru_cache
 
+from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.elimination import MetricElimination
+from substructures.analysis.equations.expressions import read_expressions
+from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.equations.kernels import Known
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
+from substructures.analysis.equations.perturbation import require_smooth
+from substructures.analysis.given import require_known
 from substructures.certificate.derived import quasi_motion
 from substructures.certificate.derived.model_formulas import Expectation
-from substructures.expr.differentiate import directional
+from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
@@ -53,6 +58,21 @@ def varied(equations: QuasiVelocities, parameters: Sequence[str]) -> Program:
     these parameters. Raises as :func:`solved`.
     """
     return _varied(Known(equations.program.digest, equations), tuple(parameters))
+
+
+def state_space(
+    equations: QuasiVelocities, outputs: Sequence[NumberOrExpression] = (), inputs: Sequence[str] | None = None
+) -> Program:
+    """A (n+p, n+p), B (n+p, m), C (k, n+p), D (k, m) of x = (q, v), with ``derivative`` (n+p,) = x' and ``output`` (k,)
+    = y, at any state: what :func:`..perturbation.state_space` is without constraints, with the same arguments.
+
+    Raises InvalidInput as that.
+    """
+    model = equations.model
+    require_smooth(model)
+    chosen = inputs_of(model) if inputs is None else tuple(inputs)
+    require_known("inputs", "input", chosen, inputs_of(model))
+    return _state_space(Known(equations.program.digest, equations), tuple(outputs), chosen)
 
 
 def dynamics(equations: QuasiVelocities) -> Program:
@@ -94,6 +114,26 @@ def _varied(known: Known, parameters: tuple[str, ...]) -> Program:
     f.symbols |= {f"d.{name}": replace(f.symbols[name], name=f"d.{name}") for name in names}
     expectation = quasi_motion.varied(f.equations.program, f.equations.velocities, parameters)
     return f.certified(outputs, expectation, "variation of the motion with velocity constraints")
+
+
+@lru_cache(maxsize=32)
+def _state_space(known: Known, given: tuple[NumberOrExpression, ...], inputs: tuple[str, ...]) -> Program:
+    f = _Motion(known.source)
+    equations, model = f.equations, f.equations.model
+    exacts = [(exact(y, f"/outputs/{i}"), f"/outputs/{i}") for i, y in enumerate(given)]
+    read = read_expressions(model, {"output": exacts}, inputs=True)
+    f.symbols |= {s.name: s for s in read.symbols if s.name not in f.symbols and not s.name.endswith("'")}
+    moving = {f"{name}'": rate for name, rate in zip(model.coordinates, f.rates, strict=True)}
+    entries = replay(read, f.graph, moving)["output"].entries
+    y = [f.graph.lift(entries.get((i,), 0)) for i in range(len(given))]
+    x, states = [*f.rates, *f.acceleration], [*model.coordinates, *equations.velocities]
+    outputs = {"derivative": f.vector(x), "output": f.vector(y)}
+    for name, rows, by in (("A", x, states), ("B", x, inputs), ("C", y, states), ("D", y, inputs)):
+        m = gradient(rows, by)
+        outputs[name] = array((len(rows), len(by)), lambda i, j, m=m: m[i][j])
+    texts = [text for text, _ in exacts]
+    expectation = quasi_motion.first_order(equations.program, equations.velocities, texts, inputs)
+    return f.certified(outputs, expectation, "state space with velocity constraints")
 
 
 class _Motion:
