@@ -186,6 +186,15 @@ def test_a_parent_cycle_names_everyone_on_it() -> None:
     assert all(f"'b{i + 1}'" in f.message for i, f in enumerate(raised.value.faults))
 
 
+def test_a_name_that_is_there_twice_is_no_cycle() -> None:
+    """Neither of the bodies behind it, nor of others, in whatever order they come."""
+    names = [("c", "b"), ("b", "base"), ("b", "base"), ("d", "base"), ("e", "d"), ("f", "c")]
+    bodies = [{"name": name, "parent": parent, "joint": {"type": "fixed"}} for name, parent in names]
+    with pytest.raises(InvalidDocument) as raised:
+        derive(Definition.read({"name": "twice", "bodies": bodies}))
+    assert [(f.pointer, f.code) for f in raised.value.faults] == [("/bodies/2/name", "duplicate-name")]
+
+
 def test_all_faults_are_reported_together() -> None:
     bad = changed(GOOD, ((*J, "d"), "a+b9"), (("ports", 0, "position", 0), "1/0"), (("bodies", 1, "mass"), "2 3"))
     with pytest.raises(InvalidDocument) as raised:
