@@ -79,6 +79,7 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("negative mass by a formula", ("bodies", 1, "mass"), "1 - 2", "negative-mass", "b2"),
     ("mass beyond all doubles", ("bodies", 1, "mass"), "(10^62)^5", "number-not-finite", "b2"),
     ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
+    ("negative rotor of a slide", ("bodies", 2, "joint", "armature"), -2, "negative-armature", "-2 kg is negative"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
     ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
@@ -240,6 +241,17 @@ def test_parameters_with_impossible_defaults_are_a_warning() -> None:
         ("/bodies/0/inertia", "impossible-inertia"),
     ]
     assert all("'b1'" in w["message"] for w in warnings)
+
+
+def test_a_negative_rotor_is_told_in_the_unit_of_its_joint() -> None:
+    """In trees, too, of one number for both joints of a cylindrical one and of a list."""
+    for armature in ("2*j", ["2*j", "2*j"]):
+        slide = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "cylindrical", "armature": armature}}
+        part = derive({"name": "x", "parameters": {"j": {"value": -1}}, "bodies": [slide]})
+        tree = {"name": "t", "gravity": [0, 0, -9], "instances": [{"name": "p", "substructure": "x"}]}
+        for warnings in (part.certificate["warnings"], couple(tree, {"p": part}).certificate["warnings"]):
+            told = [w["message"].rpartition("armature ")[2].split(" is ")[0] for w in warnings]
+            assert told == ["-2 kg m^2", "-2 kg"]
 
 
 def test_a_definition_that_is_no_object() -> None:
