@@ -78,6 +78,7 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("negative mass", ("bodies", 1, "mass"), -2, "negative-mass", "b2"),
     ("negative mass by a formula", ("bodies", 1, "mass"), "1 - 2", "negative-mass", "b2"),
     ("mass beyond all doubles", ("bodies", 1, "mass"), "(10^62)^5", "number-not-finite", "b2"),
+    ("limits of no coordinate", (*J, "limits"), [[-1, 1], [0, 2]], "wrong-length", "2 pairs of limits"),
     ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
     ("negative rotor of a slide", ("bodies", 2, "joint", "armature"), -2, "negative-armature", "-2 kg is negative"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
@@ -252,6 +253,12 @@ def test_a_negative_rotor_is_told_in_the_unit_of_its_joint() -> None:
         for warnings in (part.certificate["warnings"], couple(tree, {"p": part}).certificate["warnings"]):
             told = [w["message"].rpartition("armature ")[2].split(" is ")[0] for w in warnings]
             assert told == ["-2 kg m^2", "-2 kg"]
+
+
+def test_stored_limits_of_no_coordinate_are_a_warning() -> None:
+    given = Definition.read(changed(GOOD, ((*J, "limits"), [[-1, 1], [0, 2]])))
+    (told,) = derive(given, is_stored=True).certificate["warnings"]
+    assert (told["pointer"], told["code"]) == ("/bodies/0/joint/limits", "wrong-length")
 
 
 def test_a_definition_that_is_no_object() -> None:
