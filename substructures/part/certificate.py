@@ -33,20 +33,28 @@ def plain(document: Document) -> Plain:
 
 def _declaring(document: Plain) -> Plain:
     """A definition or tree: units of its parameters are those of their symbols, not of numbers."""
-    found = {
-        name: _in_si(value) for name, value in document.items() if name not in ("parameters", "inputs", "instances")
-    }
+    apart = ("parameters", "inputs", "start", "ranges", "poses", "instances")
+    found = {name: _in_si(value) for name, value in document.items() if name not in apart}
     declared = {kind: document[kind] for kind in ("parameters", "inputs") if kind in document}
     for kind, some in declared.items():
         found[kind] = {name: {**given, "value": _in_si(given.get("value"))} for name, given in some.items()}
+    # what is by names of the user: two of them may be called "value" and "unit"
+    found |= {field: _named(document[field]) for field in ("start", "ranges") if field in document}
+    if "poses" in document:
+        found["poses"] = {pose: _named(given) for pose, given in document["poses"].items()}
     if "instances" in document:
         found["instances"] = [_instance(given) for given in document["instances"]]
     return found
 
 
+def _named(given: Plain) -> Plain:
+    return {name: _in_si(value) for name, value in given.items()}
+
+
 def _instance(given: Plain) -> Plain:
     inline = {"definition": _declaring(given["definition"])} if given.get("definition") else {}
-    return {name: _in_si(value) for name, value in given.items() if name != "definition"} | inline
+    bound = {"parameters": _named(given["parameters"])} if "parameters" in given else {}
+    return {name: _in_si(value) for name, value in given.items() if name not in ("definition", *bound)} | bound | inline
 
 
 def _in_si(given: Any) -> Any:

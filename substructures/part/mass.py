@@ -17,6 +17,7 @@ from substructures.part.topology import topology
 
 PRECISION = 128  # bits
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
+ARMATURE = ("kg m^2", "kg")  #: units of the rotor inertia that is seen at such a joint
 
 
 def sum_of(masses: Iterable[tuple[Any, Mapping[str, Any]]]) -> float | None:

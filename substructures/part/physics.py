@@ -14,6 +14,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.linear3 import dense
+from substructures.part.mass import ARMATURE
 from substructures.part.mechanism import Mechanism
 
 PhysicsFault = tuple[str, str]  #: code, message
@@ -25,6 +26,7 @@ class _Check:
 
     body: int
     field: str
+    unit: str
     formulas: Formulas
 
 
@@ -38,7 +40,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
         needed = {p.symbols[p.operations[k][1]].name for k in p.reachable([name]) if p.operations[k][0] == "sym"}
         if not needed <= defaults.keys():
             continue
-        problem = _problem(check.field, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
+        problem = _problem(check, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
         if problem is None:
             continue
         pointer = f"/bodies/{check.body}/{check.field}"
@@ -55,10 +57,10 @@ def _checks(m: Mechanism) -> Iterator[_Check]:
     for i, (mass, J) in m.central.items():
         # J about the mass centre
         full = dense(J)
-        yield _Check(i, "mass", array((), lambda mass=mass: mass))
-        yield _Check(i, "inertia", array((3, 3), lambda a, b, full=full: full[a][b]))
+        yield _Check(i, "mass", "kg", array((), lambda mass=mass: mass))
+        yield _Check(i, "inertia", "kg m^2", array((3, 3), lambda a, b, full=full: full[a][b]))
     for entry, law in zip(m.topology.joints, m.laws, strict=True):
-        yield _Check(entry.body, "joint/armature", array((), lambda law=law: law.armature))
+        yield _Check(entry.body, "joint/armature", ARMATURE[entry.s], array((), lambda law=law: law.armature))
 
 
 def default_values(m: Mechanism) -> dict[str, float]:
@@ -75,13 +77,13 @@ def constants(scope: Scope, given: Mapping[str, Any]) -> dict[str, float]:
     return found | {name: float(v) for name, v in numbers.items()}
 
 
-def _problem(field: str, value: Array) -> PhysicsFault | None:
+def _problem(check: _Check, value: Array) -> PhysicsFault | None:
     if not np.isfinite(value).all():
         return "number-not-finite", "a value is beyond the range of floating point numbers"
-    if field == "inertia":
+    if check.field == "inertia":
         return _impossible_tensor(value)
-    quantity, unit = ("mass", "kg") if field == "mass" else ("armature", "kg m^2")
-    return (f"negative-{quantity}", f"the {quantity} {float(value):g} {unit} is negative") if value < 0 else None
+    what = check.field.rpartition("/")[2]
+    return (f"negative-{what}", f"the {what} {float(value):g} {check.unit} is negative") if value < 0 else None
 
 
 def _impossible_tensor(binet: Array) -> PhysicsFault | None:

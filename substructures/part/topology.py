@@ -209,8 +209,9 @@ def _order(definition: Definition) -> tuple[list[int], list[Fault]]:
     ready = list(children.get(BASE, []))
     while ready:
         i = ready.pop(0)
+        # twice only behind a name that is there twice, which is told: the others are on no cycle
         if i in order:
-            break
+            continue
         order.append(i)
         ready += children.get(definition.bodies[i].name, [])
     if not faults:

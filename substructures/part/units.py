@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from substructures.documents.units import NUMBER, Dimension
+from substructures.errors import Fault
 from substructures.expr.syntax import measured
 from substructures.expr.units.angles import angle_warnings
 from substructures.expr.units.dimensions import Dimensioned, Inferred
@@ -31,7 +32,7 @@ from substructures.loads.units import (
     vector,
 )
 from substructures.part.definition import Definition, InertiaTensor, Input, Joint, Parameter, PartClosure, Placement
-from substructures.part.topology import Topology
+from substructures.part.topology import CHAINS, Topology
 
 MASS, INERTIA, ACCELERATION = dimension("kg"), dimension("kg m^2"), dimension("m/s^2")
 #: fields of joints by coordinate
@@ -58,7 +59,7 @@ ROW = {"psi": ANGLE, "theta": ANGLE, "phi": ANGLE, "d": LENGTH, "sigma": LENGTH,
 
 
 def check_units(definition: Definition, topology: Topology) -> UnitCheck:
-    """The units of a definition against their places."""
+    """The units of a definition against their places, and pairs of limits that are of no coordinate."""
     names = {name: dimension_of(each.unit) for name, each in (definition.parameters | definition.inputs).items()}
     places = _Places(definition, topology)
     moving: dict[str, Inferred] = {"t": Dimensioned(dimension("s"), sure=False)}
@@ -73,7 +74,17 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     check.warnings += angle_warnings(places.bodies(), definition.parameters)
     check.names = lambda name: names[name] if name in names else moving.get(name) or dimension_of_measure(name)
     check.check(places.loads(), False)
+    # here, since what is stored has only a warning of it: older versions did not look at pairs beyond the last
+    check.faults += _limits_of_none(definition)
     return check
+
+
+def _limits_of_none(definition: Definition) -> Iterator[Fault]:
+    for i, body in enumerate(definition.bodies):
+        given, n = body.joint.limits, len(CHAINS[body.joint.type])
+        if given and isinstance(given[0], tuple) and len(given) > n:
+            message = f"{len(given)} pairs of limits for the {n} coordinate(s) of a {body.joint.type} joint"
+            yield Fault(f"/bodies/{i}/joint/limits", "wrong-length", message)
 
 
 def parameter_places(parameters: Mapping[str, Parameter]) -> Iterator[Place]:

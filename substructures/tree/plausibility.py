@@ -20,8 +20,9 @@ from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Body, Definition
-from substructures.part.mass import limits_in_numbers, number_of, sum_of
+from substructures.part.mass import ARMATURE, limits_in_numbers, number_of, sum_of
 from substructures.part.parameters import names_in_limits
+from substructures.part.topology import CHAINS
 from substructures.tree.document import TreeSpec
 
 #: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
@@ -224,10 +225,10 @@ def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tupl
     """
     tensor = body.inertia
     inertia = [getattr(tensor, e) for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    armature, found = body.joint.armature, list[tuple[str, str]]()
-    for given in armature if isinstance(armature, tuple) else (armature,):
-        if isinstance(given, str):
-            found += _negative("armature", number_of(given, names), "kg m^2", first)
+    armature, kinds, found = body.joint.armature, [s for s, _ in CHAINS[body.joint.type]], list[tuple[str, str]]()
+    rotors = armature if isinstance(armature, tuple) else [armature] * len(kinds)
+    for given, s in dict.fromkeys((x, s) for x, s in zip(rotors, kinds, strict=True) if isinstance(x, str)):
+        found += _negative("armature", number_of(given, names), ARMATURE[s], first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
         return found, None
     numbers = [

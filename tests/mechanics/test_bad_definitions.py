@@ -78,7 +78,9 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("negative mass", ("bodies", 1, "mass"), -2, "negative-mass", "b2"),
     ("negative mass by a formula", ("bodies", 1, "mass"), "1 - 2", "negative-mass", "b2"),
     ("mass beyond all doubles", ("bodies", 1, "mass"), "(10^62)^5", "number-not-finite", "b2"),
+    ("limits of no coordinate", (*J, "limits"), [[-1, 1], [0, 2]], "wrong-length", "2 pairs of limits"),
     ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
+    ("negative rotor of a slide", ("bodies", 2, "joint", "armature"), -2, "negative-armature", "-2 kg is negative"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
     ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
@@ -186,6 +188,15 @@ def test_a_parent_cycle_names_everyone_on_it() -> None:
     assert all(f"'b{i + 1}'" in f.message for i, f in enumerate(raised.value.faults))
 
 
+def test_a_name_that_is_there_twice_is_no_cycle() -> None:
+    """Neither of the bodies behind it, nor of others, in whatever order they come."""
+    names = [("c", "b"), ("b", "base"), ("b", "base"), ("d", "base"), ("e", "d"), ("f", "c")]
+    bodies = [{"name": name, "parent": parent, "joint": {"type": "fixed"}} for name, parent in names]
+    with pytest.raises(InvalidDocument) as raised:
+        derive(Definition.read({"name": "twice", "bodies": bodies}))
+    assert [(f.pointer, f.code) for f in raised.value.faults] == [("/bodies/2/name", "duplicate-name")]
+
+
 def test_all_faults_are_reported_together() -> None:
     bad = changed(GOOD, ((*J, "d"), "a+b9"), (("ports", 0, "position", 0), "1/0"), (("bodies", 1, "mass"), "2 3"))
     with pytest.raises(InvalidDocument) as raised:
@@ -231,6 +242,23 @@ def test_parameters_with_impossible_defaults_are_a_warning() -> None:
         ("/bodies/0/inertia", "impossible-inertia"),
     ]
     assert all("'b1'" in w["message"] for w in warnings)
+
+
+def test_a_negative_rotor_is_told_in_the_unit_of_its_joint() -> None:
+    """In trees, too, of one number for both joints of a cylindrical one and of a list."""
+    for armature in ("2*j", ["2*j", "2*j"]):
+        slide = {"name": "b", "parent": "base", "mass": 1, "joint": {"type": "cylindrical", "armature": armature}}
+        part = derive({"name": "x", "parameters": {"j": {"value": -1}}, "bodies": [slide]})
+        tree = {"name": "t", "gravity": [0, 0, -9], "instances": [{"name": "p", "substructure": "x"}]}
+        for warnings in (part.certificate["warnings"], couple(tree, {"p": part}).certificate["warnings"]):
+            told = [w["message"].rpartition("armature ")[2].split(" is ")[0] for w in warnings]
+            assert told == ["-2 kg m^2", "-2 kg"]
+
+
+def test_stored_limits_of_no_coordinate_are_a_warning() -> None:
+    given = Definition.read(changed(GOOD, ((*J, "limits"), [[-1, 1], [0, 2]])))
+    (told,) = derive(given, is_stored=True).certificate["warnings"]
+    assert (told["pointer"], told["code"]) == ("/bodies/0/joint/limits", "wrong-length")
 
 
 def test_a_definition_that_is_no_object() -> None:

@@ -295,3 +295,20 @@ def test_verifying_a_part_of_old_tells_what_its_units_say() -> None:
         ("/bodies/0/mass", "unit-mismatch"),
         ("/parameters/l/unit", "unit-not-counted"),
     ]
+
+
+def test_names_that_read_as_a_value_with_a_unit() -> None:
+    """Coordinates and parameters may be called so: what is given by their names is no value with a unit."""
+    joint = {"type": "revolute", "coordinate": "value"}
+    slide = {"type": "prismatic", "coordinate": "unit"}
+    bodies = [
+        {"name": "a", "parent": "base", "joint": joint, "mass": 1, "com": [1, 0, 0]},
+        {"name": "b", "parent": "a", "joint": slide, "mass": 1},
+    ]
+    poses = {"home": {"value": 1, "unit": 2}}
+    derive({"name": "x", "bodies": bodies, "poses": poses})
+    one = [{"name": "a", "parent": "base", "joint": {"type": "revolute"}, "mass": "value", "com": ["unit", 0, 0]}]
+    part = derive({"name": "x", "parameters": {"value": {"value": 1}, "unit": {"value": 1}}, "bodies": one})
+    bound = {"name": "p", "substructure": "x", "parameters": {"value": "m", "unit": "l"}}
+    tree = {"name": "t", "gravity": [0, 0, -9], "parameters": {"m": {}, "l": {}}, "instances": [bound]}
+    assert set(couple(tree, {"p": part}).parameters) == {"m", "l"}
