@@ -8,7 +8,7 @@ from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
-from substructures.errors import VerificationFailed
+from substructures.errors import TooLarge, VerificationFailed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
@@ -32,7 +32,7 @@ from substructures.tree.loads import load_formulas
 from substructures.tree.model import AXES, LISTED, Model
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
-from substructures.tree.shape import CertifiedProgram, KnownShapes, limited, of_shape
+from substructures.tree.shape import CertifiedProgram, KnownShapes, of_shape
 from substructures.tree.units import check_tree_units, tree_warnings
 from substructures.tree.velocity_forces import least_forces
 
@@ -85,7 +85,7 @@ def couple_shape(
     if units.faults:
         new.require()
     found, values = of_shape(spec, parts, group, known, new.made, new.require)
-    program, kept = limited(found.program, max_nodes), found.axes
+    program, kept = _limited(found.program, max_nodes), found.axes
     if kept is None:
         model = _model(new.assembly, program, plausibility)
     else:
@@ -128,7 +128,7 @@ class _NewShape:
         mine = self.assembly if free is self.spec else assemble(free, self.parts)
         is_large = entries_of(joint_parents(mine.mounted)).is_large
         admitted = every if self.group else numbers_and(constants)
-        result = limited(tree_formulas(mine, not is_large, admitted, None), self.max_nodes)
+        result = _limited(tree_formulas(mine, not is_large, admitted, None), self.max_nodes)
         begun = perf_counter()
         model = _model(mine, result, self.plausibility)
         try:
@@ -157,7 +157,7 @@ def couple_formulas(
     entries = entries_of(joint_parents(assembly.mounted))
     entries.require("the tree")
     wanted = None if assembly.cuts or assembly.reduced or spec.driven or spec.ignored else names
-    result = limited(tree_formulas(assembly, christoffel and not entries.is_large, every, wanted), max_nodes)
+    result = _limited(tree_formulas(assembly, christoffel and not entries.is_large, every, wanted), max_nodes)
     return _model(assembly, result, Plausibility(spec, {name: part.definition for name, part in parts.items()}))
 
 
@@ -207,3 +207,10 @@ def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] |
         coupled = coupled.with_loads(acting.forces, acting.potential)
     least = partial(least_forces, assembly.scope, coupled, rates)
     return model_outputs(assembly, coupled, rates, accelerations, names, least)
+
+
+def _limited(result: Program, max_nodes: int) -> Program:
+    """The program. Raises TooLarge for more than so many operations."""
+    if len(result) > max_nodes:
+        raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
+    return result

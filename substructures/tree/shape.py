@@ -297,10 +297,3 @@ def _numbered(plain: Any, names: Sequence[str]) -> Any:
         return [value(x) for x in given] if isinstance(given, (list, tuple)) else given
 
     return value(plain)
-
-
-def limited(result: Program, max_nodes: int) -> Program:
-    """The program. Raises TooLarge for more than so many operations."""
-    if len(result) > max_nodes:
-        raise TooLarge("the program of the tree (in operations)", len(result), max_nodes)
-    return result
