@@ -12,7 +12,7 @@ from serial_chains import IIWA, RX90, SIX, SIX14, revolute
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.tree import model as models
+from substructures.tree import couple as coupling
 
 KINDS = [
     Kind(6, joints=("revolute", "prismatic"), depth=6),
@@ -40,7 +40,7 @@ def test_grouped_trees_are_the_same_functions(seed: int, monkeypatch: pytest.Mon
     cuts = list(all_cuts(definition))
     tree = cut_tree(rng, definition, cuts[len(cuts) // 2])
     grouped = coupled(tree, True)
-    monkeypatch.setattr(models, "numbers_and", lambda _: lambda _: False)
+    monkeypatch.setattr(coupling, "numbers_and", lambda _: lambda _: False)
     plain = coupled(tree, False)
     assert grouped.program.digest != plain.program.digest
     states = random_states(rng, 3, plain.dof)
@@ -73,7 +73,7 @@ def test_numbers_are_grouped_by_themselves(monkeypatch: pytest.MonkeyPatch) -> N
     definition = revolute(RX90)
     values = {name: str(k % 7 + 1) for k, name in enumerate(definition.parameters)}
     grouped = on_the_ground(definition, False, values)
-    monkeypatch.setattr(models, "numbers_and", lambda _: lambda _: False)
+    monkeypatch.setattr(coupling, "numbers_and", lambda _: lambda _: False)
     plain = on_the_ground(definition, False, values)
     assert grouped.operations["inverse_dynamics"] < 0.95 * plain.operations["inverse_dynamics"]
     assert grouped.operations["metric"] <= plain.operations["metric"]

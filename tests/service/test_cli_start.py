@@ -112,7 +112,7 @@ def test_a_command_on_files_imports_what_it_needs(command: str, tmp_path: Path) 
 def test_a_command_on_a_server_computes_nothing_itself(command: str, tmp_path: Path) -> None:
     """Nothing answers there."""
     found = imported([*command.split(), "--server", "http://127.0.0.1:9"], tmp_path, 1)
-    computing = {"flint", "llvmlite", "scipy", "substructures.part.part", "substructures.tree.model"}
+    computing = {"flint", "llvmlite", "scipy", "substructures.part.part", "substructures.tree.couple"}
     assert not (NEVER | ROBOTS | WRITERS | ANALYSES | MOTIONS | computing) & found
     assert "httpx2" in found
 
