@@ -30,7 +30,7 @@ class Model:
     ``ignored``: whose momentum is; ``velocity_constraints``, ``contacts``: of its motions, as plain data; the formulas
     are those without; ``balls``: joints whose rates are no derivatives of coordinates;
     ``reduced``: instances whose loops are in the formulas, with their coordinates; ``numbers``: in SI, still to be
-    put in for symbols of the program (:meth:`with_numbers`)."""
+    put in for symbols of the program (:meth:`with_numbers`), ``unbound``: that program, and the model before."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -50,6 +50,7 @@ class Model:
     contacts: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
     balls: tuple[Mapping[str, Sequence[str]], ...] = field(default=(), hash=False)
     reduced: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
+    unbound: tuple[Program, Model] | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -65,7 +66,16 @@ class Model:
 
     def with_numbers(self) -> Model:
         """The model with its numbers in the formulas, exactly."""
-        return replace(self, program=with_numbers(self.program, self.numbers), numbers={}) if self.numbers else self
+        if not self.numbers:
+            return self
+        program = with_numbers(self.program, self.numbers)
+        return replace(self, program=program, numbers={}, unbound=(program, self))
+
+    @property
+    def of_shape(self) -> Model:
+        """The model before its ``numbers`` were put in, whose program is that of its shape; itself without any."""
+        bound, shape = self.unbound or (None, self)
+        return shape if bound is self.program else self
 
     @property
     def given(self) -> tuple[str, ...]:

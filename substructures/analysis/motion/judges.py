@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
 from math import prod
@@ -10,6 +10,7 @@ from math import prod
 import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
+from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals, Integral
 from substructures.analysis.equations.kernels import Known, evaluated, known_model, program_kernel
 from substructures.analysis.verdict import Check, Rule
@@ -19,6 +20,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.tree.model import Model
+from substructures.tree.shape import with_numbers
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
 ROUNDING = 3e-14
@@ -266,3 +268,14 @@ class _Scales:
         largest = np.abs(self.states.found(self.model, c, ["c"])["c"]).max(axis=-2, initial=0)
         each = [largest[..., k] * prod(size[w] for w in some) for k, (_, some) in enumerate(integral.terms)]
         return np.asarray(sum(each))
+
+
+def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) -> FirstIntegrals:
+    """Those that all trees of its shape have, which are looked for once; but its own where more is searched for than
+    symmetries, which may depend on its numbers.
+    """
+    shape = model.of_shape
+    found = first_integrals(shape, forces, zero)
+    if found.degree > 1 and shape is not model:
+        return first_integrals(model, forces, zero)
+    return replace(found, program=with_numbers(found.program, shape.numbers))

@@ -82,7 +82,8 @@ class RightHandSide:
         self.n, self._folder = model.dof, folder
         n = model.dof
         self._names = state_names(model)
-        self.kernel = forward_kernel(model, zero, folder)
+        known = model.of_shape  # whose kernel may be there
+        self.kernel = forward_kernel(known, zero, folder)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)
@@ -91,8 +92,8 @@ class RightHandSide:
         self._varying = [] if self.inputs is None else self.inputs.columns
         columns = [*state, *self._varying]
         outputs = dict(zip((ACCELERATION, PIVOTS, POWER), self._out, strict=True))
-        source = _forward_program(Known(model.program.digest, model), frozenset(zero))
-        self._values = dict(values) | {"t": self._t}
+        source = _forward_program(Known(known.program.digest, known), frozenset(zero))
+        self._values = dict(values) | {name: float(x) for name, x in known.numbers.items()} | {"t": self._t}
         self._columns = columns
         self._laws = Laws(source, self.kernel, outputs, self._values, columns)
 

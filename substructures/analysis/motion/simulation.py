@@ -9,7 +9,6 @@ from time import perf_counter
 
 import numpy as np
 
-from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import require_tree
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.contacts.contact_run import ContactRun, again, integrate_contacts, with_contacts
@@ -22,7 +21,7 @@ from substructures.analysis.motion.integrators.fixed_step import march, require_
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
-from substructures.analysis.motion.judges import AlongMotion, MotionStates, judge, unbalanced
+from substructures.analysis.motion.judges import AlongMotion, MotionStates, integrals_along, judge, unbalanced
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
@@ -227,7 +226,7 @@ def _judged(
     # inputs that are 0 all the time leave more constant
     forces = [name for name in problem.start.inputs if name not in conditions.zero]
     forces += [f"tau.{name}" for name in f.pushed]
-    integrals = first_integrals(model, forces, conditions.zero & set(model.parameters))
+    integrals = integrals_along(model, forces, conditions.zero & set(model.parameters))
     t, x, results = motion.judged()
     # H = T + V with H' = Q_a q'^a + V', momenta p_c = g_cb q'^b, ... at all steps, results and events
     states = _states(conditions, f, t, x)
