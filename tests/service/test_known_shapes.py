@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
-from service.jobs.engines.engine import Outcome, Work
+from service.jobs.engines.engine import AttemptReport, Outcome, Work
 from service.jobs.kinds import run
 from service.jobs.kinds.decoded import part_of
 from service.jobs.kinds.shapes import SHARE
@@ -111,6 +111,33 @@ def test_what_is_stored_is_not_sent_again(filled: TestClient, store: Store) -> N
     assert told[3]["problem"]["code"] == "missing-content"
     for k in (0, 1, 5):
         assert filled.get(f"/v1/trees/t{k}").json()["parameters"]["g"]["value"] == 9 + k
+
+
+def test_trees_of_the_same_parts_share_what_is_sent(
+    filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What requests of one owner have in common leaves the runner once, and is stored although it was removed."""
+    sent: list[frozenset[str]] = []
+    compute = store.workers.compute
+
+    def noted(share: str, work: Work, seconds: float) -> AttemptReport:
+        report = compute(share, work, seconds)
+        if work.kind == "assemble" and report.outcome is not None:
+            sent.append(frozenset(report.outcome.files) & {"program", "form"})
+        return report
+
+    monkeypatch.setattr(store.workers, "compute", noted)
+    for k in range(3):
+        tree = {**TREE, "name": f"t{k}", "parameters": {"g": {"value": 9 + k}}}
+        answer = filled.post("/v1/trees", json=tree)
+        assert answer.status_code == 201
+        assert answer.json() == filled.get(f"/v1/trees/t{k}").json()
+        assert answer.json()["parameters"]["g"]["value"] == 9 + k
+        assert answer.json()["coordinates"]
+        if k == 1:
+            for name in ("t0", "t1"):
+                assert filled.delete(f"/v1/trees/{name}").status_code == 204
+    assert sent == [{"program", "form"}, frozenset(), frozenset()]
 
 
 def _files(arm: Part, hand: Part, share: str | None = None) -> tuple[dict[str, Any], dict[str, bytes]]:
