@@ -89,7 +89,7 @@ class DecidedContacts(ContactMotion):
         rests = len(rows.kept) == self.n and (len(rows.inverse) > 0 or bool(self.tangents[rubs].any()))
         call, (Q, bias) = self._dynamics
         calls = tuple(each for each in (self._see, call) if isinstance(each, BoundCall))
-        if self._model.driven or rests or len(calls) < 2:
+        if rests or len(calls) < 2:
             return None
         slow = np.where(self.turns, STOPS * self.approach, 0.0)
         laws = np.column_stack((np.where(rubs, self.friction, 0.0), slow, self.modes[:, 1:3]))
