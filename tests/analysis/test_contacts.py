@@ -12,7 +12,7 @@ from contact_models import BALL, PLACED, G, block, box, disc, of, plane_body, po
 
 from substructures import Contact, Event, Integrator, Model, Outputs, TreeMotion, simulate
 from substructures.analysis.motion.conditions import read_conditions
-from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK, ContactMotion
+from substructures.analysis.motion.contacts.contact_motion import SLIP, STARTS, STICK, ContactMotion
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
@@ -301,6 +301,25 @@ def test_steps_of_contacts_are_machine_code(name: str) -> None:
     kept = (f.G @ found[len(q) : -1] + f.bias)[f.modes[:, 0] > 0, 0]
     np.testing.assert_allclose(kept, 0, atol=1e-11 * size)
     assert (force[:, 0] != 0).tolist() == (f.modes[:, 0] > 0).tolist()
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+def test_slips_that_begin_are_found_in_machine_code() -> None:
+    """Of two corners at once, whose accelerations are along their ways: as in Python."""
+    feet = [Contact(each, f"b.{each}", friction=0.3) for each in CORNERS[:2]]
+    model, x = of("b", box(), [4, 1, -G]), np.array([0, 0, 0.1, 0.3, 0, 0, *[0] * 7], dtype=np.float64)
+    conditions = read_conditions(model, Start(x[:6]), (0, 1), ["metric", "bias", "forces"])
+    f = DecidedContacts(model, conditions.values, conditions.zero, conditions, feet)
+    f.begin()
+    f.look(0.0, x)
+    f.modes[:, 0], f.modes[:, 1], f.modes[:, 3] = STARTS, 1, f.yields(np.arange(2))
+    assert f.compiled() is None
+    second, _, _ = f.evaluate(0.0, x)
+    force, w = f.force.copy(), f.G @ second + f.bias
+    np.testing.assert_allclose(w[:, 1] * force[:, 2], w[:, 2] * force[:, 1], atol=1e-11)
+    np.testing.assert_allclose(np.hypot(*force[:, 1:].T), 0.3 * force[:, 0])
+    found, _, _ = ContactMotion.evaluate(f, 0.0, x)
+    np.testing.assert_allclose([*second, *force.ravel()], [*found, *f.force.ravel()], rtol=1e-9, atol=1e-10)
 
 
 def test_what_rests_is_right_however_long() -> None:

@@ -10,9 +10,16 @@ import pytest
 import scipy
 from closed_trees import tree_model
 from contact_models import BALL, PLACED, G, on_moving_plate
+from contact_models import point as space_point
 
 from substructures import Contact, InvalidInput, Model, Outputs, TreeMotion, simulate
+from substructures.analysis.motion.conditions import read_conditions
+from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK, ContactMotion
+from substructures.analysis.motion.contacts.deciding import DecidedContacts
+from substructures.analysis.motion.problems.contacts import contacts_of
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.compile import target
 
 A, W = 0.05, 20.0
 GIVEN = {"input": True}
@@ -155,3 +162,28 @@ def test_a_turntable_holds_a_point_while_friction_can(w: float, stays: bool) -> 
     assert motion.series["contact_forces"][0, 0] == pytest.approx([2 * G, -2 * held, 0], abs=1e-8)
     radius = np.linalg.norm(motion.q[:, :2], axis=1)
     assert bool(np.abs(radius - 0.5).max() < 1e-8) is stays
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+@pytest.mark.parametrize("mode", [STICK, SLIP])
+def test_steps_on_given_motions_are_machine_code(mode: int) -> None:
+    """A mass on an arm whose turning about an oblique axis is given, on the ground: as in Python."""
+    arm = {**floor("revolute", [0.6, 0, 0.8]), "ports": [{"name": "tip", "body": "plate", "position": [0.3, 0.1, 0]}]}
+    instances = [
+        {"name": "f", "substructure": "floor"},
+        {"name": "b", "substructure": "point", "at": "f.tip"},
+    ]
+    contact = {"name": "c", "point": "b.body", "friction": "0.3"}
+    tree = {"gravity": [0, 0, -G], "instances": instances, "driven": {"f.s": "0.5*sin(3*t)"}, "contacts": [contact]}
+    model = tree_model(tree, {"floor": arm, "point": space_point()})
+    x = np.array([0, 0.2, 0.1, 0.5, 0.1, 0.3, 0.0])
+    conditions = read_conditions(model, Start(x[:3], x[3:6]), (0, 1), ["metric", "bias", "forces"])
+    f = DecidedContacts(model, conditions.values, conditions.zero, conditions, contacts_of(model))
+    f.begin()
+    f.look(0.3, x)
+    f.modes[0] = [mode, 1, 0, f.yields(np.arange(1))[0]]
+    assert f.compiled() is not None
+    second, _, power = f.evaluate(0.3, x)
+    found = [*second, power, *f.force.ravel()]
+    second, _, power = ContactMotion.evaluate(f, 0.3, x)
+    np.testing.assert_allclose(found, [*second, power, *f.force.ravel()], atol=1e-12)

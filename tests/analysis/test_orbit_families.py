@@ -132,3 +132,13 @@ def test_bad_periods(period: str) -> None:
     with pytest.raises(InvalidInput) as caught:
         periodic_orbits(forced("0"), [0.1], Shooting(period))
     assert caught.value.faults[0].pointer == "/period"
+
+
+@pytest.mark.parametrize("period", ["2*p.w", "p.w", "pi/p.k", "1 + p.d/p.k^2"])
+def test_a_period_that_is_no_time_is_refused(period: str) -> None:
+    """Whole numbers and pi have no unit; 6.3 may be metres."""
+    with pytest.raises(InvalidInput, match="is no time") as caught:
+        periodic_orbits(forced("0"), [0.1], Shooting(period))
+    assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == ("/period", "unit-mismatch")
+    for some in ("2*pi/p.w", "6.3*p.w", "2*pi*sqrt(1/p.k)*3.0001", "12"):
+        assert Shooting(some).period_at(forced("0"), {}) is not None

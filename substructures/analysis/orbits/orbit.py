@@ -14,8 +14,11 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.documents.units import read_unit
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
+from substructures.expr.units.dimensions import DimensionError, Inference
+from substructures.expr.units.unit_check import dimension_of, steps_of
 from substructures.quantities.numbers.states import default_numbers
 from substructures.tree.model import Model
 
@@ -100,8 +103,8 @@ class Shooting:
     section: Section | None = None
 
     def period_at(self, model: Model, parameters: Mapping[str, float]) -> float | None:
-        """The period [s] as a number, at these ``parameters`` and the defaults of others. Raises InvalidArgument,
-        MissingValue.
+        """The period [s] as a number, at these ``parameters`` and the defaults of others. Raises InvalidArgument (for a
+        formula that is no time, ``unit-mismatch``; whole numbers and pi in it have no unit), MissingValue.
         """
         if not isinstance(self.period, str):
             return self.period
@@ -110,6 +113,12 @@ class Shooting:
             if symbol.kind != "parameter":
                 message = f"a period depends on parameters alone, not on '{symbol.name}'"
                 raise InvalidArgument.at("/period", "unknown-name", message)
+        inference = Inference(lambda name: dimension_of(model.units.get(name, "")), counts=True)
+        try:
+            inference.require(inference.of(steps_of(self.period)), read_unit("s").dimension)
+        except DimensionError as error:
+            message = f"'{self.period[:80]}' is no time: {error}"
+            raise InvalidArgument.at("/period", "unit-mismatch", message) from None
         values = {**default_numbers(model.parameters), **parameters}
         return positive(float(interpret(read, values)["period"][0]), "period")
 

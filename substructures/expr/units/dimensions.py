@@ -48,6 +48,8 @@ class Inference:
     """
 
     dimension_of: Callable[[str], Inferred]
+    #: whether whole numbers and pi have no unit in any case
+    counts: bool = False
 
     def __post_init__(self) -> None:
         self.doubts: list[str] = []
@@ -59,7 +61,8 @@ class Inference:
             if step.op == "name":
                 stack.append(self.dimension_of(str(step.value)))
             elif step.op in ("number", "pi"):
-                stack.append("number")
+                is_count = self.counts and (step.op == "pi" or getattr(step.value, "denominator", 0) == 1)
+                stack.append("pure" if is_count else "number")
             elif step.op == "call":
                 args = stack[len(stack) - step.operands :]
                 del stack[len(stack) - step.operands :]

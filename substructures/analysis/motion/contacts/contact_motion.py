@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.contacts.complementarity import LEAST, least
-from substructures.analysis.motion.contacts.pressing import NONE, Rows, Slips, independent, slipping
+from substructures.analysis.motion.contacts.pressing import NONE, Pressed, Rows, independent, pressed, turn
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
@@ -153,13 +153,20 @@ class ContactMotion(RightHandSide):
         if not self.closed.any():
             return free, pivots, power
         self.look(t, x)
-        slips = Slips(self.friction, self.ways(self.velocities(x)), self.modes[:, 0] == STARTS)
-        found, slips = slipping(self.g, self.G, self.bias, self.independent(), free, slips)
-        self.force[:] = found.force
-        self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * slips.ways
-        second = found.second
-        second[np.abs(second) <= NOTHING * found.size] = 0.0
-        return second, pivots, power + self.power(x)
+        rows, ways, found = self.independent(), self.ways(self.velocities(x)), list[Pressed]()
+
+        def second() -> Array:
+            """With these ways."""
+            F = self.G.copy()
+            F[:, 0] -= np.einsum("i,ia,ian->in", self.friction, ways, self.G[:, 1:])
+            found[:] = [pressed(self.g, self.G, self.bias, rows, free, F)]
+            return found[0].second
+
+        turn(ways, self.modes[:, 0] == STARTS, self.G, self.bias, second)
+        qdd, size, self.force[:] = found[0]
+        self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * ways
+        qdd[np.abs(qdd) <= NOTHING * size] = 0.0
+        return qdd, pivots, power + self.power(x)
 
     def independent(self) -> Rows:
         """Of what is closed and what sticks, chosen where these modes are looked at first."""
@@ -219,7 +226,8 @@ class ContactMotion(RightHandSide):
         """A gap closes, or a point comes back; a contact lifts off, stops, or sticks no more."""
         found = []
         self._watched.clear()
-        for i, mode in enumerate(self.modes[:, 0].tolist()):
+        # slips that begin end first, and what comes behind is not looked for
+        for i, mode in sorted(enumerate(self.modes[:, 0].tolist()), key=lambda each: -each[1]):
             if mode in (OPEN, PASSING):
                 found.append(Watch("gap", self._gap(i), -1 if mode == OPEN else 1))
                 continue
@@ -227,7 +235,8 @@ class ContactMotion(RightHandSide):
             if mode == STICK and self.tangents[i].any():
                 found.append(Watch("slip", self._margin(i, lambda p, mu: mu * p[0] - np.hypot(p[1], p[2])), -1))
             elif mode >= SLIP and self.tangents[i].any():
-                found.append(Watch("stick", self._slip(i), -1))
+                # where a slip has a way of its own from need not be known well
+                found.append(Watch("stick", self._slip(i), -1, exact=mode != STARTS))
         return found
 
     def _gap(self, i: int) -> Callable[[float, Array], float]:

@@ -33,13 +33,14 @@ from substructures.analysis.motion.contacts.contact_motion import (
     ContactMotion,
     Modes,
 )
+from substructures.analysis.motion.contacts.pressing import turn
 from substructures.analysis.motion.friction.dry_rates import DYNAMICS
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Crossing
 from substructures.array import Array
 from substructures.compile.machine import BoundCall
-from substructures.compile.motion import CompiledRates, CompiledRun, SaddlePoint
+from substructures.compile.motion import CompiledRates, CompiledRun, Pressing, SaddlePoint
 
 #: of the largest acceleration: what is none
 NONE = 1e-11
@@ -68,7 +69,7 @@ class DecidedContacts(ContactMotion):
     #: the modes at a time of the last motion
     at: Callable[[float], Modes]
     #: in machine code with these modes
-    _made: tuple[bytes, CompiledRun | None, SaddlePoint | None] = b"", None, None
+    _made: tuple[bytes, CompiledRun | None, Pressing | None] = b"", None, None
 
     def begin(self) -> None:
         """All contacts are open, and nothing has happened."""
@@ -76,43 +77,50 @@ class DecidedContacts(ContactMotion):
         self.told, self.impacts, self.begun = [], [], False
 
     def compiled(self) -> CompiledRates | None:
-        """As the modes are now, but for slips that begin, whose ways are found, and for what many hold at rest, where
-        rounding would move it.
-        """
+        """As the modes are now, but for slips that begin, whose ways are found."""
+        return None if (self.modes[:, 0] == STARTS).any() else self._rates()
+
+    def _rates(self) -> CompiledRates | None:
+        """With the ways given of slips that begin; None where many hold what is at rest, as rounding would move it."""
         rates, closed = RightHandSide.compiled(self), self.closed
         if rates is None or not closed.any():
             return rates
-        rows = self.independent()
-        rubs = self.modes[:, 0] >= FULL
+        rows, rubs = self.independent(), self.modes[:, 0] >= FULL
         rests = len(rows.kept) == self.n and (len(rows.inverse) > 0 or bool(self.tangents[rubs].any()))
-        if self._model.driven or rests or (self.modes[:, 0] == STARTS).any():
-            return None
         call, (Q, bias) = self._dynamics
         calls = tuple(each for each in (self._see, call) if isinstance(each, BoundCall))
-        turns = self.turns
-        slow = np.where(turns, STOPS * self.approach, 0.0)
-        slips = np.where(rubs, self.friction, 0.0)
-        laws = np.column_stack((slips, slow, self.modes[:, 1:3]))
+        if rests or len(calls) < 2:
+            return None
+        slow = np.where(self.turns, STOPS * self.approach, 0.0)
+        laws = np.column_stack((np.where(rubs, self.friction, 0.0), slow, self.modes[:, 1:3]))
         contacts = rows.pressing(self.rate.reshape(-1), self._x[0, self.n :], laws, self._out[2])
         place = self.G.reshape(-1, self.n), self.bias.reshape(-1), Q, bias, rows.kept, np.arange(self.n)
-        saddle = SaddlePoint(self.g, *place, pressing=contacts)
-        return replace(rates, calls=(*rates.calls, *calls), saddle=saddle) if len(calls) == 2 else None
+        return replace(rates, calls=(*rates.calls, *calls), saddle=SaddlePoint(self.g, *place, pressing=contacts))
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power), in machine code where that may be."""
         if self.modes.tobytes() != self._made[0]:
             # rows are chosen where they are
             self.look(t, x)
-            rates = self.compiled() if self.closed.any() else None
+            rates = self._rates() if self.closed.any() else None
+            saddle = None if rates is None else rates.saddle
             run = None if rates is None else CompiledRun(TABLEAUX["DOP853"], rates, (1.0, 1.0))
-            self._made = self.modes.tobytes(), run, None if rates is None else rates.saddle
-        _, run, saddle = self._made
-        if run is None or saddle is None or saddle.pressing is None:
+            self._made = self.modes.tobytes(), run, None if saddle is None else saddle.pressing
+        _, run, contacts = self._made
+        if run is None or contacts is None:
             return super().evaluate(t, x)
-        found = run.rates(t, x)
-        self.independent().forces(saddle.pressing, self.force)
-        self.force[:, 1:] -= self.friction[:, None] * self.force[:, :1] * self.ways(self.velocities(x))
-        return found[self.n : 2 * self.n], self._out[1][0], float(found[-1])
+        found = list[Array]()
+
+        def second() -> Array:
+            """With these ways."""
+            found[:] = [run.rates(t, x)]
+            return found[0][self.n : 2 * self.n]
+
+        turn(contacts.laws[:, 2:], self.modes[:, 0] == STARTS, self.G, self.bias, second)
+        self.independent().forces(contacts, self.force)
+        ways = np.where(self.turns[:, None], self.ways(self.velocities(x)), contacts.laws[:, 2:])
+        self.force[:, 1:] -= contacts.laws[:, :1] * self.force[:, :1] * ways
+        return found[0][self.n : 2 * self.n], self._out[1][0], float(found[0][-1])
 
     @cached_property
     def _dynamics(self) -> tuple[Callable[[], None], list[Array]]:

@@ -27,6 +27,8 @@ from substructures.compile.motion import Pressing
 DEPENDENT = 1e-7
 #: most steps to ways of slips that begin, none longer than this [rad], and the last one, of which the square is left
 STEPS, FAR, FOUND = 30, 1.0, 1e-7
+#: for differences [rad]
+BESIDE = 1e-7
 
 
 @dataclass(frozen=True)
@@ -68,14 +70,11 @@ def independent(g: Array, G: Array, holds: NDArray[np.bool_], yields: Array) -> 
 
 
 class Pressed(NamedTuple):
-    """q'' (n,), the sum of the ``size`` of its parts (n,), the forces x (k, 3), and what makes of a force on the
-    coordinates (n, ...) its part of q''.
-    """
+    """q'' (n,), the sum of the ``size`` of its parts (n,), and the forces x (k, 3)."""
 
     second: Array
     size: Array
     force: Array
-    moved: Callable[[Array], Array]
 
 
 def pressed(g: Array, G: Array, bias: Array, rows: Rows, free: Array, F: Array) -> Pressed:
@@ -92,65 +91,50 @@ def pressed(g: Array, G: Array, bias: Array, rows: Rows, free: Array, F: Array) 
     else:
         columns = F[rows.kept].T
     try:
-        inverse = np.linalg.inv(g)
-        W = inverse @ columns
-        A = np.linalg.inv(kept @ W)
+        W = np.linalg.solve(g, columns)
+        y = np.linalg.solve(kept @ W, -(kept @ free + c[rows.kept]))
     except np.linalg.LinAlgError as error:
         raise ArithmeticError(JAMMED) from error
-    y = A @ -(kept @ free + c[rows.kept])
     x = np.zeros(len(J))
     x[rows.held] = shares @ y if len(rows.inverse) else y
 
-    def moved(force: Array) -> Array:
-        """q'' of a force beside, with the contacts as they are."""
-        alone = inverse @ force
-        return np.asarray(alone - W @ (A @ (kept @ alone)))
-
-    return Pressed(free + W @ y, np.abs(free) + np.abs(W) @ np.abs(y), x.reshape(-1, 3), moved)
+    return Pressed(free + W @ y, np.abs(free) + np.abs(W) @ np.abs(y), x.reshape(-1, 3))
 
 
-class Slips(NamedTuple):
-    """Friction of contacts at a state: ``friction`` mu (k,), unit vectors ``ways`` d (k, 2), 0 of those that do not
-    slip, and which of them ``begin`` (k,), whose ways are those of their accelerations.
-    """
-
-    friction: Array
-    ways: Array
-    begin: NDArray[np.bool_]
-
-    def columns(self, G: Array) -> Array:
-        """F (k, 3, n)."""
-        F = G.copy()
-        F[:, 0] -= np.einsum("i,ia,ian->in", self.friction, self.ways, G[:, 1:])
-        return F
-
-    def turned(self, step: Array) -> Slips:
-        """With the ways of those that begin turned by angles (s,)."""
-        ways, (a, b) = self.ways.copy(), self.ways[self.begin].T
-        c, s = np.cos(step), np.sin(step)
-        ways[self.begin] = np.column_stack((c * a - s * b, s * a + c * b))
-        return self._replace(ways=ways)
-
-
-def slipping(g: Array, G: Array, bias: Array, rows: Rows, free: Array, slips: Slips) -> tuple[Pressed, Slips]:
-    """As :func:`pressed`, with ways of slips that begin along their accelerations w: d x w = 0, by Newton's method.
+def turn(ways: Array, begin: NDArray[np.bool_], G: Array, bias: Array, second: Callable[[], Array]) -> None:
+    """Turn those ``ways`` d (k, 2) of slips that ``begin`` (k,) along their accelerations w, d x w = 0, by Newton's
+    method. ``second``: q'' (n,) with ways as they are, with G (k, 3, n) and ``bias`` (k, 3); asked with the last ones
+    last.
 
     A slip from rest in two directions has no way of its own: its velocity follows its acceleration, and friction, which
-    is against that, decides this at once.
+    is against that, decides this at once. Raises ArithmeticError.
     """
-    found, begin = pressed(g, G, bias, rows, free, slips.columns(G)), slips.begin
-    for _ in range(STEPS if begin.any() else 0):
-        G_T, d = G[begin, 1:], slips.ways[begin]
-        across = np.einsum("ia,ian->in", np.column_stack((-d[:, 1], d[:, 0])), G_T)
-        along = np.einsum("ia,ian->in", d, G_T)
-        w, c = found.second, bias[begin, 1:]
-        left = across @ w - d[:, 1] * c[:, 0] + d[:, 0] * c[:, 1]
-        # what turns of the friction do: -mu N across^T
-        drag = slips.friction[begin] * found.force[begin, 0]
-        slopes = -(across @ found.moved(across.T * drag)) - np.diag(along @ w + (d * c).sum(axis=1))
-        step = np.clip(np.linalg.lstsq(slopes, -left, rcond=None)[0], -FAR, FAR)
-        slips = slips.turned(step)
-        found = pressed(g, G, bias, rows, free, slips.columns(G))
+
+    def across(d: Array) -> Array:
+        """d x w (s,)."""
+        ways[begin] = d
+        qdd = second()
+        w = G[begin, 1:] @ qdd + bias[begin, 1:]
+        return np.asarray(d[:, 0] * w[:, 1] - d[:, 1] * w[:, 0])
+
+    if not begin.any():
+        second()
+        return
+    d = ways[begin]
+    left = across(d)
+    for _ in range(STEPS):
+        slopes = np.column_stack([(across(_turned(d, BESIDE * each)) - left) / BESIDE for each in np.eye(len(d))])
+        try:
+            step = np.clip(np.linalg.solve(slopes, -left), -FAR, FAR)
+        except np.linalg.LinAlgError as error:
+            raise ArithmeticError(JAMMED) from error
+        d = _turned(d, step)
+        left = across(d)
         if np.abs(step).max() <= FOUND:
             break
-    return found, slips
+
+
+def _turned(d: Array, step: Array) -> Array:
+    """By angles (s,)."""
+    c, s = np.cos(step), np.sin(step)
+    return np.column_stack((c * d[:, 0] - s * d[:, 1], s * d[:, 0] + c * d[:, 1]))

@@ -225,11 +225,15 @@ class _Run:
 
     def _watch(self, solver: Any, dense: Dense) -> float:
         """Zeros in the last step, in the order of time, up to the first that stops; how far the motion goes."""
-        zeros, earlier = [], list(self.levels)
+        zeros, earlier, until = list[tuple[float, int]](), list(self.levels), float(solver.t)
         for k, watch in enumerate(self.watches):
             before, after = self.levels[k], watch.function(solver.t, solver.y)
             self.levels[k], self.sizes[k] = after, max(self.sizes[k], abs(after))
-            zeros += [(t, k) for t in zeros_of(watch, solver, dense, (before, after))]
+            found, left = zeros_of(watch, solver, dense, (before, after), until), watch.count - self.met[k]
+            zeros += [(t, k) for t in found]
+            # nothing counts behind an event that stops
+            if watch.stops and watch.corner is None and len(found) >= left:
+                until = found[max(left, 1) - 1]
         zeros.sort()
         for i, (t, k) in enumerate(zeros):
             x = np.array(dense(t), dtype=np.float64)

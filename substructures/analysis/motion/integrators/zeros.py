@@ -39,7 +39,7 @@ class Watch:
     """Zeros of g(t, x), a quantity less ``level``, that are looked for: ``direction`` +1 rising, -1 falling, 0 both.
 
     ``stops``: at the ``count``-th. ``corner``: at the zeros the right-hand side changes, and the integrator begins
-    anew.
+    anew. ``exact``: or known only as well as the step's own polynomial is.
     """
 
     name: str
@@ -49,6 +49,7 @@ class Watch:
     level: float = 0.0
     corner: Corner | None = None
     count: int = 1
+    exact: bool = True
 
 
 class Dense:
@@ -58,6 +59,7 @@ class Dense:
         self.solver, self.make = solver, make
         self.output: Any = None
         self._roughly: dict[bytes, Array] = {}
+        self._exactly: dict[float, Array] = {}
 
     @cached_property
     def _polynomial(self) -> Callable[[Array], Array]:
@@ -78,11 +80,15 @@ class Dense:
             return np.asarray(self.solver.y)
         if self.output is None:
             self.output = within(self.solver, self.make)
-        return np.asarray(self.output(t))
+        if t not in self._exactly:
+            self._exactly[t] = np.array(self.output(t))
+        return self._exactly[t]
 
 
-def zeros_of(watch: Watch, solver: Any, dense: Dense, ends: tuple[float, float]) -> list[float]:
-    """The zeros of a watched function in the last step, in order; ``ends``: its values there."""
+def zeros_of(watch: Watch, solver: Any, dense: Dense, ends: tuple[float, float], until: float) -> list[float]:
+    """The zeros of a watched function in the last step up to a time, in order; ``ends``: its values at those of the
+    step.
+    """
 
     def g(t: float) -> float:
         """The watched function within the step."""
@@ -96,11 +102,15 @@ def zeros_of(watch: Watch, solver: Any, dense: Dense, ends: tuple[float, float])
     points = [(a, ends[0]), *turns(roughly, a, b, ends, watch.level), (b, ends[1])]
     found = []
     for (start, before), (end, after) in pairwise(_reaching(g, points)):
+        if start >= until:
+            break
+        if end > until:
+            end, after = until, g(until)
         # g changes its sign from one time to the next; g = 0 at the start was counted before
         rising = before < 0 <= after
         falling = before > 0 >= after
         if (rising and watch.direction >= 0) or (falling and watch.direction <= 0):
-            found.append(_zero(g, start, end))
+            found.append(_zero(g if watch.exact else lambda t: roughly(np.array([t]))[0], start, end))
     return found
 
 
