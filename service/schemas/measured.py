@@ -140,7 +140,7 @@ def _steady_units(model: Model, read_before: Plain) -> Mapping[str, str]:
     """Of parameters, and of the rates of coordinates, or their momenta where these are given."""
     kinds = zip(model.coordinates, model.joints, strict=True)
     moving = {name: MOMENTA[kind] for name, kind in kinds} if read_before.get("momenta") is not None else {}
-    return {**model.units, **model.state_units["qd"], **moving}
+    return {**model.units, **model.state_units["qd"], **moving, "precession": "rad/s"}
 
 
 def _in_order(units: Mapping[str, str]) -> Place:

@@ -12,7 +12,7 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.sections import PoincareSection
 from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
-from substructures.analysis.stability.steady_result import SteadyMotions
+from substructures.analysis.stability.steady_result import BallSteadyMotion, SteadyMotion, SteadyMotions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.pictures.plot import Line, Panel, plot
@@ -126,21 +126,37 @@ def draw_root_locus(locus: RootLocus) -> str:
 
 
 def draw_steady_motions(steady: SteadyMotions, joints: str) -> str:
-    """SVG: each coordinate that keeps still over what varies, or over the first rate, by verdict; with bifurcations."""
+    """SVG: each number of q that keeps still over what varies, or over the first rate (with ball joints without such
+    rates over the precession), by verdict; with bifurcations.
+    """
     found = steady.found
-    names = found[0].coordinates if found else ()
+    first = found[0] if found else None
+    names = first.positions if isinstance(first, BallSteadyMotion) else first.coordinates if first else ()
+    units = {
+        name: "rad" if joint == "R" else "m"
+        for name, joint in zip(first.coordinates if first else (), joints, strict=False)
+    }
     q = np.array([motion.q for motion in found]).reshape(len(found), len(names))
-    over = np.array([motion.rates[0] if motion.value is None else motion.value for motion in found], dtype=np.float64)
+    over = np.array([_over(motion) for motion in found], dtype=np.float64)
     verdicts = np.array([motion.verdict for motion in found], dtype=object)
     marks = tuple((one.kind, one.at.value) for one in steady.bifurcations if one.at.value is not None)
-    label = steady.vary or f"rate of {steady.moving[0]}"
+    label = steady.vary or (f"rate of {steady.moving[0]}" if steady.moving else "precession")
     panels = []
     for a, name in enumerate(names):
         if name not in steady.moving:
             by_verdict = {verdict: verdicts == verdict for verdict in sorted(set(verdicts))}
             lines = tuple(Line(verdict, over[these], q[these, a], dots=True) for verdict, these in by_verdict.items())
-            panels.append(Panel(name, label, "rad" if joints[a] == "R" else "m", lines, marks))
+            panels.append(Panel(name, label, units.get(name, "m, 1"), lines, marks))
     return plot(f"steady motions: {len(found)} found, {len(marks)} bifurcations", panels)
+
+
+def _over(motion: SteadyMotion) -> float:
+    """What a steady motion is drawn over."""
+    if motion.value is not None:
+        return motion.value
+    if len(motion.rates):
+        return float(motion.rates[0])
+    return motion.precession if isinstance(motion, BallSteadyMotion) else 0.0
 
 
 def draw_frequency_response(response: FrequencyResponse) -> str:

@@ -75,5 +75,3 @@ def test_what_is_not_known_says_so() -> None:
     model = model_of(top())
     with pytest.raises(InvalidInput, match="no cyclic rate; there are: x"):
         steady_motions(model, rates={"x.w_b_x": 1})
-    with pytest.raises(InvalidInput, match="/vary"):
-        steady_motions(model, rates={}, vary="x.w_b_z", between=(0, 1))

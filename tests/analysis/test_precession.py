@@ -13,10 +13,12 @@ from in_depth import deep
 from random_trees import Plain
 from scipy.spatial.transform import Rotation
 
-from substructures import InvalidInput, Model, simulate, steady_motions
-from substructures.analysis.stability.steady_balls import BallSteadyMotion
+from substructures import InvalidInput, Model, couple, derive, simulate, steady_motions
+from substructures.analysis.drawings import draw
+from substructures.analysis.stability.steady_result import BallSteadyMotion
 
 SPIN, HEAVY = "x.w_b_z", MASS * G * ARM
+OVER_SPIN: Plain = {"vary": SPIN, "between": (20, 30)}
 
 
 def tilted(tilt: float) -> list[float]:
@@ -127,6 +129,55 @@ def test_a_rotor_precesses_with_its_frame() -> None:
     assert [each.verdict for each in found.found] == ["stable"] * 2
 
 
+def test_families_of_precessions() -> None:
+    """Over the rate of precession the tilt ends upright, where the slow rate is that of cos(t) = 1."""
+    spin = 30.0
+    given: Plain = {"rates": {SPIN: spin}, "vary": "precession", "between": (1.0, 1.2), "steps": 4, "count": 8}
+    found = steady_motions(model_of(top()), **given)
+    assert found.is_right
+    (one,) = found.bifurcations
+    slow = min(np.roots([A, -C * spin, HEAVY]))
+    assert (one.kind, one.at.value) == ("pitchfork", pytest.approx(slow, rel=1e-6))
+    assert {each.verdict for each in found.found} == {"stable"}
+    leaning = [each for each in found.found if tilt_of(each) > 1e-3]
+    assert len(leaning) > 4
+    for each in leaning:
+        p = float(each.value or 0)
+        assert np.cos(tilt_of(each)) == pytest.approx((C * spin * p - HEAVY) / (A * p * p), abs=1e-9)
+    assert "precession" in draw(found, "RRR")
+    # upright it is found from both ends, once
+    values = sorted(float(each.value or 0) for each in found.found if tilt_of(each) < 1e-9)
+    assert (values[0], values[-1]) == (1.0, 1.2)
+    assert len(set(values)) == len(values)
+
+
+@pytest.mark.parametrize("vary", ["x.l", SPIN, *deep("angular_momentum.z")])
+def test_families_over_what_is_given(vary: str) -> None:
+    """A length, the spin, or the momentum about the vertical: the tilt follows at every value."""
+    body: Plain = {**top(), "com": [0, 0, "l"], "inertia": {"xx": "1/2-2*l^2", "yy": "1/2-2*l^2", "zz": "1/5"}}
+    tree = {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "d"}]}
+    definition = {"name": "d", "bodies": [body], "parameters": {"l": {"value": "3/10"}}}
+    model, tilt, p = couple(tree, {"x": derive(definition)}), 0.8, 1.1
+    spin = (A * np.cos(tilt) * p * p + HEAVY) / (C * p)
+    momentum = A * p * np.sin(tilt) ** 2 + C * spin * np.cos(tilt)
+    given: Plain = {"rates": {SPIN: spin}, "precession": p}
+    between: Any = (0.3, 0.29) if vary == "x.l" else (spin, spin + 0.5)
+    if vary == "angular_momentum.z":
+        given, between = {"momenta": {SPIN: C * spin}}, (momentum, momentum + 0.1)
+    start = np.array(tilted(tilt))
+    found = steady_motions(model, **given, vary=vary, between=between, steps=2, starts=start, count=0)
+    assert found.is_right
+    leaning = [each for each in found.found if 1e-3 < tilt_of(each) < 3]
+    assert len(leaning) > 2
+    for each in leaning:
+        assert isinstance(each, BallSteadyMotion)
+        value, rate = float(each.value or 0), each.precession
+        w = value if vary == SPIN else spin
+        heavy = MASS * G * (value if vary == "x.l" else ARM)
+        assert A * np.cos(tilt_of(each)) * rate**2 - C * w * rate + heavy == pytest.approx(0, abs=1e-8)
+        assert vary != "angular_momentum.z" or each.angular_momentum == pytest.approx(value, rel=1e-9)
+
+
 def alone(joint: str, com: list[float], gravity: list[float] | None = None, **inertia: float) -> Model:
     body: Plain = {"name": "b", "parent": "base", "mass": 2, "com": com, "inertia": inertia, "joint": {"type": joint}}
     return model_of(body) if gravity is None else model_of(body, gravity=gravity)
@@ -142,6 +193,7 @@ def test_staudes_motions() -> None:
     found = steady_motions(model, rates={}, precession=9.0, count=8)
     assert found.is_right
     assert len(found.found) >= 4
+    assert "precession" in draw(found, "RRR")
     for each in found.found:
         assert isinstance(each, BallSteadyMotion)
         u = Rotation.from_quat(each.q, scalar_first=True).inv().apply([0, 0, 1])
@@ -175,6 +227,9 @@ def test_bad_requests() -> None:
         (model_of(top()), {"rates": {}, "precession": float("nan")}, "/precession", "finite"),
         (model_of(top()), {}, "/rates", "either 'rates' or 'momenta'"),
         (model_of(top()), {"rates": {}, "held": "rates"}, "/held", "is not for trees with ball"),
+        (model_of(top()), {"rates": {}, "vary": "x.w_b_x", "between": (0, 1)}, "/vary", "no cyclic rate"),
+        (model_of(top()), {"rates": {}, "precession": "any", **OVER_SPIN}, "/precession", "of single places"),
+        (model_of(top()), {"rates": {}, "vary": "x.q", "between": (0, 1)}, "/vary", "no parameter or coordinate"),
     ]
     for model, given, pointer, told in cases:
         with pytest.raises(InvalidInput) as caught:

@@ -11,7 +11,7 @@ as the axis turns the other way in the axes of a body that spins.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
@@ -25,6 +25,8 @@ from substructures.tree.model import Model
 Precession = float | Literal["any"] | None
 #: integrals about axes of the world
 TURN = "angular_momentum."
+#: what may vary beside parameters and cyclic rates
+TURNING = ("precession", *(f"{TURN}{axis}" for axis in "xyz"))
 
 
 @dataclass(frozen=True)
@@ -96,11 +98,22 @@ class BallRequest:
     rates: Mapping[str, float] | None
     momenta: Mapping[str, float] | None
     precession: Precession
+    vary: str | None = None
 
     @property
     def field(self) -> Literal["rates", "momenta"]:
         """What is given."""
         return "rates" if self.momenta is None else "momenta"
+
+    def beginning(self, vary: str | None, value: float) -> BallRequest:
+        """With the first value of what varies: a rate, a momentum or the precession."""
+        if vary is None:
+            return self
+        if vary == "precession":
+            return replace(self, precession=value, vary=vary)
+        given = {**(self.rates or self.momenta or {}), vary: value}
+        one = replace(self, vary=vary)
+        return replace(one, rates=given) if self.momenta is None else replace(one, momenta=given)
 
     def turning(self, model: Model, found: FirstIntegrals) -> Turning:
         """What is given, by numbers. Raises InvalidArgument (``/rates/name``, ``/momenta/name``, ``/precession``)."""
@@ -119,7 +132,8 @@ class BallRequest:
     def _require(self, cyclic: Sequence[str], axis: str, given: Mapping[str, float]) -> None:
         known = [*cyclic, *([axis] if axis and self.field == "momenta" else [])]
         told = f"is no cyclic rate; there are: {listed(known) or 'none'}"
-        faults = [Fault(f"/{self.field}/{x}", "not-cyclic", f"'{x[:80]}' {told}") for x in given if x not in known]
+        places = {x: "/vary" if x == self.vary else f"/{self.field}/{x}" for x in given}
+        faults = [Fault(places[x], "not-cyclic", f"'{x[:80]}' {told}") for x in given if x not in known]
         if self.precession is not None and (self.field == "momenta" or not axis):
             why = "the angular momentum is constant about no axis of the world through its origin: hang the tree there"
             message = f"of 'momenta' one is '{axis}': leave it out" if axis else why

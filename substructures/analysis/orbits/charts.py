@@ -26,6 +26,8 @@ class Chart:
     """
 
     free: Sequence[int] = ()
+    #: whether the numbers of a state are coordinates and velocities, and have any values
+    is_flat = True
 
     def __init__(self, names: tuple[str, ...], size: int) -> None:
         self.names, self.width, self.size = names, len(names), size
@@ -38,6 +40,10 @@ class Chart:
         """The coordinates of the changes of all numbers of x, (width, size)."""
         return np.eye(self.size)
 
+    def surface(self, x: Array) -> tuple[Array, Array]:
+        """What all states keep at zero (size - width,), and its derivatives by x."""
+        return np.zeros(0), np.zeros((0, len(x)))
+
     def moved(self, x: Array, d: Array) -> Array:
         """The state at d."""
         return x + d
@@ -49,6 +55,8 @@ class Chart:
 
 class BallChart(Chart):
     """Of states with ball joints (q, v)."""
+
+    is_flat = False
 
     def __init__(self, model: Model) -> None:
         rates = [f"{name}'" for name in model.coordinates]
@@ -67,6 +75,13 @@ class BallChart(Chart):
     def along(self, x: Array) -> Array:
         """(2n, m + n)."""
         return np.asarray(scipy.linalg.block_diag(self._displaced(x), np.eye(self.n)), dtype=np.float64)
+
+    def surface(self, x: Array) -> tuple[Array, Array]:
+        """(|Q|^2 - 1)/2 of all quaternions."""
+        rows = np.zeros((len(self.quaternions), self.size))
+        for row, some in zip(rows, self.quaternions, strict=True):
+            row[some] = x[some]
+        return (rows @ x - 1) / 2, rows
 
     def moved(self, x: Array, d: Array) -> Array:
         """The state at d, with quaternions of length 1."""
@@ -87,6 +102,8 @@ class BallChart(Chart):
 
 class ClosedChart(Chart):
     """Of states (q, v) on closures, which leave the coordinates ``free``: all of them with velocity constraints."""
+
+    is_flat = False
 
     def __init__(self, equations: QuasiVelocities, values: Mapping[str, Any], q: Array) -> None:
         self.equations, self.values, self.n = equations, values, len(q)
@@ -114,6 +131,15 @@ class ClosedChart(Chart):
     def along(self, _x: Array) -> Array:
         """(n - h + p, n + p)."""
         return np.eye(self.size)[[*self.free, *range(self.n, self.size)]]
+
+    def surface(self, x: Array) -> tuple[Array, Array]:
+        """The residuals of the closures, those rows that are independent."""
+        if not self.rows:
+            return super().surface(x)
+        q, constraints = x[: self.n], self.equations.constraints
+        gaps = [self.equations.gaps.index(constraints[k]) for k in self.rows]
+        found = at_rest(self.equations, self.values, q[None], ["gaps"])["gaps"][0]
+        return found[gaps], np.hstack((self._rows(q), np.zeros((len(gaps), self.size - self.n))))
 
     def moved(self, x: Array, d: Array) -> Array:
         """The state at d, on the closures."""

@@ -1,8 +1,9 @@
 """Families of periodic orbits over a parameter, by pseudo-arclength, with their bifurcations.
 
-The unknowns are those of shooting, the state on the orbit and a period that is free, and the parameter. It is watched
-whether the value rises, and how many multipliers, but for the one along a free motion, are beyond the unit circle on
-the real axis at +1, at -1, and in pairs:
+The unknowns are those of shooting, the state on the orbit and a period that is free, and the parameter. States with
+quaternions or on closures are all their numbers, with what these keep, |Q|^2 = 1 and phi = 0, among the equations
+(:mod:`.charts`). It is watched whether the value rises, and how many multipliers, but for the one along a free motion,
+are beyond the unit circle on the real axis at +1, at -1, and in pairs:
 
     fold               the value is extreme, the family turns back; a multiplier is +1
     branch-point       another multiplier passes through +1: a family crosses, or symmetry is lost
@@ -81,14 +82,17 @@ class _Branch:
     ) -> None:
         self.problem, self.vary, self.between = problem, vary, between
         self.shooting = replace(shooting, section=None)
-        self.z = np.concatenate((orbit.q, orbit.qd, [orbit.period]))
         search = _with(problem, replace(self.shooting, period=orbit.period), vary, between[0])
+        self.z = np.append(search.flow.states(orbit.q[None], orbit.qd[None])[0], orbit.period)
         #: whether the period is a formula
         self.is_told = search.is_fixed and isinstance(shooting.period, str)
         self.shooting = self.shooting if self.is_told else search.shooting
         self.is_forced = search.flow.is_forced
-        self.start, self.along = self.z[:-1].copy(), search.flow.rate(0.0, self.z[:-1])
-        kept = {*search.held, *([len(self.z) - 1] if search.is_fixed else [])}
+        self.start, self.along = self.z[:-1].copy(), search.flow.full_rate(0.0, self.z[:-1])
+        # of states that are no coordinates and velocities what is held is an equation
+        self.is_flat = search.chart.is_flat
+        kept = {*(search.held if self.is_flat else ()), *([len(self.z) - 1] if search.is_fixed else [])}
+        self.is_phase_free = not (search.held or search.is_fixed)
         self.free = [k for k in range(len(self.z)) if k not in kept]
         self.size = np.full(len(self.z), 1 + np.abs(self.start).max())
         self.size[-1] = orbit.period
@@ -135,26 +139,41 @@ class _Branch:
             try:
                 self._known[key] = self._compute(u)
             except EndsEarlyError:
-                m, k = len(self.start), len(self.free)
-                rows = m + (k == m + 1)
-                self._known[key] = np.full(rows, np.nan), np.full((rows, k + 1), np.nan), np.full((m, m), np.nan)
+                search, k = self._search(self._value(u[-1])), len(self.free)
+                rows = len(self.start) + self.is_phase_free + len(self._held(search, self.start)[0])
+                nowhere = np.full((rows, k + 1), np.nan), np.full((search.chart.width, search.chart.width), np.nan)
+                self._known[key] = np.full(rows, np.nan), *nowhere
         return self._known[key]
 
     def _compute(self, u: Array) -> tuple[Array, Array, Array]:
         x, period, value = self._at(u)
-        search, m, size = self._search(value), len(x), self.size
+        search, size = self._search(value), self.size
         end, monodromy = self._ends(search, x, period)
-        period = self._period(search, period)
-        sides = [self._ends(self._search(self._value(u[-1] + side * STEP)), x, period)[0] for side in (1, -1)]
-        rows = np.column_stack([monodromy - np.eye(m), search.flow.rate(period, end)]) * size / size[0]
-        F = (end - x - search.turned) / size[0]
-        slopes = (sides[0] - sides[1]) / (2 * STEP) / size[0]
-        if len(self.free) == m + 1:  # the phase is free: no step along the motion where the family begins
+        period, along = self._period(search, period), search.chart.along(x)
+        others = [self._search(self._value(u[-1] + side * STEP)) for side in (1, -1)]
+        sides = [self._ends(other, x, period)[0] for other in others]
+        met, normals = search.chart.surface(x)
+        held, by_held = self._held(search, x)
+        rows = np.column_stack([(monodromy - np.eye(len(along))) @ along, search.flow.rate(period, end)])
+        more = np.column_stack([np.vstack((normals, by_held)), np.zeros(len(met) + len(held))])
+        rows = np.vstack((rows, more)) * size / size[0]
+        F = np.concatenate((along @ search._gap(x, end), met, held)) / size[0]
+        moved = [np.append(along @ side, other.chart.surface(x)[0]) for side, other in zip(sides, others, strict=True)]
+        slopes = np.append(moved[0] - moved[1], 0 * held) / (2 * STEP) / size[0]
+        if self.is_phase_free:  # no step along the motion where the family begins
             scale = float(np.linalg.norm(self.along)) * size[0]
             F = np.append(F, self.along @ (x - self.start) / scale)
             rows = np.vstack((rows, np.append(self.along, 0.0) * size / scale))
             slopes = np.append(slopes, 0.0)
         return F, np.column_stack((rows[:, self.free], slopes)), monodromy
+
+    def _held(self, search: Search, x: Array) -> tuple[Array, Array]:
+        """What is held less what it is at the start (k,), and its derivatives (k, size), where it is an equation."""
+        if self.is_flat or not search.held:
+            return np.zeros(0), np.zeros((0, len(x)))
+        now = np.concatenate(search.flow.split(x))
+        rows = np.array([search.flow.by_state(x, unit) for unit in np.eye(len(now))[search.held]])
+        return (now - np.concatenate(search.flow.split(self.start)))[search.held], rows
 
     def _period(self, search: Search, period: float) -> float:
         """That of the formula, if it is one."""
@@ -162,5 +181,5 @@ class _Branch:
 
     def _ends(self, search: Search, x: Array, period: float) -> tuple[Array, Array]:
         period = self._period(search, period)
-        states, slopes = search.flow.move(x, np.eye(len(x)), (0.0, period), np.array([0.0, period]))
+        states, slopes = search.flow.move(x, np.eye(search.chart.width), (0.0, period), np.array([0.0, period]))
         return states[-1], slopes[-1]

@@ -24,10 +24,8 @@ from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stabili
 from substructures.analysis.orbits.returns import Section
 from substructures.analysis.orbits.search import Search
 from substructures.documents import escape
-from substructures.errors import Fault, InvalidArgument, InvalidDocument, among
+from substructures.errors import Fault, InvalidArgument, among
 from substructures.quantities.numbers.quaternions import at_zero
-from substructures.tree.closures import require_open
-from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 DEFAULT = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-13)
@@ -64,7 +62,6 @@ def periodic_orbits(
     _check(model, shooting, vary, values if between is None else between, names)
     if vary is not None and between is not None:
         whole(steps, "steps", 2, 1000)
-        _require_flat(model)
         return orbit_family(problem, shooting, vary, _range(model, vary, values, between), steps)
     if vary is None:
         return Family(model.coordinates, None, (Search(problem, shooting).run(),))
@@ -82,16 +79,6 @@ def _range(model: Model, vary: str, values: Sequence[float], between: tuple[floa
         message = f"families are followed over parameters{among(vary, list(model.parameters))}; a state takes 'values'"
         raise InvalidArgument.at("/vary", "unknown-parameter", message)
     return first, last
-
-
-def _require_flat(model: Model) -> None:
-    """Raises InvalidDocument where states are on a surface, or have quaternions."""
-    instead = "give 'values' in place of 'between'"
-    require_chains(model.balls, instead, "/between")
-    require_open(model.closures, instead)
-    if model.velocity_constraints:
-        message = f"families of a tree with velocity constraints are not followed by arclength: {instead}"
-        raise InvalidDocument.at("/between", "has-velocity-constraints", message)
 
 
 def _family(problem: TreeProblem, shooting: Shooting, vary: str, values: Sequence[float]) -> Iterator[Orbit]:

@@ -14,9 +14,9 @@ import scipy
 
 from substructures.analysis.arguments import positive, real, whole
 from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import numbers
-from substructures.analysis.stability.meetings import with_sides
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric

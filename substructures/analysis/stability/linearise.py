@@ -12,6 +12,7 @@ import numpy as np
 
 from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.equations.formulas import inputs_of, require_moving, unsteady
+from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.given import StateArray
@@ -20,7 +21,6 @@ from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.linearise_constrained import linearise_constrained
-from substructures.analysis.stability.meetings import with_sides
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_order, input_matrix, modes, stability
 from substructures.array import Array

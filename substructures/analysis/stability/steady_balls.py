@@ -14,236 +14,158 @@ e_c x, in which the coefficients are constant (relative equilibria: J. E. Marsde
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from itertools import product
+from dataclasses import replace
 
 import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.perturbation import require_smooth
-from substructures.analysis.equations.precession import BallRequest, Turning
-from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
-from substructures.analysis.stability.equilibrium_search import (
-    NEEDS,
-    NOTHING,
-    RESIDUAL,
-    SAME,
-    BallSearch,
-    RestConditions,
-    SearchRange,
-)
+from substructures.analysis.equations.precession import BallRequest
+from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
 from substructures.analysis.stability.found_places import confirmed
-from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
-from substructures.analysis.stability.steady_result import SteadyMotion, SteadyMotions
-from substructures.analysis.stability.vibrations import Stability, modes, stability
-from substructures.array import Array
-from substructures.mechanics.state_names import resting_state
-from substructures.quantities.numbers.quaternions import by_displacements, moved_on
-from substructures.quantities.numbers.states import read_states, symbol_values
+from substructures.analysis.stability.steady_ball_search import (
+    Linearised,
+    TurningSearch,
+    described_at,
+    linearised_at,
+    places_of,
+)
+from substructures.analysis.stability.steady_families import DIFFERENCE, NEAR, SINGULAR, FamilySearch
+from substructures.analysis.stability.steady_result import BallSteadyMotion, Bifurcation, SteadyMotions
+from substructures.analysis.stability.vibrations import NEUTRAL
+from substructures.array import Array, ComplexArray
+from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.tree.model import Model
-
-Linearised = Callable[[Array, Array], Linearisation]
-CHANGES = "its disturbances do not keep their equations along the motion: there are no modes, and no verdict by them"
-#: of displacements, by which rates are differentiated, and what of a root may be imaginary
-STEP, REAL = 6e-6, 1e-7
-#: what momenta may differ from those that are given, of the largest
-MET = 1e-9
-#: of a turn, from where places that may be one are slid together [rad]
-THIRDS = (0.0, 2.1, 4.2)
-
-
-@dataclass(frozen=True, repr=False)
-class BallSteadyMotion(SteadyMotion):
-    """``q`` (m,) by ``positions``; M, D, K (n, n) are those of M dv' + D dv + K dq = 0, dq' = dv + (R + S) dq, for
-    displacements dq and all rates v. ``precession``: the rate of all about the ``axis`` of the world [rad/s], and the
-    ``angular_momentum`` about it [N m s]; ``v`` (n,): the rates, which turn with sigma_c where there is a precession.
-    """
-
-    positions: tuple[str, ...] = ()
-    v: Array = field(default_factory=lambda: np.zeros(0))
-    axis: str = ""
-    precession: float = 0.0
-    angular_momentum: float = 0.0
-
-    def __repr__(self) -> str:
-        place = ", ".join(f"{name}={x:.6g}" for name, x in zip(self.positions, self.q.tolist(), strict=True))
-        rates = ", ".join(f"{name}'={w:.6g}" for name, w in zip(self.moving, self.rates.tolist(), strict=True))
-        about = f"precession={self.precession:.6g}" if self.precession else ""
-        finding = self.message if self.stability is None else f"{self.stability.verdict}: {self.stability.reason}"
-        return f"SteadyMotion({', '.join(filter(None, (place, rates, about)))})\n{finding}"
-
-
-class _Search(BallSearch):
-    """At rates that turn with the places."""
-
-    def __init__(self, within: SearchRange, conditions: RestConditions, turning: Turning) -> None:
-        model = turning.model
-        n, self.given = model.dof, turning
-        self.v, self.second, self.D, self.M = (
-            np.zeros((1, n)),
-            np.zeros((1, n)),
-            np.zeros((1, n, n)),
-            np.zeros((1, n, n)),
-        )
-        self.g, self.L, self.at_q = np.zeros((1, n, n)), np.zeros((1, n, 3)), np.zeros((1, len(model.positions)))
-        values = _values(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
-        outputs = {"metric": self.g, "angular_momentum": self.L}
-        columns = [(list(model.positions), self.at_q)]
-        self.inertia = program_kernel(model.program.select(list(outputs))).bind(outputs, values, columns=columns)
-        super().__init__(model, within, conditions)
-
-    def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
-        """The rates and their derivatives, and what these multiply."""
-        moving = (("'", self.v), ("''", self.second))
-        named = [([f"{name}{mark}" for name in self.model.coordinates], x) for mark, x in moving]
-        return {"damping": self.D, "metric": self.M}, named
-
-    def motion(self, q: Array) -> tuple[Array, Array, Array, float]:
-        """v, S, g and Omega at a place."""
-        self.at_q[0] = q
-        self.inertia()
-        return self.given.motion(self.g[0], self.L[0])
-
-    def _ran(self, values: Mapping[str, Array]) -> dict[str, Array]:
-        v, S, _, turn = self.motion(values["q"])
-        self.v[0], self.second[0] = v, -S @ v
-        found = super()._ran(values)
-        if turn or self.given.field == "momenta":
-            # of what changes with the place: D dv/dq + M dv'/dq
-            model, ways = self.model, STEP * np.eye(self.model.dof)
-            state = model.positions, model.coordinates, model.balls
-            sides = [self._changed(moved_on(*state, values["q"], way)) for way in (*ways, *-ways)]
-            slopes = (np.array(sides[: model.dof]) - np.array(sides[model.dof :])).T / (2 * STEP)
-            by = np.hstack((self.D[0], self.M[0])) @ slopes
-            found["K"] = found["K"] + by @ by_displacements(*state, values["q"])
-        return found
-
-    def _changed(self, q: Array) -> Array:
-        """v and v' (2n,)."""
-        v, S, _, _ = self.motion(q)
-        return np.concatenate((v, -S @ v))
-
-    def _slopes(self, q: Array) -> Array:
-        """Of the largest: where momenta cannot be had they have no bound."""
-        found = super()._slopes(q)
-        return found / (np.abs(found).max(initial=0) or 1.0)
-
-    def is_singular(self, q: Array) -> bool:
-        """Whether the momenta that are given cannot be had at a place: upright all turning is spin."""
-        wanted, v = self.given.wanted, self.motion(q)[0]
-        left = np.abs(self.given.momenta(self.g[0], self.L[0]) @ v - wanted).max(initial=0)
-        return self.given.field == "momenta" and bool(left > MET * np.abs(wanted).max(initial=0))
-
-    def is_same(self, q: Array, other: Array, moving: Sequence[int]) -> bool:
-        """Also where one is the other turned far about the axis of the world, or in itself."""
-        if super().is_same(q, other, moving):
-            return True
-        (v, *_, g, turn), energy = self.motion(q), self._energy(q)
-        if not turn or abs(self._energy(other) - energy) > SAME * energy:
-            return False
-        state = self.model.positions, self.model.coordinates, self.model.balls
-        ways = [g, *(np.eye(self.model.dof)[c] for c in self.given.blocks)][:2]
-        for turns in product(THIRDS, repeat=len(ways)):
-            there = moved_on(*state, q, sum((x * way for x, way in zip(turns, ways, strict=True)), 0.0 * v))
-            if any(turns) and super().is_same(self.wound(there), other, moving):
-                return True
-        return False
-
-    def _energy(self, q: Array) -> float:
-        """Twice the kinetic one, which turning does not change."""
-        v = self.motion(q)[0]
-        return float(v @ self.g[0] @ v)
-
-    def precessions(self, q: Array) -> list[float]:
-        """All Omega that keep a place: ID is quadratic in it."""
-        rows = []
-        for turn in (-1.0, 0.0, 1.0):
-            self.given.wanted[-1] = turn
-            rows.append(self.at(q)[0])
-        square, linear = (rows[0] + rows[2]) / 2 - rows[1], (rows[2] - rows[0]) / 2
-        k = int(np.abs(np.stack((square, linear))).max(axis=0).argmax())
-        terms, found = np.array([square[k], linear[k], rows[1][k]]), []
-        terms[np.abs(terms) <= NOTHING * np.abs(terms).max()] = 0
-        for root in np.roots(terms):
-            self.given.wanted[-1] = float(root.real)
-            F, K = self.at(q)
-            is_kept = (np.abs(F) <= RESIDUAL * np.fmax(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all()
-            if abs(root.imag) <= REAL * abs(root) and is_kept:
-                found.append(float(root.real))
-        return sorted(found)
 
 
 def steady_with_balls(
-    model: Model, request: BallRequest, within: SearchRange, conditions: RestConditions, linearised: Linearised
+    model: Model,
+    request: BallRequest,
+    within: SearchRange,
+    conditions: RestConditions,
+    linearised: Linearised,
+    family: tuple[str | None, tuple[float, ...], int],
 ) -> SteadyMotions:
-    """As the ``request`` says; ``linearised``: about a state (q, v). Raises InvalidInput (``/rates/name``,
-    ``/precession``), MissingValue.
+    """As the ``request`` says; ``linearised``: about a state (q, v); ``family``: what varies between which ends, and in
+    how many steps. Raises InvalidInput (``/rates/name``, ``/precession``), MissingValue.
     """
     require_smooth(model)
+    vary, ends, steps = family
+    if vary in model.parameters:
+        conditions = replace(conditions, parameters={**conditions.parameters, str(vary): ends[0]})
+    else:
+        request = request.beginning(vary, ends[0])
     acting = [name for name, value in conditions.inputs.items() if value]
     zero = [name for name, value in conditions.parameters.items() if not value]
     integrals = first_integrals(model, acting, zero)
-    search = _Search(within, conditions, request.turning(model, integrals))
-    places = search.starts()
+    search = TurningSearch(
+        within, conditions, request.turning(model, integrals), [x for x in model.parameters if x == vary]
+    )
+    more: tuple[Bifurcation, ...] = ()
+    advice, said = "no steady motion was found: give 'starts' near one, other rates, or raise 'count'", list[str]()
     if request.precession == "any":
-        given = places[: len(places) - 1 - within.count]
-        found = [(q, turn) for q in given for turn in search.precessions(q)]
+        starts = search.starts()
+        found = [(q, turn) for q in starts[: len(starts) - 1 - within.count] for turn in search.precessions(q)]
+        some = [described_at(search, q, turn, linearised) for q, turn in found]
         advice = "no rate of precession keeps the 'starts', which 'any' takes as they are: give other places or rates"
+    elif vary is None:
+        some = [described_at(search, q, search.motion(q)[-1], linearised) for q in places_of(search)]
     else:
-        held = search.held(places)
-        moving = [a for a in range(search.n) if a not in held]
-        places[:, held] = places[0, held]
-        found = [(q, search.motion(q)[-1]) for q in search.places(places, moving)[0]]
-        advice = "no steady motion was found: give 'starts' near one, other rates, or raise 'count'"
-    motions, left_out = confirmed([_described(search, q, turn, linearised) for q, turn in found])
-    message = "" if motions else advice
-    message = "; ".join(filter(None, (message, left_out)))
-    return SteadyMotions(motions, integrals.cyclic, "momenta", message=message)
+        with np.errstate(all="ignore"):
+            some, more, said = _families(search, vary, (ends[0], ends[-1]), steps, linearised)
+    motions, left_out = confirmed(some)
+    message = "; ".join(filter(None, ("" if motions else advice, left_out, *said)))
+    return SteadyMotions(motions, integrals.cyclic, "momenta", vary, more, message=message)
 
 
-def _values(model: Model, conditions: RestConditions, q: Array, v: Array) -> dict[str, float]:
-    """Of all symbols."""
-    states = read_states(model, {"q": q, "qd": v}, None)
-    found = symbol_values(model, vars(conditions), states, NEEDS)
-    return {name: float(np.ravel(x)[0]) for name, x in found.items()}
+def _families(
+    search: TurningSearch, vary: str, ends: tuple[float, float], steps: int, linearised: Linearised
+) -> tuple[list[BallSteadyMotion], tuple[Bifurcation, ...], list[str]]:
+    """The motions of all families, their bifurcations, and what is to be said."""
+    starts = []
+    for value in ends:
+        search.put(vary, value)
+        starts.append(places_of(search))
+
+    def described(q: Array, value: float, branch: int) -> BallSteadyMotion:
+        """A point of a family."""
+        search.put(vary, value)
+        q = search.wound(q)
+        return replace(described_at(search, q, search.motion(q)[-1], linearised), value=value, branch=branch)
+
+    found = BallFamilies(search, vary, ends, steps, linearised).run(starts)
+    some = [described(q, value, k) for k, branch in enumerate(found.branches) for q, value in branch]
+    more = tuple(
+        Bifurcation(one.kind, one.reason, described(one.x, one.value, one.branch), one.least)
+        for one in found.bifurcations
+    )
+    return some, more, found.messages
 
 
-def _described(search: _Search, q: Array, turn: float, linearised: Linearised) -> BallSteadyMotion:
-    """With its linearisation."""
-    model, turning = search.model, search.given
-    if turning.axis is not None and turning.field == "rates":
-        turning.wanted[-1] = turn
-    v, S, _, turn = search.motion(q)
-    at, moving = linearised(q, v), list(turning.cyclic)
-    if turn and isinstance(at, BallLinearisation) and at.status != "failed":
-        # in axes that do not spin: dv' -> dv' - S dv
-        told = modes(at.M, at.D - at.M @ S, at.K, at.R + S)
-        at = replace(at, modes=told, D=at.D - at.M @ S, stability=stability(told, at.D, at.K, has_potential=False))
-    message = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
-    names = tuple(model.coordinates[c] for c in moving)
-    named = model.coordinates, names, model.coordinates
-    about = 0.0 if turning.axis is None else float(search.L[0][:, turning.axis] @ v)
-    judged = _judged(search, q, at.stability)
-    return BallSteadyMotion(
-        *named, q, v[moving], (at.M @ v)[moving], at.M, at.D, at.K, at.qdd + S @ v, at.modes, judged, message,
-        positions=model.positions, v=v, axis="" if turning.axis is None else "xyz"[turning.axis], precession=turn,
-        angular_momentum=about,
-    )  # fmt: skip
+class BallFamilies(FamilySearch[TurningSearch]):
+    """F: ID over its units, |Q|^2 = 1, and what keeps a family from turning along its motions or shifting where nothing
+    depends on it. On the way the sign of det P F_q is watched, P: rows that are independent where the family begins.
+    """
 
+    def __init__(
+        self, search: TurningSearch, vary: str, between: tuple[float, float], steps: int, linearised: Linearised
+    ) -> None:
+        super().__init__(search, vary, between, steps)
+        self.linearised = linearised
+        self.begun, self.still, self.rows = np.zeros(0), np.zeros((0, search.n)), np.zeros((0, 0))
 
-def _judged(search: _Search, q: Array, judged: Stability | None) -> Stability | None:
-    """By the energy, where eigenvalues leave it open."""
-    model, turning, conditions = search.model, search.given, search.conditions
-    if judged is None or judged.verdict != "undecided" or any(conditions.inputs.values()):
-        return judged
-    v, _, g, turn = search.motion(q)
-    values, moving = _values(model, conditions, q, v), list(turning.cyclic)
-    shifts = shifts_along(model, values, np.vstack((np.eye(model.dof)[moving], *([g] if turn else []))))
-    for k, unit in enumerate(np.eye(len(moving))):
-        # rates turn in the axes of a body that is turned in itself
-        shifts[k, len(model.positions) :] = -turning.spin(unit) @ v
-    zero = [name for name, value in conditions.parameters.items() if not value]
-    reason = bounded_by_integrals(model, values, shifts, zero)
-    return judged if reason is None else Stability("stable", reason)
+    def _follow(self, u: Array, direction: Array) -> None:
+        search, self.begun = self.search, self._put(u)
+        model, g = search.model, search.motion(self.begun)[2]
+        ways = [*(np.eye(model.dof)[c] for c in search.given.cyclic), *([g] if search.given.axis is not None else [])]
+        state = model.positions, model.coordinates, model.balls
+        displaced = by_displacements(*state, self.begun)
+        shifts = np.array(ways).reshape(-1, model.dof) @ np.linalg.pinv(displaced).T
+        self.still = np.vstack((shifts, np.eye(search.n)[list(search.resting)]))
+        self.rows = np.linalg.svd(self._equations(u)[1][:, :-1])[0][:, : search.n].T
+        super()._follow(u, direction)
+
+    def _all(self, q: Array) -> tuple[Array, Array]:
+        """F and F_q."""
+        F, K = self.search.at(q)
+        turns = [(q[some] @ q[some] - 1) / 2 for some in self.search.quaternions]
+        normals = np.zeros((len(turns), len(q)))
+        for row, some in zip(normals, self.search.quaternions, strict=True):
+            row[some] = q[some]
+        return np.concatenate((F, turns, self.still @ (q - self.begun))), np.vstack((K, normals, self.still))
+
+    def _equations(self, u: Array) -> tuple[Array, Array]:
+        last = DIFFERENCE * np.eye(len(u))[-1]
+        above, below = (self._all(self._put(u + side * last))[0] for side in (1, -1))
+        q = self._put(u)
+        F, J = self._all(q)
+        J = np.nan_to_num(np.column_stack((J * self.search.length, (above - below) / (2 * DIFFERENCE))))
+        return (np.full_like(F, np.nan) if self.search.is_singular(q) else F), J
+
+    def _signature(self, u: Array) -> tuple[int, ...]:
+        F, J = self._equations(u)
+        eigenvalues = self._eigenvalues(u)
+        if not (np.isfinite(F).all() and len(eigenvalues)):
+            return SINGULAR
+        growing = int((eigenvalues.real > NEUTRAL * np.abs(eigenvalues).max(initial=0)).sum())
+        return int(np.linalg.slogdet(self.rows @ J[:, :-1])[0] < 0), 0, growing
+
+    def _eigenvalues(self, u: Array) -> ComplexArray:
+        q = self._put(u)
+        at = linearised_at(self.search, self.search.wound(q), self.linearised)
+        upper = [mode.eigenvalue for mode in at.modes]
+        return np.array([*upper, *(z.conjugate() for z in upper if z.imag)], dtype=np.complex128)
+
+    def _is_at(self, u: Array, other: Array) -> bool:
+        """Also where one is turned along its motion."""
+        if abs(float(u[-1] - other[-1])) >= NEAR:
+            return False
+        q = self._put(u)
+        moving = [a for a in range(self.search.n) if a not in self.search.resting]
+        return self.search.is_same(self.search.wound(q), self.search.wound(self._x(other)), moving)
+
+    def _least(self, u: Array) -> float:
+        h, n, q = DIFFERENCE * self.search.length, self.search.n, self._put(u)
+        sides = [[self._all(q + side * h * e)[0] for e in np.eye(n)] for side in (1, -1)]
+        sizes = np.linalg.svd((np.array(sides[0]) - sides[1]) / (2 * DIFFERENCE), compute_uv=False)
+        return float(sizes[n - 1] / sizes.max(initial=1))

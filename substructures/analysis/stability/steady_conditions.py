@@ -93,13 +93,14 @@ def require_rates(rates: object, momenta: object, held: Held) -> None:
         raise InvalidArgument(faults)
 
 
-def require_of_balls(request: BallRequest, others: Mapping[str, object], held: Held) -> None:
+def require_of_balls(request: BallRequest, held: Held, vary: str | None) -> None:
     """Raises InvalidArgument for what is not known with ball joints."""
-    message = "is not for trees with ball and floating joints, whose rates or momenta are given: leave it out"
-    given = {**others, "held": None if held == "momenta" else held}
-    faults = [Fault(f"/{name}", "not-supported", f"'{name}' {message}") for name, x in given.items() if x is not None]
-    if faults:
-        raise InvalidArgument(faults)
+    if vary is not None and request.precession == "any":
+        message = "'any' is of single places: give a number, or let 'precession' vary"
+        raise InvalidArgument.at("/precession", "not-supported", message)
+    if held != "momenta":
+        message = "'held' is not for trees with ball and floating joints, on which nothing acts: leave it out"
+        raise InvalidArgument.at("/held", "not-supported", message)
     if (request.rates is None) == (request.momenta is None):
         message = "give either 'rates' or 'momenta', by name; those that are not named are 0"
         raise InvalidArgument.at("/rates", "rates-or-momenta", message)

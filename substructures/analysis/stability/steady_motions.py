@@ -18,14 +18,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import partial
-from typing import Any
 
 import numpy as np
 
 from substructures.analysis.arguments import one_of, real, whole
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.formulas import require_moving
-from substructures.analysis.equations.precession import BallRequest, Precession
+from substructures.analysis.equations.precession import TURNING, BallRequest, Precession
 from substructures.analysis.given import numbers
 from substructures.analysis.stability.constrained_families import constrained_motions
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
@@ -109,7 +108,7 @@ def steady_motions(
     axis of their joint (the spin of a top), and of wheels. ``precession``: the rate at which all turns about the
     vertical [rad/s], or "any": all those with which the ``starts``, as they are, are kept (of Lagrange's top at a tilt
     t and the given rate w the roots of A cos t p^2 - C w p + m g l = 0); among ``momenta`` it is
-    ``angular_momentum.z`` [N m s].
+    ``angular_momentum.z`` [N m s]. Each may ``vary``.
 
     In reduced systems (``ignored``) all others keep still: ``rates`` {}, ``vary`` a parameter of the momenta. With
     velocity constraints of the tree all coordinates keep still but those on which nothing depends (the place on a
@@ -138,11 +137,10 @@ def steady_motions(
             None if momenta is None else numbers(momenta, "momenta"),
             precession if precession in (None, "any") else real(precession, "/precession"),
         )
-        require_of_balls(request, {"vary": vary, "between": between}, held)
-        conditions = _conditions(model, parameters, inputs)
-        within, about = SearchRange(starts, count, reach, seed), {"parameters": parameters, "inputs": inputs}
-        linearised = partial(_linearised, model, about)
-        return steady_with_balls(model, request, within, conditions, linearised)
+        require_of_balls(request, held, vary)
+        about = SearchRange(starts, count, reach, seed), _conditions(model, parameters, inputs)
+        family = vary, ends_of(model, vary, between, TURNING), steps
+        return steady_with_balls(model, request, *about, partial(_linearised, model), family)
     require_no_precession(precession)
     ends = ends_of(model, vary, between)
     given, field = given_of(rates, momenta, held)
@@ -177,8 +175,8 @@ def _conditions(
     return RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
 
 
-def _linearised(model: Model, about: Mapping[str, Any], q: Array, v: Array) -> Linearisation:
-    return linearise(model, q, qd=v, **about)
+def _linearised(model: Model, about: RestConditions, q: Array, v: Array) -> Linearisation:
+    return linearise(model, q, qd=v, parameters=about.parameters, inputs=about.inputs)
 
 
 def _singular(count: int) -> str:

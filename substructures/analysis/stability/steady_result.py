@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Literal
+
+import numpy as np
 
 from substructures.analysis.stability.found_places import FoundPlaces, still
 from substructures.analysis.stability.vibrations import Mode, Stability
@@ -69,6 +71,27 @@ class SteadyMotion:
             why = self.message or "nothing is left to move"
             return Check.left_out(name, "zero", why, needed=self.stability is None)
         return still(name, "what is still is not accelerated", self.qdd, self.M, self.K)
+
+
+@dataclass(frozen=True, repr=False)
+class BallSteadyMotion(SteadyMotion):
+    """``q`` (m,) by ``positions``; M, D, K (n, n) are those of M dv' + D dv + K dq = 0, dq' = dv + (R + S) dq, for
+    displacements dq and all rates v. ``precession``: the rate of all about the ``axis`` of the world [rad/s], and the
+    ``angular_momentum`` about it [N m s]; ``v`` (n,): the rates, which turn with sigma_c where there is a precession.
+    """
+
+    positions: tuple[str, ...] = ()
+    v: Array = field(default_factory=lambda: np.zeros(0))
+    axis: str = ""
+    precession: float = 0.0
+    angular_momentum: float = 0.0
+
+    def __repr__(self) -> str:
+        place = ", ".join(f"{name}={x:.6g}" for name, x in zip(self.positions, self.q.tolist(), strict=True))
+        rates = ", ".join(f"{name}'={w:.6g}" for name, w in zip(self.moving, self.rates.tolist(), strict=True))
+        about = f"precession={self.precession:.6g}" if self.precession else ""
+        finding = self.message if self.stability is None else f"{self.stability.verdict}: {self.stability.reason}"
+        return f"SteadyMotion({', '.join(filter(None, (place, rates, about)))})\n{finding}"
 
 
 @dataclass(frozen=True)

@@ -1,0 +1,210 @@
+"""The search for steady motions with ball joints, and what is told of each (see :mod:`.steady_balls`)."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+
+from substructures.analysis.equations.kernels import program_kernel
+from substructures.analysis.equations.precession import Turning
+from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
+from substructures.analysis.stability.equilibrium_search import (
+    NEEDS,
+    NOTHING,
+    RESIDUAL,
+    SAME,
+    BallSearch,
+    RestConditions,
+    SearchRange,
+)
+from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
+from substructures.analysis.stability.steady_result import BallSteadyMotion
+from substructures.analysis.stability.vibrations import Stability, modes, stability
+from substructures.array import Array
+from substructures.mechanics.state_names import resting_state
+from substructures.quantities.numbers.quaternions import by_displacements, moved_on
+from substructures.quantities.numbers.states import read_states, symbol_values
+from substructures.tree.model import Model
+
+Linearised = Callable[[RestConditions, Array, Array], Linearisation]
+CHANGES = "its disturbances do not keep their equations along the motion: there are no modes, and no verdict by them"
+#: of displacements, by which rates are differentiated, and what of a root may be imaginary
+STEP, REAL = 6e-6, 1e-7
+#: what momenta may differ from those that are given, of the largest
+MET = 1e-9
+#: of a turn, from where places that may be one are slid together [rad]
+THIRDS = (0.0, 2.1, 4.2)
+
+
+class TurningSearch(BallSearch):
+    """At rates that turn with the places. ``resting``: numbers of q on which nothing depends, where these are known."""
+
+    resting: Sequence[int] = ()
+
+    def __init__(
+        self, within: SearchRange, conditions: RestConditions, turning: Turning, vary: Sequence[str] = ()
+    ) -> None:
+        """``vary``: a parameter that has other values later, if there is one."""
+        model = turning.model
+        n, self.given, self.varied = model.dof, turning, (list(vary), np.zeros((1, len(vary))))
+        self.varied[1][0] = [conditions.parameters.get(name, 0.0) for name in vary]
+        self.v, self.second = np.zeros((1, n)), np.zeros((1, n))
+        self.D, self.M = np.zeros((1, n, n)), np.zeros((1, n, n))
+        self.g, self.L, self.at_q = np.zeros((1, n, n)), np.zeros((1, n, 3)), np.zeros((1, len(model.positions)))
+        values = _values(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
+        outputs = {"metric": self.g, "angular_momentum": self.L}
+        columns = [(list(model.positions), self.at_q), self.varied]
+        self.inertia = program_kernel(model.program.select(list(outputs))).bind(outputs, values, columns=columns)
+        super().__init__(model, within, conditions)
+
+    def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
+        """The rates and their derivatives, and what these multiply."""
+        moving = (("'", self.v), ("''", self.second))
+        named = [([f"{name}{mark}" for name in self.model.coordinates], x) for mark, x in moving]
+        return {"damping": self.D, "metric": self.M}, [*named, self.varied]
+
+    def put(self, name: str, value: float) -> None:
+        """Another value of a parameter, or of a rate or momentum that is given."""
+        if name in self.varied[0]:
+            self.varied[1][0] = value
+            self.conditions = replace(self.conditions, parameters={**self.conditions.parameters, name: value})
+        else:
+            cyclic = [self.model.coordinates[c] for c in self.given.cyclic]
+            self.given.wanted[cyclic.index(name) if name in cyclic else -1] = value
+
+    def motion(self, q: Array) -> tuple[Array, Array, Array, float]:
+        """v, S, g and Omega at a place."""
+        self.at_q[0] = q
+        self.inertia()
+        return self.given.motion(self.g[0], self.L[0])
+
+    def _ran(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        v, S, _, turn = self.motion(values["q"])
+        self.v[0], self.second[0] = v, -S @ v
+        found = super()._ran(values)
+        if turn or self.given.field == "momenta":
+            # of what changes with the place: D dv/dq + M dv'/dq
+            model, ways = self.model, STEP * np.eye(self.model.dof)
+            state = model.positions, model.coordinates, model.balls
+            sides = [self._changed(moved_on(*state, values["q"], way)) for way in (*ways, *-ways)]
+            slopes = (np.array(sides[: model.dof]) - np.array(sides[model.dof :])).T / (2 * STEP)
+            by = np.hstack((self.D[0], self.M[0])) @ slopes
+            found["K"] = found["K"] + by @ by_displacements(*state, values["q"])
+        return found
+
+    def _changed(self, q: Array) -> Array:
+        """v and v' (2n,)."""
+        v, S, _, _ = self.motion(q)
+        return np.concatenate((v, -S @ v))
+
+    def _slopes(self, q: Array) -> Array:
+        """Of the largest: where momenta cannot be had they have no bound."""
+        found = super()._slopes(q)
+        return found / (np.abs(found).max(initial=0) or 1.0)
+
+    def is_singular(self, q: Array) -> bool:
+        """Whether the momenta that are given cannot be had at a place: upright all turning is spin."""
+        wanted, v = self.given.wanted, self.motion(q)[0]
+        left = np.abs(self.given.momenta(self.g[0], self.L[0]) @ v - wanted).max(initial=0)
+        return self.given.field == "momenta" and bool(left > MET * np.abs(wanted).max(initial=0))
+
+    def is_same(self, q: Array, other: Array, moving: Sequence[int]) -> bool:
+        """Also where one is the other turned far about the axis of the world, or in itself."""
+        if super().is_same(q, other, moving):
+            return True
+        (v, *_, g, turn), energy = self.motion(q), self._energy(q)
+        if not turn or abs(self._energy(other) - energy) > SAME * energy:
+            return False
+        state = self.model.positions, self.model.coordinates, self.model.balls
+        ways = [g, *(np.eye(self.model.dof)[c] for c in self.given.blocks)][:2]
+        for turns in product(THIRDS, repeat=len(ways)):
+            there = moved_on(*state, q, sum((x * way for x, way in zip(turns, ways, strict=True)), 0.0 * v))
+            if any(turns) and super().is_same(self.wound(there), other, moving):
+                return True
+        return False
+
+    def _energy(self, q: Array) -> float:
+        """Twice the kinetic one, which turning does not change."""
+        v = self.motion(q)[0]
+        return float(v @ self.g[0] @ v)
+
+    def precessions(self, q: Array) -> list[float]:
+        """All Omega that keep a place: ID is quadratic in it."""
+        rows = []
+        for turn in (-1.0, 0.0, 1.0):
+            self.given.wanted[-1] = turn
+            rows.append(self.at(q)[0])
+        square, linear = (rows[0] + rows[2]) / 2 - rows[1], (rows[2] - rows[0]) / 2
+        k = int(np.abs(np.stack((square, linear))).max(axis=0).argmax())
+        terms, found = np.array([square[k], linear[k], rows[1][k]]), []
+        terms[np.abs(terms) <= NOTHING * np.abs(terms).max()] = 0
+        for root in np.roots(terms):
+            self.given.wanted[-1] = float(root.real)
+            F, K = self.at(q)
+            is_kept = (np.abs(F) <= RESIDUAL * np.fmax(1.0, np.abs(K * self.length).max(axis=1, initial=0))).all()
+            if abs(root.imag) <= REAL * abs(root) and is_kept:
+                found.append(float(root.real))
+        return sorted(found)
+
+
+def places_of(search: TurningSearch) -> list[Array]:
+    """Those that the search finds."""
+    starts = search.starts()
+    search.resting = search.held(starts)
+    starts[:, search.resting] = starts[0, search.resting]
+    return search.places(starts, [a for a in range(search.n) if a not in search.resting])[0]
+
+
+def _values(model: Model, conditions: RestConditions, q: Array, v: Array) -> dict[str, float]:
+    """Of all symbols."""
+    states = read_states(model, {"q": q, "qd": v}, None)
+    found = symbol_values(model, vars(conditions), states, NEEDS)
+    return {name: float(np.ravel(x)[0]) for name, x in found.items()}
+
+
+def linearised_at(search: TurningSearch, q: Array, linearised: Linearised) -> Linearisation:
+    """In axes that do not spin: dv' -> dv' - S dv."""
+    v, S, _, turn = search.motion(q)
+    at = linearised(search.conditions, q, v)
+    if not (turn and isinstance(at, BallLinearisation) and at.status != "failed"):
+        return at
+    told, D = modes(at.M, at.D - at.M @ S, at.K, at.R + S), at.D - at.M @ S
+    return replace(at, modes=told, D=D, stability=stability(told, D, at.K, has_potential=False))
+
+
+def described_at(search: TurningSearch, q: Array, turn: float, linearised: Linearised) -> BallSteadyMotion:
+    """With its linearisation."""
+    model, turning = search.model, search.given
+    if turning.axis is not None and turning.field == "rates":
+        turning.wanted[-1] = turn
+    v, S, _, turn = search.motion(q)
+    at, moving = linearised_at(search, q, linearised), list(turning.cyclic)
+    message = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
+    names = tuple(model.coordinates[c] for c in moving)
+    named = model.coordinates, names, model.coordinates
+    about = 0.0 if turning.axis is None else float(search.L[0][:, turning.axis] @ v)
+    judged = _judged(search, q, at.stability)
+    return BallSteadyMotion(
+        *named, q, v[moving], (at.M @ v)[moving], at.M, at.D, at.K, at.qdd + S @ v, at.modes, judged, message,
+        positions=model.positions, v=v, axis="" if turning.axis is None else "xyz"[turning.axis], precession=turn,
+        angular_momentum=about,
+    )  # fmt: skip
+
+
+def _judged(search: TurningSearch, q: Array, judged: Stability | None) -> Stability | None:
+    """By the energy, where eigenvalues leave it open."""
+    model, turning, conditions = search.model, search.given, search.conditions
+    if judged is None or judged.verdict != "undecided" or any(conditions.inputs.values()):
+        return judged
+    v, _, g, turn = search.motion(q)
+    values, moving = _values(model, conditions, q, v), list(turning.cyclic)
+    shifts = shifts_along(model, values, np.vstack((np.eye(model.dof)[moving], *([g] if turn else []))))
+    for k, unit in enumerate(np.eye(len(moving))):
+        # rates turn in the axes of a body that is turned in itself
+        shifts[k, len(model.positions) :] = -turning.spin(unit) @ v
+    zero = [name for name, value in conditions.parameters.items() if not value]
+    reason = bounded_by_integrals(model, values, shifts, zero)
+    return judged if reason is None else Stability("stable", reason)
