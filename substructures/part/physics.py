@@ -38,6 +38,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
     warnings = []
     for name, check in checks.items():
         needed = {p.symbols[p.operations[k][1]].name for k in p.reachable([name]) if p.operations[k][0] == "sym"}
+        # without a default for each of its symbols a value says nothing about the body
         if not needed <= defaults.keys():
             continue
         problem = _problem(check, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
@@ -45,6 +46,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
             continue
         pointer = f"/bodies/{check.body}/{check.field}"
         text = f"body '{m.definition.bodies[check.body].name}': {problem[1]}"
+        # what holds symbols may have other values in trees: only numbers alone are impossible for good
         if needed:
             warnings.append({"pointer": pointer, "code": problem[0], "message": f"{text} at the default values"})
         else:
@@ -90,6 +92,7 @@ def _impossible_tensor(binet: Array) -> PhysicsFault | None:
     """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
     # J_i = (Theta_j + Theta_k - Theta_i) / 2 >= 0,   Theta_i = sum of all J - J_i
     eigenvalues = np.linalg.eigvalsh(binet)
+    # 0 is right of thin discs and rods, and rounding may be below it; without any mass all of them are 0
     if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
         return None
     moments: Iterable[float] = np.sort(eigenvalues.sum() - eigenvalues)
