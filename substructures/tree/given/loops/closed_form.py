@@ -78,7 +78,9 @@ class _Solver:
         self.start = {q: self._constant(x) for q, x in self.definition.start.items()}
         self.numbers = {q: self.start.get(q, 0.0) for q in self.found.independent}
         self.numbers |= {
-            name: 1.0 if p.value is None else self._constant(p.value) for name, p in self.definition.parameters.items()
+            # branches are told apart at numbers: 1 for what has no default
+            name: 1.0 if p.value is None else self._constant(p.value)
+            for name, p in self.definition.parameters.items()
         }
 
     def _constant(self, given: Any) -> float:
@@ -94,6 +96,7 @@ class _Solver:
                 except NotPlanar as reason:
                     why = why or f"the closure '{closure.name}': {reason}"
                 else:
+                    # from the first one again: this one may bring an earlier one down to three unknown motions
                     waiting.remove(closure)
                     why = ""
                     break
@@ -113,10 +116,12 @@ class _Solver:
             found = [self._known(loop, each) for each in solutions(loop.motions, loop.K, loop.known)]
         except (ZeroDivisionError, ValueError):
             raise NotPlanar("points that have to be apart coincide") from None
+        # chosen at numbers, the branch is that of all positions that are reached without a dead centre
         gaps = [self._gap(each) for each in found]
         best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
         if math.isnan(gaps[best]):
             raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
+        # both are 0 where the start is a dead centre: the first is taken then, of a parallelogram the one uncrossed
         if len(gaps) > 1 and abs(gaps[0] - gaps[1]) < SAME * max(gaps):
             raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
         values, angles = found[best]
@@ -139,6 +144,7 @@ class _Solver:
         for k in range(4):
             angle = along + graph.pi * k / 2
             if (cos(angle) - own[0][0]).is_zero and (sin(angle) - own[0][1]).is_zero:
+                # from now on cos and sin of it are those of independent angles, without quotients and roots
                 self.found.sums[name] = angle
                 self.found.angles = {s: a for s, a in self.found.angles.items() if name not in dict(s)}
 
@@ -166,6 +172,7 @@ class _Solver:
         graph = self.graph
         at = Scope(graph).read(self.definition.start.get(name, 0), "", no_names)
         c, s = times((x[0], x[1] * sign), (cos(at), -sin(at)))
+        # the jump of atan2 is half a turn away from the start
         return at + graph.function("atan2", s, c)
 
     def _numbers(self, values: Mapping[str, Expr]) -> dict[str, float]:
@@ -194,6 +201,7 @@ class _Solver:
         def solved(columns: Sequence[Expr]) -> list[Expr]:
             """-phi_z^-1 x, as a number where it is one."""
             found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in back]
+            # the ratio of bars that stay parallel is a number on closed positions alone: z(y) is put in to see it
             return [w if w.is_number else x for x, w in zip(found, self.found.put_in(found), strict=True)]
 
         others = list(enumerate(names))[len(z) :]
@@ -201,6 +209,7 @@ class _Solver:
             pushed = [graph.sum(row[k] * N[q][j] for k, q in others if j in N[q]) for row in slopes]
             for q, x in zip(z, solved(pushed), strict=True):
                 N.setdefault(q, {}).update({} if x.is_zero else {j: x})
+        # after all N: phi_ab N_a N_b runs over the unknown coordinates, too
         for j, k in combinations_with_replacement(y, 2):
             terms = []
             for row, bend in zip(slopes, bent, strict=True):
