@@ -175,6 +175,8 @@ def _order(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> list[int]
             scope.fault(f"/instances/{i}/at", *found)
     order: list[int] = []
     while ready:
+        # the first in the document whose host is there: coordinates, and digests with them, have this order;
+        # publishing.published finds the same
         i = min(ready)
         ready.remove(i)
         order.append(i)
@@ -405,6 +407,7 @@ class Reading:
             yield self.cut(closure, f"/closures/{i}")
         index = {instance.name: i for i, instance in enumerate(self.spec.instances)}
         for name in self.place:
+            # what is reduced has its loops in the formulas
             for own in () if name in self.reduced else self.parts[name].definition.closures:
                 yield self.cut(own, f"/instances/{index[name]}", f"{name}.")
 

@@ -84,6 +84,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     document["ports"] = list(_ports(parts, names, wanted.ports))
     for load in spec.loads:
         document["loads"].append(load_of_part(load, names))
+    # in this order: closures may need frames of ports, and parameters are those that all of it names
     document["closures"] = list(_closures(spec, parts, names))
     document |= _reduction(spec, parts, names)
     document["bodies"] += names.frames
@@ -104,6 +105,7 @@ def _hosts_first(spec: TreeSpec) -> Iterator[Instance]:
     """The instances in the order of the coordinates of the tree."""
     waiting, done = list(spec.instances), {"world"}
     while waiting:
+        # as tree.assembly orders them: the first of the document whose host is there
         ready = next(each for each in waiting if each.at.partition(".")[0] in done)
         waiting.remove(ready)
         done.add(ready.name)
