@@ -33,6 +33,8 @@ from substructures.tree.given.loops.triangle import Complex, Solution, solutions
 
 #: relative difference of distances from the start that tells no branch
 SAME = 1e-6
+#: relative difference of two positions that is none: S = sqrt(S^2), of which rounding leaves the root of 1e-16
+MEETING = 1e-7
 
 
 @dataclass(frozen=True)
@@ -117,13 +119,7 @@ class _Solver:
         except (ZeroDivisionError, ValueError):
             raise NotPlanar("points that have to be apart coincide") from None
         # chosen at numbers, the branch is that of all positions that are reached without a dead centre
-        gaps = [self._gap(each) for each in found]
-        best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
-        if math.isnan(gaps[best]):
-            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
-        # both are 0 where the start is a dead centre: the first is taken then, of a parallelogram the one uncrossed
-        if len(gaps) > 1 and abs(gaps[0] - gaps[1]) < SAME * max(gaps):
-            raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+        best = self._nearest([self._numbers(values) for values, _ in found])
         values, angles = found[best]
         self.found.branches.append(best)
         self.numbers |= self._numbers(values)
@@ -183,10 +179,23 @@ class _Solver:
         numbers = {symbol.name: self.numbers.get(symbol.name, 1.0) for symbol in made.symbols}
         return dict(zip(names, map(float, interpret(made, numbers)["v"]), strict=True))
 
-    def _gap(self, found: tuple[dict[str, Expr], dict[Sum, Complex]]) -> float:
-        """How far a solution is from the start; nan where there is none."""
-        numbers = self._numbers(found[0])
-        return sum(abs(x - self.start.get(name, 0.0)) for name, x in numbers.items())
+    def _gap(self, position: Mapping[str, float]) -> float:
+        """How far a position is from the start; nan where there is none."""
+        return sum(abs(x - self.start.get(name, 0.0)) for name, x in position.items())
+
+    def _nearest(self, positions: Sequence[Mapping[str, float]]) -> int:
+        """Which one of one or two positions, nan where there is none, is nearest to the start. Raises NotPlanar."""
+        gaps = [self._gap(each) for each in positions]
+        best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
+        if math.isnan(gaps[best]):
+            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
+        if len(positions) > 1:
+            if abs(gaps[0] - gaps[1]) < SAME * max(gaps):
+                raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+            # both branches go through it, and N has no value there: the start tells neither of them
+            if _meet(*(list(each.values()) for each in positions)):
+                raise NotPlanar("its two positions meet at the start, a dead centre: give one away from it")
+        return best
 
     def _move(self, loop: Loop) -> None:
         """N and H of the unknown coordinates of a loop."""
@@ -223,6 +232,10 @@ class _Solver:
                 terms.append(graph.sum(along))
             for q, x in zip(z, solved(terms), strict=True):
                 H.setdefault(q, {}).update({} if x.is_zero else {(j, k): x})
+
+
+def _meet(one: Sequence[float], other: Sequence[float]) -> bool:
+    return sum(abs(x - y) for x, y in zip(one, other, strict=True)) <= MEETING * sum(map(abs, (*one, *other)))
 
 
 def inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:
