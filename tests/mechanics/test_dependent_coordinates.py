@@ -11,7 +11,7 @@ import pytest
 from closed_trees import tree_model
 from mechanics.reduced_parts import PARTS
 
-from substructures import Event, Model, Outputs, evaluate, simulate
+from substructures import Event, InvalidDocument, Model, Outputs, evaluate, simulate
 from substructures.analysis.closed.reduced import reduced_equations
 
 NAMES = {each["name"]: each for each in PARTS}
@@ -75,6 +75,16 @@ def test_of_driven_linkages_they_move_with_the_time() -> None:
     )
     found = evaluate(model, "dependent", [], t=0.4)["dependent"]
     np.testing.assert_allclose(found, evaluate(alone("slider-pin"), "dependent", [1.1])["dependent"], rtol=1e-14)
+
+
+def test_to_drive_one_is_refused_with_a_way_out() -> None:
+    dependent = alone("slider-pin").dependent[0]
+    tree = {"instances": [{"name": "x", "substructure": "slider-pin"}], "driven": {dependent: "2*t"}}
+    with pytest.raises(InvalidDocument) as raised:
+        tree_model(tree, {"slider-pin": NAMES["slider-pin"]})
+    (fault,) = raised.value.faults
+    assert (fault.pointer, fault.code) == (f"/driven/{dependent}", "unknown-coordinate")
+    assert "give 'x' the level 'full'" in fault.message
 
 
 def test_no_branch_is_chosen_where_two_meet() -> None:

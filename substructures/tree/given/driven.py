@@ -101,6 +101,9 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
     given = reading.spec.driven
     for name in given.keys() - names.keys():
         message = f"there is no coordinate '{name}'{among(name, names)}"
+        if name in assembly.dependent.values:
+            message = f"'{name}' follows from the independent coordinates of its loops: drive one of these, or "
+            message += f"give '{name.partition('.')[0]}' the level 'full'"
         scope.fault(f"/driven/{escape(name)}", "unknown-coordinate", message)
     found: dict[str, Given] = {}
     for name in driven_names(assembly):
