@@ -24,7 +24,6 @@ from substructures.tree.publishing.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
 WORDS = frozenset(("name", "parent", "type", "coordinate", "velocities", "about", "body", "frame", "axes"))
-NOWHERE: tuple[dict[str, Any], ...] = ({}, {"position": [0, 0, 0]})
 
 
 @dataclass(frozen=True, slots=True)
@@ -123,7 +122,7 @@ def _seat(instance: Instance, names: PartNames) -> list[dict[str, Any]]:
     """
     seat = names.frame(instance.at)
     placement = instance.placement.model_dump(exclude_defaults=True)
-    if placement in NOWHERE or not placement:
+    if not placement:
         names.bases[instance.name] = seat
         return names.new_frames()
     placed = names.expressions("", placement, f"/instances/{instance.name}/placement")
