@@ -14,7 +14,8 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.linear3 import dense
-from substructures.part.mass import ARMATURE
+from substructures.part.definition import Definition
+from substructures.part.mass import ARMATURE, number_of
 from substructures.part.mechanism import Mechanism
 
 PhysicsFault = tuple[str, str]  #: code, message
@@ -52,7 +53,18 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
         else:
             m.scope.fault(pointer, problem[0], text)
     m.scope.finish()
-    return warnings
+    return [*warnings, *_reversed_limits(m.definition, defaults)]
+
+
+def _reversed_limits(definition: Definition, defaults: Mapping[str, float]) -> Iterator[dict[str, str]]:
+    """Limits between which there is no value, at default values: stops would push from both sides at once."""
+    for i, body in enumerate(definition.bodies):
+        given = body.joint.limits or ()
+        for pair in given if given and isinstance(given[0], tuple) else (given,) if given else ():
+            low, high = (number_of(x, defaults) for x in pair)
+            if low is not None and high is not None and low > high:
+                text = f"body '{body.name}': the lower limit {low:g} is above the upper one {high:g}"
+                yield {"pointer": f"/bodies/{i}/joint/limits", "code": "limits-reversed", "message": text}
 
 
 def _checks(m: Mechanism) -> Iterator[_Check]:
