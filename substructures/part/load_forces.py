@@ -42,6 +42,7 @@ def load_forces(definition: Definition) -> Program:
         """Those with a load alone."""
         if not isinstance(load, FrictionLoad):
             return still
+        # in the sum it is a law of its joint, which alone has one here
         of = names.index(load.coordinate)
         return (*still[:of], replace(still[of], friction=m.laws[of].friction), *still[of + 1 :])
 

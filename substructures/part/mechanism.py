@@ -182,6 +182,7 @@ class _Builder:
         inputs = {name: si_unit(each.unit) for name, each in definition.inputs.items()}
         names = [entry.coordinate for entry in layout.joints]
         self.relations = read_relations(definition.relations, layout.before, names, scope)
+        # names of all joints before the first one is added: its laws may depend on coordinates further out
         kinds = {names[a]: layout.joints[a].s for a in layout.movers}
         moved = {
             names[a]: (mu * scope.graph.symbol(names[of]) + delta, mu, names[of])

@@ -279,6 +279,7 @@ def _formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wanted:
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
+        # loops, then motions, then momenta: cyclic is what is so in all that the others leave
         loaded = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
         outputs = ignore(assembly, tuple(all_coordinates(assembly)), loaded)
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
