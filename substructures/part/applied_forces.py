@@ -57,10 +57,11 @@ def velocity(m: Mechanism, a: int) -> Expr:
 
 
 def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr], Expr]:
-    """(generalised forces of joint laws, actuators, potentials and what acts between frames; potential energy):
-    notation.md, section 7.
+    """Q_a of joint laws, actuators, potentials and what acts between frames, by joint [N m, N], and potential energy
+    [J]: notation.md, section 7.
 
-    The potential energy is that of as much of these forces as has one: -d_a V is a part of Q_a, exactly.
+    The potential energy is that of as much of these forces as has one: -d_a V is a part of Q_a, exactly. Raises
+    InvalidDocument for faults of the loads.
     """
     zero, names = m.graph.zero, OwnNames(m, k)
     forces = [zero for _ in m.joints]
@@ -69,7 +70,9 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
     potential = zero
     for load in loads.joints:
         forces[load.a] = forces[load.a] + load.force
+        # along rates, which are no derivatives of coordinates, a force is no gradient
         given[load.a] += [] if m.topology.joints[load.a].is_rate else load.terms
+    # all is by joint here, of which one that a relation moves has laws, but no coordinate and so no actuator
     movers = set(m.topology.movers)
     for a, entry in enumerate(m.topology.joints):
         stretch = m.positions[a] - m.laws[a].rest
@@ -80,6 +83,7 @@ def applied_forces(m: Mechanism, loads: Loads, k: Kinematics) -> tuple[list[Expr
     for law in loads.laws:
         law.acts(names, found)
     m.scope.finish()
+    # Q_i = N_ai Q_a (section 6) for the potential, a function of coordinates; the forces have theirs at the end of all
     whole: list[list[Expr]] = [[] for _ in m.topology.coordinates]
     for i, mu, terms in zip(m.ratios.of, m.multipliers, given, strict=True):
         whole[i] += [term * mu for term in terms]
@@ -99,6 +103,7 @@ def _joint_law(m: Mechanism, a: int, stretch: Expr, forces: list[Expr], given: l
     energy = m.graph.zero
     if depends_on_state(m.topology.coordinates, law.stiffness, law.rest):
         k, rest = (x if isinstance(x, str) else format(x, "f") for x in law.given)
+        # read once more as a sum: which of its terms depend on the time is told as it is written (section 7)
         terms = m.scope.terms(f"-({k})*({m.topology.joints[a].coordinate} - ({rest}))", "", m.names)
         given[a] += terms or [-(law.stiffness * stretch)]
     else:

@@ -105,6 +105,7 @@ def quaternion_turn(graph: Graph, names: Sequence[str]) -> Matrix:
     """E of the quaternion with these names: components in the axes before the joint -> in those of the body."""
     quaternion: list[Expr] = [graph.symbol(name) for name in names]
     square = graph.sum(x * x for x in quaternion)
+    # no root of Q . Q: formulas hold for every quaternion but 0, and no domain is lost (section 14)
     return turned_by(quaternion, 2 / square)
 
 
@@ -114,5 +115,6 @@ def position_rates(graph: Graph, positions: Sequence[str], rates: Sequence[Expr]
     turned = quaternion_rates(quaternion, rates[-3:], graph.number(Fraction(1, 2)))
     if len(positions) == len(quaternion):
         return [graph.lift(x) for x in turned]
+    # p' = R v: v is in the axes of the body, the place p in those before the joint
     back = transpose(quaternion_turn(graph, positions[-4:]))
     return [graph.lift(x) for x in (*apply(back, (rates[0], rates[1], rates[2])), *turned)]

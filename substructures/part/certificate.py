@@ -107,7 +107,7 @@ def not_judged(certificate: Mapping[str, Any]) -> list[str]:
 def require_no_less(before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
     """Raise VerificationFailed where a certificate made anew vouches for less than the one that is stored."""
     given = {name: before.get(name) for name in HOW}
-    # numbers of documents are decimals
+    # what was compared otherwise vouches for nothing that could be lost; numbers of documents are decimals
     if {name: float(x) if isinstance(x, Decimal) else x for name, x in given.items()} != HOW:
         return
     was, found = before.get("direct_form", {}), now["direct_form"]

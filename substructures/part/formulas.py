@@ -140,6 +140,7 @@ def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:
     n = len(m.joints)
     E = [link.rotation.matrix() for link in k.links]
     # E = (turn about e3) (tilt about e1), or one full matrix: what coupling replays instead of E
+    # (absent where a factor is 1, so that readers know the kind of a rotation by what is stored)
     factors: dict[str, dict[tuple[int, ...], Scalar]] = {"tilt": {}, "turn": {}, "full": {}}
     for c, link in enumerate(k.links):
         if not link.rotation.is_planar:
@@ -200,6 +201,7 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum], large: bool)
         values["n"][(c,)] = add(apply(back, momentum.H), cross(r, f))
         # K_c^I = R_c^T K_c R_c - skew(r_c) skew(f_c)
         K.append(subtract(multiply(back, multiply(K_c, R)), multiply(skew(r), skew(f))))
+        # a <= c alone: F_ca = F_ac, N_ca = N_ac and kappa_ca = -kappa_ac (section 6)
         for a, twist in () if large else k.columns[c].items():
             # F_ac = R_c^T (Omega_ca x p_c),   N_ac = R_c^T K_c Omega_ca + r_c x F_ac
             F = apply(back, cross(twist.Omega, momentum.p))
@@ -211,7 +213,7 @@ def _interface_outputs(k: Kinematics, momenta: list[JointMomentum], large: bool)
                 values["kappa"][a, c] = apply(back, moment)
     outputs = {
         name: Formulas(
-            (n, 3) if name in "fn" else (n, n, 3), {(*i, x): v[x] for i, v in some.items() for x in range(3)}
+            (n, 3) if name in ("f", "n") else (n, n, 3), {(*i, x): v[x] for i, v in some.items() for x in range(3)}
         )
         for name, some in values.items()
     }
@@ -232,8 +234,8 @@ def own_dynamics(
     by_angles: ByAngles,
     large: bool = False,
 ) -> dict[str, Formulas]:
-    """Metric and Christoffel symbols of the part on an interface at rest (notation.md, section 5); of a ``large`` one
-    the metric alone. ``by_angles``: what is known of them.
+    """Metric g_ab (n, n) [kg m^2, kg m, kg] and Christoffel symbols Gamma_abc (n, n, n) of the part on an interface at
+    rest (notation.md, section 5); of a ``large`` one the metric alone. ``by_angles``: what is known of them.
     """
     n = len(momenta)
     entries = InertialEntries(chain, columns, evaluation_frames(chain, not large))
@@ -241,7 +243,7 @@ def own_dynamics(
     for c, momentum in enumerate(momenta):
         if c not in by_angles.joints:
             g |= entries.metric(c, momentum)
-        # the rotor of joint c turns with q'^c alone
+        # the rotor of joint c turns with q'^c alone: no composite has it, and no Christoffel symbol
         g[c, c] = g[c, c] + m.laws[c].armature
         if not large and c not in by_angles.joints:
             gamma |= entries.christoffel(c, momentum)

@@ -26,6 +26,7 @@ from substructures.mechanics.parallel_axes import one_after_the_other
 from substructures.part.definition import PartClosure
 
 #: rows of the rotation that turns frame axis 0, 1 or 2 into the third axis, by renaming the axes
+#: cyclic, so that they are turns and no reflections
 AXES: tuple[Matrix, Matrix, Matrix] = (
     ((0, 1, 0), (0, 0, 1), (1, 0, 0)),
     ((0, 0, 1), (1, 0, 0), (0, 1, 0)),
@@ -51,15 +52,19 @@ class Frame:
 
 
 def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
-    """E of a frame whose third axis is the given constant direction (any length but zero)."""
+    """E of a frame whose third axis is the given constant direction, of any length but zero; faults (``bad-axis``) go
+    to the scope.
+    """
     x, y, z = scope.vector(axis, pointer, no_names)
     given = [i for i, component in enumerate((x, y, z)) if not component.is_zero]
     if not given:
         scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
         return IDENTITY
     numbers = constants((x, y, z))
+    # along an axis of the frame axes change their names: neither roots nor products come into the formulas
     if len(given) == 1:
         return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
+    # |e_i x n|^2 = |n|^2 - n_i^2 is 2/3 |n|^2 or more for the axis that n is least along: never near zero
     return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
 
 
@@ -84,6 +89,7 @@ def cut_frames(scope: Scope, closure: PartClosure, pointer: str, lookup: Lookup 
         length = scope.read(closure.length, f"{pointer}/length", lookup)
         if not scope.faults and (length.is_zero or (length.is_number and length.negative)):
             scope.fault(f"{pointer}/length", "bad-length", "the length of a rod is positive")
+    # the same turn in both frames: where the loop is closed their axes are the same for any axis of the joint
     return CutFrames(axis, multiply(axis, E), position, length)
 
 

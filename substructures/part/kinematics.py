@@ -38,16 +38,17 @@ class Kinematics:
 
 @dataclass(frozen=True)
 class PointKinematics:
-    """Position and own partial velocities of a point, in the interface frame."""
+    """Position r [m] and own partial velocities u_a [m or 1] of a point, in the interface frame."""
 
     position: Vector
     u: Mapping[int, Vector]
 
 
 def kinematics(chain: tuple[Link, ...], columns: dict[int, Columns]) -> Kinematics:
-    """R_c and r_c beside the base functions."""
+    """R_c = E_c R_p and r_c = r_p + R_p^T Z_c of all carriers, beside the base functions."""
     poses = {INTERFACE: Pose(IDENTITY, ZERO)}
     for c, link in enumerate(chain):
+        # parents have lower numbers: their poses are known
         poses[c] = poses[link.parent].beyond(link)
     return Kinematics(chain, columns, poses)
 
@@ -70,6 +71,6 @@ def point_kinematics(k: Kinematics, carrier: int, at: Vector) -> PointKinematics
 
 
 def own_place(k: Kinematics, frame: Frame) -> Place:
-    """The origin of a frame of the part."""
+    """The origin of a frame of the part, with its axes, in the interface frame."""
     link = frame_link(k, frame)
     return Place(k, link.parent, from_body(k.links, link), k.pose(link.parent).beyond(link))

@@ -24,8 +24,8 @@ from substructures.part.wrenches import wrench_places
 
 
 def load_forces(definition: Definition) -> Program:
-    """Q_a of a definition that is known to be right: outputs ``joint`` (n,), of the joints' own laws without their
-    actuators, and ``load`` (loads, n).
+    """Q_a [N m, N] of a definition that is known to be right, by joint: outputs ``joint`` (n,), of the joints' own laws
+    without their actuators, and ``load`` (loads, n).
     """
     m = mechanism(definition)
     chain = links(m.joints)
@@ -42,6 +42,7 @@ def load_forces(definition: Definition) -> Program:
         """Those with a load alone."""
         if not isinstance(load, FrictionLoad):
             return still
+        # in the sum it is a law of its joint, which alone has one here
         of = names.index(load.coordinate)
         return (*still[:of], replace(still[of], friction=m.laws[of].friction), *still[of + 1 :])
 

@@ -26,6 +26,7 @@ def sum_of(masses: Iterable[tuple[Any, Mapping[str, Any]]]) -> float | None:
     None where a name has no value, and where the sum is no finite number.
     """
     try:
+        # with more bits than a double has, so that neither the order nor the machine shows in the double
         with flint.ctx.workprec(PRECISION):
             total = float(sum((ball(in_si(mass), names, PRECISION) for mass, names in masses), flint.arb(0)))
     except (ExpressionError, ArithmeticError, ValueError):
@@ -54,6 +55,7 @@ def limits_in_numbers(definition: Definition, names: Mapping[str, Any]) -> dict[
             continue
         q, low, high = _of_mover(definition, names, joint.coordinate, low, high)
         known = found.get(q, (-np.inf, np.inf))
+        # of all joints that one coordinate moves: each of them stops it
         if joint.coordinate != q or q in found:
             low, high = np.maximum(low, known[0]), np.minimum(high, known[1])
         if np.isfinite(low).any() or np.isfinite(high).any():
@@ -68,6 +70,7 @@ def _of_mover(definition: Definition, names: Mapping[str, Any], name: str, low: 
         mu, delta = (number_of(x, names) for x in (relations[name].multiplier, relations[name].offset))
         name = relations[name].of
         if mu is None or delta is None:
+            # a factor without a value bounds nothing; the way goes on to the coordinate that moves it
             low, high = -np.inf, np.inf
             continue
         # q = (q^d - delta) / mu, between the smaller and the larger one of the ends; all q where mu is 0

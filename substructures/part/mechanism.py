@@ -42,7 +42,10 @@ UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
 
 @dataclass(frozen=True)
 class Stops:
-    """End stops of a coordinate, beyond ``low`` and ``high``; expressions in parameters."""
+    """End stops of a coordinate: -(k + c p') p against the depth p beyond ``low`` or ``high`` [rad or m].
+
+    ``stiffness``: k [N m/rad or N/m]; ``damping``: c [N m s/rad^2 or N s/m^2]; expressions in parameters.
+    """
 
     low: Expr
     high: Expr
@@ -52,8 +55,10 @@ class Stops:
 
 @dataclass(frozen=True)
 class JointLaw:
-    """Spring, damper, rotor, end stops and friction of a coordinate; expressions. ``given``: stiffness and rest as
-    written.
+    """Q_a = -k (q - rest) - c q', less stops and friction, of a joint, and its rotor in g_aa; expressions.
+
+    ``stiffness``: k [N m/rad or N/m]; ``rest`` [rad or m]; ``damping``: c [N m s/rad or N s/m]; ``armature`` [kg m^2 or
+    kg]; ``given``: stiffness and rest as written.
     """
 
     stiffness: Expr
@@ -177,6 +182,7 @@ class _Builder:
         inputs = {name: si_unit(each.unit) for name, each in definition.inputs.items()}
         names = [entry.coordinate for entry in layout.joints]
         self.relations = read_relations(definition.relations, layout.before, names, scope)
+        # names of all joints before the first one is added: its laws may depend on coordinates further out
         kinds = {names[a]: layout.joints[a].s for a in layout.movers}
         moved = {
             names[a]: (mu * scope.graph.symbol(names[of]) + delta, mu, names[of])
@@ -248,6 +254,7 @@ class _Builder:
     def _joint(self, frame: Frame, entry: JointEntry, body: Body, axis: Matrix, pointer: str) -> Frame:
         """One degree of freedom; returns the frame that moves with it, turned back from the joint axis."""
         turned = multiply(AXES[entry.axis], axis) if body.joint.axis is not None else AXES[entry.axis]
+        # joints of a ball stand at zero behind its quaternion: what they have are rates (section 14)
         q = (None if entry.is_rate else self.names(entry.coordinate)) or self.scope.graph.zero
         self.positions.append(q)
         phi, tau = self._offsets(entry, body, pointer)
@@ -258,6 +265,7 @@ class _Builder:
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
         self.own[len(self.joints) - 1] = Inertia()
         self.laws.append(self._law(entry, body, self._limits(entry, body, pointer), pointer))
+        # the body is described in the placed frame: back from the axes in which its joint axis is e3
         return Frame(len(self.joints) - 1, transpose(turned), ZERO)
 
     def _offsets(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr]:

@@ -39,6 +39,7 @@ def metric_in_one_piece(definition: Definition) -> Program:
 def equations(m: Mechanism, gravity: Vector) -> dict[str, Formulas]:
     """The outputs metric, christoffel and gravity; ``gravity``: acceleration in base axes, expressions."""
     chain = links(m.joints)
+    # every joint hangs on the one base, in whose axes gravity is given
     before = dict.fromkeys(range(len(chain)), gravity)
     by_angles = parallel_axes(chain, m.own).by_angles(absolute(chain), True, before)
     momenta = _momenta(m, chain)

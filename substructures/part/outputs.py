@@ -62,6 +62,7 @@ class PartOutputs:
         if any((c, i, j) in full for i in range(3) for j in range(3)):
             return Rotation((Turn(self.matrix("E.full", c)),))
         factors = []
+        # the tilt acts first: factors stand in the order in which a vector takes them
         for axis, name in ((0, "E.tilt"), (2, "E.turn")):
             cosine, sine = self.scalar(name, c, 0), self.scalar(name, c, 1)
             if (c, 0) in self.formulas[name].entries or (c, 1) in self.formulas[name].entries:

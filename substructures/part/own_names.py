@@ -96,6 +96,7 @@ class OwnNames(Names):
         # then k (l - l0)^2 / 2 is no potential of the force k (l - l0)
         forces = self.m.ratios.reduced({(a,): Q for a, Q in pulls().items()}, (0,))
         on = {i: self.graph.lift(Q) for (i,), Q in forces.items()}
+        # energies of springs come doubled: their laws halve them
         return 2 * spring_potential(self.scope, self.m.topology.coordinates, on, spring.pointer)
 
     def formula(self, value: Any, pointer: str) -> tuple[Expr, list[Expr]]:

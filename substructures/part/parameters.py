@@ -64,6 +64,7 @@ def _counted(given: dict[str, Any]) -> dict[str, Any]:
     if not text or isinstance(given.get("value"), Mapping):
         return given
     with suppress(UnknownUnitError):
+        # no number that the unit would change
         if read_unit(text).is_si or given.get("value") is None:
             return given
     return given | {"unit": "", "description": f"{given.get('description', '')} [{text}]".strip()[:2000]}

@@ -262,6 +262,7 @@ def derive(
     definition = _read(definition)
     m, units, result = _derived(definition, max_nodes, admit, coupled, is_stored)
     certificate = _certificate(m, result, units, perf_counter() - start)
+    # after the certificate, which adds formulas of masses; the program holds operations, no nodes
     m.graph.release()
     return Part(definition, result.marked(not_judged(certificate)), certificate)
 
@@ -293,6 +294,7 @@ def _derived(
 ) -> tuple[Mechanism, UnitCheck, Program]:
     m, units, entries = _opened(definition, is_stored)
     if admit is not None:
+        # before anything is derived, so that who admits can refuse in time
         admit(expected_operations([(j.parent, j.s) for j in m.topology.joints]))
     known = None if coupled is None else lambda: coupled(m, entries.is_large)
     outputs = _formulas(m, entries.is_large, known)

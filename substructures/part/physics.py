@@ -14,7 +14,8 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, array, program
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.linear3 import dense
-from substructures.part.mass import ARMATURE
+from substructures.part.definition import Definition
+from substructures.part.mass import ARMATURE, number_of
 from substructures.part.mechanism import Mechanism
 
 PhysicsFault = tuple[str, str]  #: code, message
@@ -38,6 +39,7 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
     warnings = []
     for name, check in checks.items():
         needed = {p.symbols[p.operations[k][1]].name for k in p.reachable([name]) if p.operations[k][0] == "sym"}
+        # without a default for each of its symbols a value says nothing about the body
         if not needed <= defaults.keys():
             continue
         problem = _problem(check, interpret(p, {s: defaults[s] for s in needed}, [name])[name])
@@ -45,12 +47,24 @@ def physical_warnings(m: Mechanism) -> list[dict[str, str]]:
             continue
         pointer = f"/bodies/{check.body}/{check.field}"
         text = f"body '{m.definition.bodies[check.body].name}': {problem[1]}"
+        # what holds symbols may have other values in trees: only numbers alone are impossible for good
         if needed:
             warnings.append({"pointer": pointer, "code": problem[0], "message": f"{text} at the default values"})
         else:
             m.scope.fault(pointer, problem[0], text)
     m.scope.finish()
-    return warnings
+    return [*warnings, *_reversed_limits(m.definition, defaults)]
+
+
+def _reversed_limits(definition: Definition, defaults: Mapping[str, float]) -> Iterator[dict[str, str]]:
+    """Limits between which there is no value, at default values: stops would push from both sides at once."""
+    for i, body in enumerate(definition.bodies):
+        given = body.joint.limits or ()
+        for pair in given if given and isinstance(given[0], tuple) else (given,) if given else ():
+            low, high = (number_of(x, defaults) for x in pair)
+            if low is not None and high is not None and low > high:
+                text = f"body '{body.name}': the lower limit {low:g} is above the upper one {high:g}"
+                yield {"pointer": f"/bodies/{i}/joint/limits", "code": "limits-reversed", "message": text}
 
 
 def _checks(m: Mechanism) -> Iterator[_Check]:
@@ -90,6 +104,7 @@ def _impossible_tensor(binet: Array) -> PhysicsFault | None:
     """The Binet tensor about the mass centre has no negative eigenvalue (that is the triangle inequality)."""
     # J_i = (Theta_j + Theta_k - Theta_i) / 2 >= 0,   Theta_i = sum of all J - J_i
     eigenvalues = np.linalg.eigvalsh(binet)
+    # 0 is right of thin discs and rods, and rounding may be below it; without any mass all of them are 0
     if eigenvalues[0] >= -1e-9 * max(np.abs(eigenvalues).max(), 1e-300):
         return None
     moments: Iterable[float] = np.sort(eigenvalues.sum() - eigenvalues)

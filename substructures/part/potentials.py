@@ -35,7 +35,7 @@ def spring_potential(scope: Scope, names: Sequence[str], forces: Mapping[int, Ex
 
 
 def found_potential(scope: Scope, names: Sequence[str], forces: Sequence[Sequence[Expr]]) -> Expr:
-    """The potential of as much of the forces (n,) on the coordinates, terms of a sum each, as is found to have one.
+    """V [J], d_a V = -Q_a, of as much of the forces (n,) on the coordinates, terms of a sum each, as has one.
 
     Of forces that depend on each other's coordinates either all of them count, or what each has of its own alone.
     """

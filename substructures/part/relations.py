@@ -108,8 +108,10 @@ def of_rates(outputs: Mapping[str, Formulas], balls: Sequence[BallJoint]) -> dic
     for name, (linear, place) in BILINEAR.items():
         if balls and name in outputs:
             each = outputs[name]
+            # one of (b, c) and (c, b), in which it stays symmetric; Gamma_abc = -Gamma_cba is lost (Boltzmann, Hamel)
             entries: dict[tuple[int, ...], Any] = {i: x for i, x in each.expanded().items() if i[place] <= i[place + 1]}
             halves = {index: _half(x) for index, x in outputs[linear].expanded().items()}
+            # Gamma~_abc = Gamma_abc + 1/2 c_ibc g_ai, F_bc and N_bc with f_i and n_i (section 14)
             for at, term in in_rates(balls, halves, place).items():
                 entries[at] = entries[at] + term if at in entries else term
             result[name] = Formulas(each.shape, entries, "connection" if name == "christoffel" else each.symmetry)
@@ -125,11 +127,13 @@ def _reduced(name: str, each: Formulas, ratios: Ratios) -> Formulas:
     axes, n = OF_COORDINATES[name], ratios.count
     shape = tuple(n if axis in axes else size for axis, size in enumerate(each.shape))
     whole: dict[tuple[int, ...], Any] = {**each.expanded(), **_others(name, each)}
+    # of x_ab and x_ba both, also where one of them is stored alone: N_ai N_bj x_ab mixes them
     found = ratios.reduced(whole, axes)
     if name == "christoffel":
         # Gamma_cba = -Gamma_abc holds for joints alone
         return Formulas(shape, {i: x for i, x in found.items() if i[1] <= i[2]}, "connection")
     if len(axes) == 2:
+        # kappa*_ii = 0, as N^T kappa N is skew like kappa
         last = 1 if name == "kappa" else 0
         found = {i: x for i, x in found.items() if i[0] + last <= i[1]}
     return Formulas(shape, found, each.symmetry)

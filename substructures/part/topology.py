@@ -90,6 +90,7 @@ class Topology:
     @property
     def body_of(self) -> dict[int, str]:
         """The body by which every moving carrier goes, the first one on it; none inside compound joints."""
+        # backwards, so that of all bodies on a carrier the first one stays
         return {carrier: body for body, carrier in reversed(self.carrier.items()) if carrier != INTERFACE}
 
     @property

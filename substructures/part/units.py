@@ -72,6 +72,7 @@ def check_units(definition: Definition, topology: Topology) -> UnitCheck:
     check.check(places.bodies(), True)
     check.check(places.poses(), True)
     check.warnings += angle_warnings(places.bodies(), definition.parameters)
+    # from here on: what moves may stand in loads alone, and is unknown in the numbers above
     check.names = lambda name: names[name] if name in names else moving.get(name) or dimension_of_measure(name)
     check.check(places.loads(), False)
     # here, since what is stored has only a warning of it: older versions did not look at pairs beyond the last
@@ -125,6 +126,7 @@ class _Places:
         s_of = {entry.coordinate: entry.s for entry in self.topology.joints}
         for i, each in enumerate(self.definition.relations):
             s, mover = s_of[each.coordinate], s_of[each.of]
+            # q^d = mu q^i: 1 is m of rad, as of a screw, -1 rad of m, as of a pinion
             yield f"/relations/{i}/multiplier", each.multiplier, MULTIPLIER[s - mover]
             yield f"/relations/{i}/offset", each.offset, COORDINATE[s]
         for i, port in enumerate(self.definition.ports):
@@ -214,4 +216,5 @@ def dimension_of_measure(name: str) -> Inferred:
     if found is None:
         return "unknown"
     dimensions = RATE if found[0].endswith("'") else COORDINATE
+    # as coordinates: a distance like a prismatic one, in m, all others like a revolute one, in rad
     return Dimensioned(dimensions[found[0].startswith("distance")], sure=False)

@@ -63,6 +63,7 @@ def wrench_rows(definition: Definition) -> Iterator[WrenchRow]:
         if isinstance(load, ForceLoad | TorqueLoad):
             yield WrenchRow(load, load.body, load.frame == "world", True)
         elif acts_on_host(load):
+            # `to` first: these rows, the wrenches below and what is stored have one order
             yield from (WrenchRow(load, end.frame, True, False) for end in reversed(load.ends("")))
 
 
@@ -79,6 +80,7 @@ def read_wrenches(names: Names, load: WrenchLoad, pointer: str) -> list[AppliedW
         # from the axes of the body to those of its carrier: E^T v
         own = vector if is_world else apply(transpose(last.E), vector)
         return [AppliedWrench(last.carrier, moment, is_world, at, own)]
+    # the opposite force acts where the first one does, at a point of `to`, past which `from` moves
     point_of = None if moment or ends[0].carrier == last.carrier else last.carrier
     on = AppliedWrench(last.carrier, moment, True, at, vector)
     return [on, AppliedWrench(ends[0].carrier, moment, True, at, sub(ZERO, vector), point_of)]
@@ -122,6 +124,7 @@ def wrench_point(k: Kinematics, wrench: AppliedWrench) -> Vector:
 
 
 def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> Wrench:
-    """The wrench of a force at a point, or of a moment, about the carrier's body frame origin."""
-    # n = x x f of a force at x
+    """(F, x cross F) of a force F [N] at a point x [m], or (0, M) of a moment M [N m]: the wrench about the carrier's
+    body frame origin.
+    """
     return Wrench(ZERO, vector) if moment else Wrench(vector, cross(at, vector))

@@ -38,6 +38,7 @@ def applied_wrenches(
     """
     for i, here in enumerate(placed):
         yield from ((i, carrier, wrench) for carrier, wrench in here.applied_wrenches())
+    # by identity: placed parts are dataclasses with dictionaries, which have no hash
     index = {id(here): i for i, here in enumerate(placed)}
     for each in (
         *loads_of_parts(assembly, placed, rates),
@@ -71,6 +72,7 @@ def _closures(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequence[
     """What the rows of closures exert on ``to``, and the opposite on ``from`` at the same place."""
     if not assembly.cuts:
         return
+    # its rows, numbered by k, are those of the cuts one after the other
     direction = closure_formulas(placed, assembly.cuts, rates)["closure.direction"].entries
     k = 0
     for cut in assembly.cuts:
@@ -110,6 +112,7 @@ def _contacts(assembly: Assembly, placed: Sequence[PlacedPart]) -> Iterator[Acti
             yield Acting(pair, scale(_multiplier(assembly, each.name, "N"), across), ZERO)
         else:
             force, arm = _rolling(assembly, each, at, pointer)
+            # the point of contact moves in the body: its force at the frame's origin, and the moment rho x F
             yield Acting(pair, force, cross(arm, force))
     assembly.scope.finish()
 

@@ -114,6 +114,7 @@ def unchecked(spec: TreeSpec, parts: Mapping[str, Part]) -> Assembly:
     for name, each in parameters.items():
         scope.declare(name, "parameter", str(each["unit"]))
     bound = _Bindings(spec, parts, scope)
+    # all at once: bindings that no formula depends on may have faults, too
     bound.resolve_all()
     place = {spec.instances[i].name: k for k, i in enumerate(order)}
     level = reduced_instances(spec, parts, scope)
@@ -157,6 +158,7 @@ def _indices(spec: TreeSpec, scope: Scope) -> dict[str, int]:
         pointer = f"/instances/{i}/name"
         if instance.name in index:
             scope.fault(pointer, "duplicate-name", f"duplicate instance '{instance.name}'")
+        # at: "world", and tau.arm.q1 of the coordinate arm.q1
         if instance.name in ("world", "tau") or instance.name in spec.parameters:
             scope.fault(pointer, "reserved-name", f"an instance cannot be called '{instance.name}' here")
         index[instance.name] = i
@@ -178,6 +180,8 @@ def _order(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> list[int]
             scope.fault(f"/instances/{i}/at", *found)
     order: list[int] = []
     while ready:
+        # the first in the document whose host is there: coordinates, and digests with them, have this order;
+        # publishing.published finds the same
         i = min(ready)
         ready.remove(i)
         order.append(i)
@@ -332,31 +336,30 @@ class Reading:
             result[symbol.name] = value
         return result
 
+    def own(self, i: int, given: object) -> Expr:
+        """A number or expression in the definition of an instance, with the names of the tree."""
+        name = self.spec.instances[i].name
+        return self.scope.read(given, f"/instances/{i}", lambda own: self.bound.lookup(f"{name}.{own}"))
+
     def limits(self, i: int, m: MountedPart) -> dict[int, tuple[Expr, Expr]]:
         """The limits of the coordinates of an instance that have some, by joint of the part."""
-        instance, found = self.spec.instances[i], {}
-        for c, entry in enumerate(self.parts[instance.name].topology.joints):
-            given = self.parts[instance.name].definition.bodies[entry.body].joint.limits
+        found: dict[int, tuple[Expr, Expr]] = {}
+        for c, entry in enumerate(m.part.topology.joints):
+            given = m.part.definition.bodies[entry.body].joint.limits
             if given:
                 low, high = given[entry.step] if isinstance(given[0], tuple) else given
-                read = [
-                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
-                    for x in (low, high)
-                ]
-                found[c] = read[0], read[1]
+                found[c] = self.own(i, low), self.own(i, high)
         return limits_of_movers(over_formulas(self.scope.graph), m, found)
 
     def friction(self, i: int, m: MountedPart) -> dict[int, tuple[Expr, Expr, Expr, Expr]]:
         """F_c, F_s, v_s (0 where there is none) and v_0 of the coordinates of an instance that have dry friction."""
-        instance, found = self.spec.instances[i], {}
-        for c, entry in enumerate(self.parts[instance.name].topology.joints):
-            law = friction_of(self.parts[instance.name].definition, entry)
+        instance, found = self.spec.instances[i], dict[int, tuple[Expr, Expr, Expr, Expr]]()
+        for c, entry in enumerate(m.part.topology.joints):
+            law = friction_of(m.part.definition, entry)
             if law is not None:
+                # F_s = F_c where nothing is said: a joint at rest takes no more than one that slips
                 static = law.coulomb if law.static is None else law.static
-                F, S, v, w = (
-                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
-                    for x in (law.coulomb, static, law.stribeck or 0, law.velocity)
-                )
+                F, S, v, w = (self.own(i, x) for x in (law.coulomb, static, law.stribeck or 0, law.velocity))
                 found[c] = F, S, v, w
         moved, is_one = friction_of_movers(over_formulas(self.scope.graph), m, found)
         if not is_one:
@@ -366,15 +369,14 @@ class Reading:
 
     def friction_load(self, i: int) -> dict[int, tuple[Expr, Expr]]:
         """mu r and mu r_a, of prismatic joints mu and 0, of the coordinates of an instance with such friction."""
-        instance, found = self.spec.instances[i], {}
-        for c, entry in enumerate(self.parts[instance.name].topology.joints):
-            given = self.parts[instance.name].definition.bodies[entry.body].joint.friction
+        part, found = self.parts[self.spec.instances[i].name], dict[int, tuple[Expr, Expr]]()
+        for c, entry in enumerate(part.topology.joints):
+            given = part.definition.bodies[entry.body].joint.friction
             law = given[entry.step] if isinstance(given, tuple) else given
             if law is not None and law.load is not None:
-                mu, r, along = (
-                    self.scope.read(x, f"/instances/{i}", lambda name: self.bound.lookup(f"{instance.name}.{name}"))
-                    for x in (law.load.coefficient, 1 if entry.s else law.load.radius, law.load.axial_radius or 0)
-                )
+                # a slide rubs with the force itself, without a lever, and transmits none along its axis
+                radius = 1 if entry.s else law.load.radius
+                mu, r, along = (self.own(i, x) for x in (law.load.coefficient, radius, law.load.axial_radius or 0))
                 found[c] = mu * r, mu * along
         return found
 
@@ -407,6 +409,7 @@ class Reading:
             yield self.cut(closure, f"/closures/{i}")
         index = {instance.name: i for i, instance in enumerate(self.spec.instances)}
         for name in self.place:
+            # what is reduced has its loops in the formulas
             for own in () if name in self.reduced else self.parts[name].definition.closures:
                 yield self.cut(own, f"/instances/{index[name]}", f"{name}.")
 

@@ -241,6 +241,7 @@ def _row(name: str, r: _Relative, length: Expr) -> tuple[Scalar, Vector, dict[in
         return sign * dot(r.axes[j], axis), direction, columns, sign * dot(turned, axis)
     if name == "length":
         lift = length.graph.lift
+        # without a root, and by L a length: beside the closed position phi is the distance less L
         # phi = (d . d - L^2) / (2 L),   G_a = d . u_a / L,   G' q' = (v . v + d . dv) / L
         direction = lift(r.d[0]) / length, lift(r.d[1]) / length, lift(r.d[2]) / length
         residual = lift(dot(r.d, r.d) - length * length) / (2 * length)
@@ -271,6 +272,7 @@ def reduction_of(
         start |= {f"{name}.{c}": str(in_si(x)) for c, x in given if c in own or name not in reduced}
         for c, (low, high) in part.definition.ranges.items():
             ranges[f"{name}.{c}"] = str(in_si(low)), str(in_si(high))
+    # a closure of the tree may bind coordinates of any part, of which no part can say which are independent then
     is_said = closed and all(definition.independent for definition in closed) and not is_closed
     return Reduction(tuple(independent) if is_said else (), start, ranges)
 

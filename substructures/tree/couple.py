@@ -188,9 +188,9 @@ def tree_formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wan
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
-        outputs = ignore(
-            assembly, tuple(all_coordinates(assembly)), put_in(assembly, loaded_outputs(assembly, coupled, wanted))
-        )
+        # loops, then motions, then momenta: cyclic is what is so in all that the others leave
+        loaded = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
+        outputs = ignore(assembly, tuple(all_coordinates(assembly)), loaded)
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
         found = hoisted(program(graph, outputs, assembly.scope.symbols))
         graph.release()

@@ -74,8 +74,10 @@ class Hanging:
 
 @dataclass(frozen=True)
 class Coupled:
-    """The result, by indices of the tree's joints; ``chain``: the links from joint to joint; ``ratios``: the
-    coordinates that move them; ``loads``: what the loads of the tree add to the forces.
+    """The result, by indices of the tree's joints: g_ab for a <= b [kg m^2, kg m, kg], Gamma_abc for a < c, b <= c, Q_a
+    of gravity and of all forces [N m, N], V [J].
+
+    ``chain``: the links from joint to joint; ``ratios``: the coordinates that move them; ``loads``: Q_a of the tree's.
     """
 
     metric: dict[tuple[int, ...], Scalar]
@@ -188,6 +190,7 @@ def evaluate_parts(
         seat = _seat(run, mounted, m)
         for each in _gathered([*hanging[i], *_roots(evaluated[0])], seat):
             way = joined(seat, each.link)
+            # fixed to the interface of the host, which no joint of the host moves: it hangs on what the host hangs on
             if m.host != WORLD and way.parent == INTERFACE:
                 hanging[m.host].append(replace(each, link=way))
                 continue
@@ -264,6 +267,7 @@ def place(part: EvaluatedPart, placed: Sequence[PlacedPart], gravity: Vector) ->
         if link.parent == INTERFACE:
             columns[c] = before.columns_beyond(way)
         else:
+            # the host's columns, whose numbers are lower, are carried on; own ones are stored
             columns[c] = {a: carried(twist, link) for a, twist in columns[link.parent].items() if a < m.first}
         for a in path(part.links, c):
             columns[c][m.first + a] = _stored_twist(part, c, a) if own is None else own[c][a]

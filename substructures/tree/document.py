@@ -123,6 +123,7 @@ class DrivenTable(DocumentPart):
         """As an expression."""
         times, values = list(map(_plain, self.times)), list(map(_plain, self.values))
         if self.interpolation == "monotone":
+            # beside equal values a monotone cubic is flat: with one more on each side it begins and ends at rest
             rest = [_plain(Decimal(times[0]) - 1), _plain(Decimal(times[-1]) + 1)]
             times, values = [rest[0], *times, rest[1]], [values[0], *values, values[-1]]
         knots = ", ".join(f"{t}:{x}" for t, x in zip(times, values, strict=True))
@@ -133,6 +134,7 @@ def _kind(given: Any) -> str:
     """Of a motion, by its fields."""
     if isinstance(given, (DrivenInput, DrivenTable)):
         return "input" if isinstance(given, DrivenInput) else "table"
+    # by its fields, so that faults are told of the kind that was meant, not of all three
     fields = given if isinstance(given, Mapping) else ()
     return "table" if {"times", "values"} & {*fields} else "input" if {"input"} & {*fields} else "number"
 

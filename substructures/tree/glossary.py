@@ -165,6 +165,7 @@ def _stored(graph: Graph, model: Program, rates: Sequence[Expr]) -> Glossary:
         factors = factorised(len(rates), {i: x for i, x in metric.entries.items() if isinstance(x, Expr)})
         found |= {("D", (k,), ""): x for k, x in enumerate(factors.pivots)}
         found |= {("L", (k, i), ""): x for k, row in enumerate(factors.below) for i, x in row.items()}
+        # y = L^-T (Q - h) from the last to the first, as forward dynamics forms it
         y = [_others(outputs, a) for a in range(len(rates))]
         for k, row in reversed(list(enumerate(factors.below))):
             found[("y", (k,), "")] = y[k]

@@ -74,6 +74,7 @@ def inverse_terms(
             before = own[link.parent].at_joint(link, from_body(here.links, link))
             found |= _motion(names, (k,), own[c]) | _motion(names, (chain[k].parent, k), before)
     loads = inertial_loads(inertias, motions)
+    # before loads are taken off: what moves the body; afterwards, added up in place: what joints transmit
     for k, wrench in _by_joint(placed, loads):
         found |= _wrench("F", "N", (k,), wrench)
     subtract_applied(placed, loads)

@@ -41,6 +41,7 @@ def numbers_and(constants: Collection[str]) -> Admitted:
 
     def is_number(x: Expr) -> bool:
         """Of a node of the one graph there is."""
+        # operands have lower numbers than what is made of them; no node is looked at twice
         for node in x.graph.nodes[len(known) :]:
             is_named = node.op == "sym" and node.value in constants
             is_made = node.op in _EXACT and all(known[operand.index] for operand in node.args)
@@ -67,6 +68,7 @@ def grouped(
     """
     result = as_they_are([here.mounted for here in outlined], own)
     ground = Inertia()
+    # from the leaves: what is moved onto a carrier may be moved on with the carrier's own masses
     for i in reversed(range(len(outlined))):
         here, inertias = outlined[i], result[i]
         for k in sorted(here.part.inertia_symbols, reverse=True):
@@ -76,6 +78,7 @@ def grouped(
             moved, left = _unmoved(link, inertias[k])
             host, carrier, above = carried_by(outlined, i, link.parent, _before(here.links, link, moved))
             onto = ground if host == WORLD else result[host].get(carrier)
+            # None: within a compound joint there is no body, and no symbol that masses could be bound to
             if onto is None or not (admitted(above) and admitted(onto)):
                 continue
             inertias[k] = left
@@ -95,6 +98,7 @@ def fixed_inertia(outlined: Sequence[PlacedPart], inertias: Sequence[Inertias]) 
     fixed: dict[int, list[int]] = {}
     for i, here in enumerate(outlined):
         part = here
+        # over interfaces on interfaces to the carrier that moves them; there is none where these lead to the world
         while part.host is not None and part.seat.parent == INTERFACE:
             part = part.host
         if part.host is not None:
@@ -129,6 +133,7 @@ def carried_by(outlined: Sequence[PlacedPart], i: int, carrier: int, inertia: In
 def on_carriers(placed: Sequence[PlacedPart]) -> list[Inertias]:
     """The inertias of all parts, with what is fixed to interfaces counted with the carriers that move it."""
     result = [dict(here.evaluated.inertias) for here in placed]
+    # from the leaves, so that what comes onto an interface from another one is moved on
     for here, inertias in zip(reversed(placed), reversed(result), strict=True):
         fixed, m = inertias.pop(INTERFACE, Inertia()), here.mounted
         if here.host is not None and not all(exactly(x, 0) for x in (fixed.m, *fixed.s, *fixed.J)):
@@ -141,8 +146,10 @@ def on_carriers(placed: Sequence[PlacedPart]) -> list[Inertias]:
 def _unmoved(link: Link, own: Inertia) -> tuple[Inertia, Inertia]:
     """What the joint of a link does not move, in the axes and about the origin of its body frame, and what it does."""
     if link.s:
+        # a slide does not turn against its parent, and J is of turning alone, about whatever point
         return Inertia(0, ZERO, own.J), Inertia(own.m, own.s, ZERO6)
     x, y, z = own.s
+    # m, s_3 and J_33 lie on the axis; no body has what is left, (s_1, s_2) without mass, but all is linear in it
     xx, yy, zz, xy, xz, yz = own.J
     return Inertia(own.m, (0, 0, z), (0, 0, zz, 0, 0, 0)), Inertia(0, (x, y, 0), (xx, yy, 0, xy, xz, yz))
 
@@ -154,6 +161,7 @@ def _before(links: Sequence[Link], link: Link, moved: Inertia) -> Inertia:
     # the axis of the joint, which its turn leaves as it is, and r = Z - tau_p e3 + tau_k z
     z = link.rotation.back(E3)
     r = add(from_body(links, link), scale(link.tau, z))
+    # s_3 z and J_33 z z^T about r
     zz = moved.J[2]
     along = scale(zz, z)
     J = (along[0] * z[0], along[1] * z[1], along[2] * z[2], along[0] * z[1], along[0] * z[2], along[1] * z[2])

@@ -45,7 +45,7 @@ class Plan:
 
 @dataclass(frozen=True)
 class Inertial:
-    """g_ab and Gamma_abc by indices of the tree's coordinates."""
+    """g_ab for a <= b and Gamma_abc for a < c, b <= c, by indices of the tree's joints."""
 
     metric: Entries
     christoffel: Entries | None
@@ -85,6 +85,7 @@ def _is_as_stored(m: MountedPart, frames: Frames, by_angles: frozenset[int], sum
     """Whether the tree wants the entries of a part as they are stored: in the same frames, from the same ``sums`` of
     moments, and not by absolute angles, which the tree has from the links and what is fixed in the carriers.
     """
+    # what is stored is right in any case, but may take more operations than what the tree would form itself
     links = links_of(m.part, over_formulas(Graph())(m.part, {}, LINKS))
     if m.part.topology.is_related or absolute(links) or by_angles.intersection(_joints(m)):
         return False
@@ -106,7 +107,7 @@ def inertial_entries(plan: Plan, placed: Sequence[PlacedPart], christoffel: bool
     g_ab, gamma_abc = dict(by_angles.metric), dict(by_angles.christoffel)
     for here, names in zip(placed, plan.stored, strict=True):
         first = here.first
-        # a, b <= c in the part: as stored
+        # a, b <= c in the part: as stored, with all that it carries by its inertia symbols, armature included
         for name, all_of in ((name, g_ab if name == "metric" else gamma_abc) for name in names):
             stored = here.outputs.entries(name)
             all_of |= {tuple(first + a for a in index): x for index, x in stored.items()}

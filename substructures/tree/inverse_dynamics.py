@@ -22,12 +22,13 @@ WrenchesByCarrier = dict[int, Wrench]
 def bias_forces(
     placed: Sequence[PlacedPart], rates: Sequence[Scalar], falling: bool = False, second: Sequence[Scalar] = ()
 ) -> list[Scalar]:
-    """Gamma_abc q'^b q'^c for the velocities ``rates`` of all coordinates of the tree; hosts come first.
+    """Gamma_abc q'^b q'^c [N m, N] for the velocities ``rates`` of all joints of the tree; hosts come first.
 
     ``falling``: less the gravity forces, in a world that is accelerated against gravity; ``second``: q'' where all
     rates are constant, if it is not zero there.
     """
     inertias = on_carriers(placed)
+    # without accelerations the world is at rest: to fall it takes q'' = 0 that is given
     motions = body_motions(placed, rates, second or ([0] * len(rates) if falling else None), inertias, falling)
     loads = inertial_loads(inertias, motions)
     return pass_back(placed, loads, len(rates))
@@ -46,6 +47,7 @@ def inverse_dynamics(
     subtract_applied(placed, loads)
     result = pass_back(placed, loads, len(rates))
     for here in placed:
+        # `applied` is stored by coordinate: at its own joint, where mu = 1, N^T leaves it as it is
         own = {c: i for i, c in enumerate(here.part.topology.movers)}
         for c in range(len(here.links)):
             a = here.first + c
@@ -76,6 +78,7 @@ def body_motions(
             # from the body frame of the parent to O_c, then by the joint's own motion to the body frame of c
             second = 0 if accelerations is None else accelerations[a]
             before = own[link.parent].at_joint(link, from_body(here.links, link))
+            # J_13 tells in which of two ways A_11 takes fewer operations (BodyMotion)
             J = moving.get(c, Inertia()).J
             own[c] = before.moved(link.s, rates[a], link.tau, second, not exactly(J[4], 0))
         motions.append(own)

@@ -48,6 +48,7 @@ def found_potential(graph: Graph, placed: Sequence[PlacedPart], coordinates: Seq
 def _potentials(graph: Graph, placed: Sequence[PlacedPart], coordinates: Sequence[str]) -> Iterator[Expr]:
     for forces in _steady_forces(graph, placed):
         used = frozenset().union(*(needed(x, LIMIT) for x in forces.values()))
+        # a force that names q^b has a part in the curl, d_b Q_a - d_a Q_b, also where none acts on q^b
         some = [a for a, name in enumerate(coordinates) if a in forces or name in used]
         names = [coordinates[a] for a in some]
         found = potential([forces.get(a, graph.zero) for a in some], names, LIMIT) if some else None

@@ -94,6 +94,7 @@ def model_outputs(
     # by recursion, so that neither needs the Christoffel symbols
     if wanted("inverse_dynamics"):
         inverse = inverse_dynamics(placed, rates, accelerations)
+        # loads between parts are no wrenches of carriers here, which the recursion would have taken in
         for a, Q in coupled.loads.items():
             inverse[a] = inverse[a] - Q
         outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
@@ -110,6 +111,7 @@ def model_outputs(
     if assembly.dependent.values and wanted("dependent"):
         outputs["dependent"] = _dependent(assembly)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
+    # by joint up to here: rates of balls for single joints first, then coordinates for joints (section 6)
     return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
 
 
@@ -158,7 +160,9 @@ def by_recursion(coupled: Coupled, rates: Sequence[Scalar]) -> dict[str, Sequenc
 
 
 def rate_symbols(assembly: Assembly) -> tuple[list[Expr], list[Expr]]:
-    """Velocities and accelerations of all joints: the symbols, or what relations and rates of balls make of them."""
+    """q' [rad/s, m/s] and q'' [rad/s^2, m/s^2] of all joints: the symbols, or what relations (q'^a = mu_a y'^i) and
+    rates of balls (q'' = v' + c v v, notation.md, section 14) make of them.
+    """
     rates: list[Expr] = []
     accelerations: list[Expr] = []
     for instance, m in zip(assembly.instances, assembly.mounted, strict=True):

@@ -76,6 +76,7 @@ def ratios_of(run: Run, mounted: Sequence[MountedPart]) -> Ratios:
     movers: list[int] = []
     multipliers: list[Scalar] = []
     for m in mounted:
+        # the coordinates of all parts before, of which this one's are not yet counted
         of += [len(movers) + i for i in m.part.topology.moved_by]
         movers += [m.first + c for c in m.part.topology.movers]
         if m.part.topology.is_related:
@@ -118,6 +119,7 @@ def limits_of_movers(run: Run, m: MountedPart, limits: Mapping[int, tuple[Expr, 
         k = m.part.topology.movers[m.part.topology.moved_by[c]]
         mu, delta = (low.graph.lift(relations.scalar(name, c)) for name in (MULTIPLIER, OFFSET))
         if mu.is_zero:
+            # q^d = delta whatever q is: its limits bound nothing
             continue
         # q = (q^d - delta) / mu, between the smaller and the larger one of the ends
         ends = low if k == c else (low - delta) / mu, high if k == c else (high - delta) / mu
@@ -141,9 +143,11 @@ def friction_of_movers(
         mu = magnitude(law[0].graph.lift(relations.scalar(MULTIPLIER, c)))
         if mu.is_zero:
             continue
+        # mu F(mu q') = |mu| F(|mu| q') of an odd law: forces times |mu|, its velocities by |mu|
         F, S, v, w = law[0] * mu, law[1] * mu, law[2] / mu, law[3] / mu
         known = result.get(k)
         if known is not None:
+            # the law is linear in both forces: with the same velocities a sum is one of its kind
             is_one = is_one and (known[2] - v).is_zero and (known[3] - w).is_zero
             F, S = known[0] + F, known[1] + S
         result[k] = F, S, v, w

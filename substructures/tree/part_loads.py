@@ -24,6 +24,7 @@ def loads_of_parts(assembly: Assembly, placed: Sequence[PlacedPart], rates: Sequ
     for instance, here in zip(assembly.instances, placed, strict=True):
         inside = _Inside(names, here, instance.name)
         for load in here.part.definition.loads:
+            # wrenches on bodies are stored (PlacedPart.applied_wrenches); faults were told when the part was derived
             law = None if acts_on_host(load) else load.law(inside, "")
             if law is not None:
                 law.acts(inside, found)

@@ -150,6 +150,7 @@ class Plausibility:
         """Coordinates beyond their limits in states ``q`` (N, n); ``first``: what states are counted from."""
         limits = self.limits(given) if given else self.limits_at_defaults
         ends = _ends(limits, coordinates) if given else self._ends_at_defaults(coordinates)
+        # mostly none is beyond: one comparison of all states and coordinates, before any name is looked up
         if np.logical_and.reduce((q >= ends[0]) & (q <= ends[1]), axis=None):
             return []
         notices = []
@@ -265,6 +266,7 @@ def _impossible(tensors: Sequence[Tensor], first: int) -> Iterator[list[tuple[st
     """Of every tensor: about the mass centre it must have principal moments that obey the triangle inequality."""
     if not tensors:
         return
+    # all bodies at all values together: one call for the eigenvalues of many small matrices
     m, x, y, z, xx, yy, zz, xy, xz, yz = np.concatenate(tensors, axis=1)
     # what overflows is told below
     with np.errstate(all="ignore"):

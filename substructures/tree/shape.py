@@ -151,6 +151,7 @@ def _found(
     key = f"{key} {' '.join(names)}"
     renamed = known.get(key)
     if renamed is None:
+        # once for each list of names: the program of the shape keeps those that it was made with
         require()
         renamed = found.called(names)
         known.put(key, renamed)

@@ -69,6 +69,7 @@ def check_tree_units(
     if spec.loads or spec.driven or spec.ignored:
         kinds = _kinds(definitions)
         moving = _moving(spec, definitions, kinds)
+        # constants first: in the numbers above what moves is unknown
         check.names = lambda name: dimension(name) or moving.get(name) or dimension_of_measure(name)
         check.check(_loads(spec, kinds), False)
         check.check(_driven(spec, kinds), False)

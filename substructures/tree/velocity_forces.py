@@ -34,7 +34,7 @@ class _Trial:
 
 
 def least_forces(scope: Scope, coupled: Coupled, rates: Sequence[Expr]) -> dict[str, Sequence[Scalar]]:
-    """``bias``: Gamma_abc q'^b q'^c, ``nonlinear_effects``: these less the gravity forces, of all coordinates.
+    """``bias``: Gamma_abc q'^b q'^c, ``nonlinear_effects``: these less the gravity forces, (n,) of all joints [N m, N].
 
     From the composites of the metric, by Newton and Euler's recursion or from the Christoffel symbols: in the way in
     which metric and nonlinear effects together, what forward dynamics takes, need the fewest operations for each state.
@@ -68,6 +68,7 @@ def least_forces(scope: Scope, coupled: Coupled, rates: Sequence[Expr]) -> dict[
         and operations(symbols) + len(symbols) < least.operations
     ):
         least = min(least, tried(multiplied), key=attrgetter("operations"))
+    # the bias after the effects, with which it has most of its nodes in common
     graph.restore(least.graph)
     return {"bias": least.way(graph, coupled, rates, False), "nonlinear_effects": least.effects}
 
@@ -109,6 +110,7 @@ def multiplied(graph: Graph, coupled: Coupled, rates: Sequence[Expr], falling: b
     for (a, b, c), x in Formulas((n, n, n), gamma, "christoffel").expanded().items():
         if b <= c and isinstance(x, Expr) and not x.is_zero:
             sums = rows[a].setdefault(x, {})
+            # q'^b q'^c and q'^c q'^b: Gamma_abc = Gamma_acb, so that b <= c is all there is to form
             sums[c] = sums.get(c, graph.zero) + (rates[b] if b == c else rates[b] * 2)
     bias = [
         graph.sum(x * graph.sum(part * rates[c] for c, part in sums.items()) for x, sums in row.items()) for row in rows

@@ -244,6 +244,14 @@ def test_parameters_with_impossible_defaults_are_a_warning() -> None:
     assert all("'b1'" in w["message"] for w in warnings)
 
 
+@pytest.mark.parametrize("limits", [[1, -1], ["a", "-a"], [{"value": 90, "unit": "deg"}, "pi/4"]])
+def test_reversed_limits_are_a_warning(limits: list[Any]) -> None:
+    given = changed(GOOD, ((*J, "limits"), limits), (("parameters", "a"), {"value": 0.5, "unit": "rad"}))
+    (told,) = (w for w in derive(Definition.read(given)).certificate["warnings"] if w["code"] == "limits-reversed")
+    assert told["pointer"] == "/bodies/0/joint/limits"
+    assert "'b1'" in told["message"]
+
+
 def test_a_negative_rotor_is_told_in_the_unit_of_its_joint() -> None:
     """In trees, too, of one number for both joints of a cylindrical one and of a list."""
     for armature in ("2*j", ["2*j", "2*j"]):

@@ -11,7 +11,7 @@ import pytest
 from closed_trees import tree_model
 from mechanics.reduced_parts import PARTS
 
-from substructures import Event, Model, Outputs, evaluate, simulate
+from substructures import Event, InvalidDocument, Model, Outputs, evaluate, simulate
 from substructures.analysis.closed.reduced import reduced_equations
 
 NAMES = {each["name"]: each for each in PARTS}
@@ -75,3 +75,38 @@ def test_of_driven_linkages_they_move_with_the_time() -> None:
     )
     found = evaluate(model, "dependent", [], t=0.4)["dependent"]
     np.testing.assert_allclose(found, evaluate(alone("slider-pin"), "dependent", [1.1])["dependent"], rtol=1e-14)
+
+
+def test_to_drive_one_is_refused_with_a_way_out() -> None:
+    dependent = alone("slider-pin").dependent[0]
+    tree = {"instances": [{"name": "x", "substructure": "slider-pin"}], "driven": {dependent: "2*t"}}
+    with pytest.raises(InvalidDocument) as raised:
+        tree_model(tree, {"slider-pin": NAMES["slider-pin"]})
+    (fault,) = raised.value.faults
+    assert (fault.pointer, fault.code) == (f"/driven/{dependent}", "unknown-coordinate")
+    assert "give 'x' the level 'full'" in fault.message
+
+
+def test_no_branch_is_chosen_where_two_meet() -> None:
+    """A parallelogram that starts flat, which may go on crossed: it has all coordinates, and is told why."""
+    start = [("crank", "base", 0), ("coupler", "crank", 1), ("rocker", "base", 2)]
+    bodies = [
+        {"name": name, "parent": parent, "mass": 1, "joint": {"type": "revolute", "placement": {"position": [x, 0, 0]}}}
+        for name, parent, x in start
+    ]
+    flat = {
+        "name": "flat",
+        "bodies": bodies,
+        "ports": [{"name": "tip", "body": "coupler", "position": [2, 0, 0]}],
+        "closures": [
+            {"name": "loop", "type": "pin", "from": "tip", "to": "rocker", "placement": {"position": [1, 0, 0]}}
+        ],
+        "independent": ["q_crank"],
+    }
+    tree = {"gravity": [0, -9.81, 0], "instances": [{"name": "x", "substructure": "flat"}]}
+    model = tree_model(tree, {"flat": flat})
+    assert model.dof == 3
+    (told,) = (x["message"] for x in model.certificate["warnings"] if x["code"] == "full-level")
+    assert "its two positions meet at the start, a dead centre: give one away from it" in told
+    open_ = {"q_crank": 1, "q_coupler": -1, "q_rocker": 1}
+    assert tree_model(tree, {"flat": {**flat, "start": open_}}).dof == 1

@@ -93,7 +93,7 @@ def driven_inputs(assembly: Assembly) -> dict[str, dict[str, object]]:
 
 
 def given_motions(assembly: Assembly) -> dict[str, Given]:
-    """s, s', s'' of all driven coordinates by name.
+    """s [rad, m], s' and s'' of all driven coordinates by name.
 
     Raises InvalidDocument (``/driven/name``): unknown coordinates, expressions that cannot be read or have a kink.
     """
@@ -101,6 +101,9 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
     given = reading.spec.driven
     for name in given.keys() - names.keys():
         message = f"there is no coordinate '{name}'{among(name, names)}"
+        if name in assembly.dependent.values:
+            message = f"'{name}' follows from the independent coordinates of its loops: drive one of these, or "
+            message += f"give '{name.partition('.')[0]}' the level 'full'"
         scope.fault(f"/driven/{escape(name)}", "unknown-coordinate", message)
     found: dict[str, Given] = {}
     for name in driven_names(assembly):
@@ -147,6 +150,7 @@ def put_in(
     that are free, beside them what the table says. ``axes``: those of coordinates by output. Raises as
     :func:`given_motions`.
     """
+    # loops first: where a driven coordinate moves dependent ones, z(y) is a function of it, and s is put in there, too
     outputs = reduced(assembly.dependent, list(every_coordinate(assembly)), outputs, axes)
     motions = given_motions(assembly)
     if not motions:
@@ -179,6 +183,7 @@ def _inertial(
     """
     n, metric = moving["metric"].shape[0], moving["metric"].expanded()
     zero = next(iter(rates.values())).graph.zero
+    # g_am s'^m and g_am s''^m, of driven rows a, too: g_00 is made of these, and `put_in` leaves them out at the end
     mixed, pull = _contracted(metric, 1, rates), _contracted(metric, 1, second)
     last = _contracted(mixed, 0, rates).get((), zero)
     own = _contracted(_contracted(metric, 1, free), 0, free).get((), zero)
@@ -243,6 +248,7 @@ def _without(shape: tuple[int, ...], axis: int) -> tuple[int, ...]:
 def _contracted(elements: Elements, axis: int, by: Mapping[int, Expr]) -> dict[tuple[int, ...], Expr]:
     """x_..m.. v^m for the driven coordinates m."""
     result: dict[tuple[int, ...], Expr] = {}
+    # sorted, so that sums have one order, and programs one digest, however the elements came about
     for index, x in sorted(elements.items()):
         if index[axis] in by:
             at, term = _without(index, axis), by[index[axis]] * x

@@ -73,6 +73,7 @@ def at_momenta(
     for a, rate in zip(reduction.rest, reduction.rates, strict=True):
         seeds |= {names[a]: rate, f"{names[a]}'": graph.symbol(f"{names[a]}''")}
     values = {f"{prefix}{name}": graph.zero for name in momenta for prefix in ("tau.", "")}
+    # q''^c = d/dt (K q'_a + w): along q' in positions and q'' in rates; no q^c is in it, and p is constant
     for k, second in enumerate(directional(reduction.moving, seeds)):
         name = list(momenta)[k]
         values |= {f"{name}'": reduction.moving[k], f"{name}''": second}
@@ -117,6 +118,7 @@ def _at_rest(
     """
     graph = assembly.scope.graph
     still = {f"{prefix}{name}{mark}": graph.zero for name in cyclic for prefix, mark in (("tau.", ""), ("", "''"))}
+    # q^c is still a symbol here: that nothing depends on it is what has to be shown before it is 0
     moving = _substituted(graph, outputs, still)
     vanishes = VanishingOnAllSides(graph)
     for name in cyclic:
@@ -175,6 +177,7 @@ class _Reduction:
         self.w = dict(zip(cyclic, factors.solve(self.p), strict=True))
         self.P = []
         for a in self.rest:
+            # K_ca = -(g_cc^-1 g_ca): the factors of g_cc serve K and w
             column = factors.solve([-(zero + self.g.get((c, a), 0)) for c in cyclic])
             self.P.append({a: graph.one, **{c: x for c, x in zip(cyclic, column, strict=True) if not x.is_zero}})
         self.projection = Projection(graph, self.P, self.rest)
@@ -182,6 +185,7 @@ class _Reduction:
         pairs = list(zip(self.P, self.rates, strict=True))
         self.moving = [self.w[c] + graph.sum(x[c] * v for x, v in pairs if c in x) for c in cyclic]
         speeds = {f"{names[c]}'": v for c, v in zip(cyclic, self.moving, strict=True)}
+        # what velocities are in (bias, forces) is at the q'^c that the momenta make
         self.found = _substituted(graph, outputs, speeds)
 
     def outputs(self) -> dict[str, Formulas]:
@@ -213,6 +217,7 @@ class _Reduction:
         n, graph = len(self.rest), self.graph
         place = {a: i for i, a in enumerate(self.rest)}
         mixed: Entries = {(place[a],): x for (a,), x in self._along(self.g, 0, self.w).items() if a in place}
+        # g_00 = -p_c w^c, negative: V - 1/2 g_00 is the amended potential
         last = -graph.sum(p * x for p, x in zip(self.p, self.w.values(), strict=True))
         own = graph.sum(x * self.rates[a] * self.rates[b] for (a, b), x in metric.expanded().items())
         found = {

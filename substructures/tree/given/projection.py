@@ -28,6 +28,7 @@ class Projection:
     def along(self, name: str, each: Formulas, axes: Sequence[int], entries: Entries, more: Terms = ()) -> Formulas:
         """An output with these ``entries`` along its ``axes`` of coordinates, and what is ``more`` in the result."""
         if name in OWN:
+            # laws of the joint itself: N^T would add the limits of others to them
             own: Entries = {(self.place[a], *rest): x for (a, *rest), x in entries.items() if a in self.place}
             return Formulas((len(self.place), *each.shape[1:]), own, each.symmetry)
         for axis in axes:
@@ -35,6 +36,7 @@ class Projection:
         if more:
             entries = self.sums([*entries.items(), *more])
         if name in SYMMETRIES:
+            # Gamma* keeps the symmetry in its last two indices alone: Gamma_abc = -Gamma_cba is of single joints
             entries = {i: x for i, x in entries.items() if i[-2] <= i[-1]}
         shape = tuple(len(self.place) if axis in axes else size for axis, size in enumerate(each.shape))
         return Formulas(shape, entries, SYMMETRIES.get(name, each.symmetry))

@@ -74,6 +74,7 @@ class _Reduced:
             a: graph.sum(x * speeds[j] * speeds[k] * (1 if j == k else 2) for j, k, x in rows)
             for a, rows in self.H.items()
         }
+        # z' = N y' and z'' = N y'' + H y' y' for the symbols of dependent coordinates
         self.values: dict[str, Expr] = {}
         for mark, more in (("'", {}), ("''", self.bent)):
             moving = [graph.symbol(f"{names[a]}{mark}") for a in self.free]
@@ -86,6 +87,7 @@ class _Reduced:
         """An output along its axes, as formula of all coordinates."""
         entries = dict(each.expanded())
         if name in BENT:
+            # before N^T, as the rest of it: N_ai g_ab H_bjk y'^j y'^k, and for closures G_a H_ajk y'^j y'^k
             entries = self.projection.sums([*entries.items(), *self._pull(outputs[BENT[name]])])
         elif not axes:
             return each
@@ -105,4 +107,5 @@ class _Reduced:
         """N_ai g_ab H_bjk."""
         for (i, b), x in self.projection.contracted(dict(metric.expanded()), 0).items():
             for j, k, bend in self.H.get(b, ()):
+                # H_jk = H_kj is kept for j <= k; a set, so that j = k comes once
                 yield from (((i, *both), x * bend) for both in {(j, k), (k, j)})

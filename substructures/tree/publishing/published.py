@@ -24,7 +24,6 @@ from substructures.tree.publishing.published_names import PartNames, part_names
 
 #: fields of bodies, ports and loads that are names or words, not numbers
 WORDS = frozenset(("name", "parent", "type", "coordinate", "velocities", "about", "body", "frame", "axes"))
-NOWHERE: tuple[dict[str, Any], ...] = ({}, {"position": [0, 0, 0]})
 
 
 @dataclass(frozen=True, slots=True)
@@ -84,6 +83,7 @@ def published(spec: TreeSpec, parts: Mapping[str, Part], wanted: Publication) ->
     document["ports"] = list(_ports(parts, names, wanted.ports))
     for load in spec.loads:
         document["loads"].append(load_of_part(load, names))
+    # in this order: closures may need frames of ports, and parameters are those that all of it names
     document["closures"] = list(_closures(spec, parts, names))
     document |= _reduction(spec, parts, names)
     document["bodies"] += names.frames
@@ -104,6 +104,7 @@ def _hosts_first(spec: TreeSpec) -> Iterator[Instance]:
     """The instances in the order of the coordinates of the tree."""
     waiting, done = list(spec.instances), {"world"}
     while waiting:
+        # as tree.assembly orders them: the first of the document whose host is there
         ready = next(each for each in waiting if each.at.partition(".")[0] in done)
         waiting.remove(ready)
         done.add(ready.name)
@@ -121,7 +122,7 @@ def _seat(instance: Instance, names: PartNames) -> list[dict[str, Any]]:
     """
     seat = names.frame(instance.at)
     placement = instance.placement.model_dump(exclude_defaults=True)
-    if placement in NOWHERE or not placement:
+    if not placement:
         names.bases[instance.name] = seat
         return names.new_frames()
     placed = names.expressions("", placement, f"/instances/{instance.name}/placement")

@@ -57,6 +57,7 @@ def _coupled(found: Published, parts: Mapping[str, Part], m: Mechanism, large: b
     evaluated = with_momenta(plan.chain, evaluated, axes.body)
     placed: list[PlacedPart] = []
     for part in evaluated:
+        # gravity is the host's
         placed.append(place(part, placed, ZERO))
     inertial, n = inertial_entries(plan, placed, not large, by_angles), len(m.joints)
     columns: dict[int, Columns] = {INTERFACE: {}}
@@ -113,6 +114,7 @@ def _bindings(names: PartNames, m: Mechanism, instance: str, part: Part) -> dict
     for symbol in part.program.symbols:
         if symbol.kind == "inertia":
             continue
+        # of tau.q and q' the name between is another one in the part, the marks stay
         effort = "tau." if symbol.name.startswith("tau.") else ""
         name = symbol.name.removeprefix(effort).rstrip("'")
         stands_for = names.symbol(instance, name)

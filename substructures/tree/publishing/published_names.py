@@ -93,6 +93,7 @@ class PartNames:
         instance, name = at.split(".")
         if name == BASE or f"{instance}.{name}" in self.bodies:
             return self.body(instance, name)
+        # a port as a body, once: of the new part nothing but bodies and its own ports have names
         if at not in self.seats:
             plain = read_json(self.parts[instance].definition.canonical())
             port = next(each for each in plain["ports"] if each["name"] == name)

@@ -33,6 +33,8 @@ from substructures.tree.given.loops.triangle import Complex, Solution, solutions
 
 #: relative difference of distances from the start that tells no branch
 SAME = 1e-6
+#: relative difference of two positions that is none: S = sqrt(S^2), of which rounding leaves the root of 1e-16
+MEETING = 1e-7
 
 
 @dataclass(frozen=True)
@@ -78,7 +80,9 @@ class _Solver:
         self.start = {q: self._constant(x) for q, x in self.definition.start.items()}
         self.numbers = {q: self.start.get(q, 0.0) for q in self.found.independent}
         self.numbers |= {
-            name: 1.0 if p.value is None else self._constant(p.value) for name, p in self.definition.parameters.items()
+            # branches are told apart at numbers: 1 for what has no default
+            name: 1.0 if p.value is None else self._constant(p.value)
+            for name, p in self.definition.parameters.items()
         }
 
     def _constant(self, given: Any) -> float:
@@ -94,6 +98,7 @@ class _Solver:
                 except NotPlanar as reason:
                     why = why or f"the closure '{closure.name}': {reason}"
                 else:
+                    # from the first one again: this one may bring an earlier one down to three unknown motions
                     waiting.remove(closure)
                     why = ""
                     break
@@ -113,12 +118,8 @@ class _Solver:
             found = [self._known(loop, each) for each in solutions(loop.motions, loop.K, loop.known)]
         except (ZeroDivisionError, ValueError):
             raise NotPlanar("points that have to be apart coincide") from None
-        gaps = [self._gap(each) for each in found]
-        best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
-        if math.isnan(gaps[best]):
-            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
-        if len(gaps) > 1 and abs(gaps[0] - gaps[1]) < SAME * max(gaps):
-            raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+        # chosen at numbers, the branch is that of all positions that are reached without a dead centre
+        best = self._nearest([self._numbers(values) for values, _ in found])
         values, angles = found[best]
         self.found.branches.append(best)
         self.numbers |= self._numbers(values)
@@ -139,6 +140,7 @@ class _Solver:
         for k in range(4):
             angle = along + graph.pi * k / 2
             if (cos(angle) - own[0][0]).is_zero and (sin(angle) - own[0][1]).is_zero:
+                # from now on cos and sin of it are those of independent angles, without quotients and roots
                 self.found.sums[name] = angle
                 self.found.angles = {s: a for s, a in self.found.angles.items() if name not in dict(s)}
 
@@ -166,6 +168,7 @@ class _Solver:
         graph = self.graph
         at = Scope(graph).read(self.definition.start.get(name, 0), "", no_names)
         c, s = times((x[0], x[1] * sign), (cos(at), -sin(at)))
+        # the jump of atan2 is half a turn away from the start
         return at + graph.function("atan2", s, c)
 
     def _numbers(self, values: Mapping[str, Expr]) -> dict[str, float]:
@@ -176,10 +179,23 @@ class _Solver:
         numbers = {symbol.name: self.numbers.get(symbol.name, 1.0) for symbol in made.symbols}
         return dict(zip(names, map(float, interpret(made, numbers)["v"]), strict=True))
 
-    def _gap(self, found: tuple[dict[str, Expr], dict[Sum, Complex]]) -> float:
-        """How far a solution is from the start; nan where there is none."""
-        numbers = self._numbers(found[0])
-        return sum(abs(x - self.start.get(name, 0.0)) for name, x in numbers.items())
+    def _gap(self, position: Mapping[str, float]) -> float:
+        """How far a position is from the start; nan where there is none."""
+        return sum(abs(x - self.start.get(name, 0.0)) for name, x in position.items())
+
+    def _nearest(self, positions: Sequence[Mapping[str, float]]) -> int:
+        """Which one of one or two positions, nan where there is none, is nearest to the start. Raises NotPlanar."""
+        gaps = [self._gap(each) for each in positions]
+        best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
+        if math.isnan(gaps[best]):
+            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
+        if len(positions) > 1:
+            if abs(gaps[0] - gaps[1]) < SAME * max(gaps):
+                raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+            # both branches go through it, and N has no value there: the start tells neither of them
+            if _meet(*(list(each.values()) for each in positions)):
+                raise NotPlanar("its two positions meet at the start, a dead centre: give one away from it")
+        return best
 
     def _move(self, loop: Loop) -> None:
         """N and H of the unknown coordinates of a loop."""
@@ -194,6 +210,7 @@ class _Solver:
         def solved(columns: Sequence[Expr]) -> list[Expr]:
             """-phi_z^-1 x, as a number where it is one."""
             found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in back]
+            # the ratio of bars that stay parallel is a number on closed positions alone: z(y) is put in to see it
             return [w if w.is_number else x for x, w in zip(found, self.found.put_in(found), strict=True)]
 
         others = list(enumerate(names))[len(z) :]
@@ -201,6 +218,7 @@ class _Solver:
             pushed = [graph.sum(row[k] * N[q][j] for k, q in others if j in N[q]) for row in slopes]
             for q, x in zip(z, solved(pushed), strict=True):
                 N.setdefault(q, {}).update({} if x.is_zero else {j: x})
+        # after all N: phi_ab N_a N_b runs over the unknown coordinates, too
         for j, k in combinations_with_replacement(y, 2):
             terms = []
             for row, bend in zip(slopes, bent, strict=True):
@@ -214,6 +232,10 @@ class _Solver:
                 terms.append(graph.sum(along))
             for q, x in zip(z, solved(terms), strict=True):
                 H.setdefault(q, {}).update({} if x.is_zero else {(j, k): x})
+
+
+def _meet(one: Sequence[float], other: Sequence[float]) -> bool:
+    return sum(abs(x - y) for x, y in zip(one, other, strict=True)) <= MEETING * sum(map(abs, (*one, *other)))
 
 
 def inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:

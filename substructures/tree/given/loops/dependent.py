@@ -40,6 +40,7 @@ class Dependent:
         given = [*self.values.values(), *(x for pair in self.angles.values() for x in pair)]
         given += [x for row in self.N.values() for x in row.values()]
         given += [*(x for bend in self.H.values() for x in bend.values()), *self.sums.values()]
+        # all in one pass, for what they have in common; taken off below in the order in which they are given
         found = iter(transfer(given, graph, bindings))
         own = tuple(names[q] for q in self.independent)
         values = {names[q]: next(found) for q in self.values}
@@ -66,6 +67,7 @@ class Dependent:
             elif not node.args or all(new[a] is a for a in node.args):
                 new[node] = node
             elif node.op in ("cos", "sin", "tan"):
+                # by the cosines that the triangle gave, so that no arc tangent is within a cosine
                 c, s = self._cos_sin(node.args[0], new)
                 new[node] = {"cos": c, "sin": s}.get(node.op) or s / c
             else:
@@ -76,6 +78,7 @@ class Dependent:
         """Of a sum of angles, by those of dependent coordinates in it."""
         terms, turns = linear_form(angle)
         turning = {name for known in self.angles for name, _ in known}
+        # half of a dependent angle has no cosine in those of whole ones: its value is put in
         whole = {x: str(x.value) for x, n in terms.items() if x.op == "sym" and n.denominator == 1}
         own = {name: terms[x] for x, name in whole.items() if name in turning}
         graph = self.graph
@@ -86,6 +89,7 @@ class Dependent:
         rest = rest + graph.pi * graph.number(turns)
         found: Complex = cos(rest), sin(rest)
         left = {name: int(n) for name, n in own.items()}
+        # sums of two first: the absolute angle of a bar is one quotient, z / |z|, its two angles are a product
         for known in sorted(self.angles, key=len, reverse=True):
             for sign in (1, -1):
                 while known and all(left.get(name, 0) * n * sign > 0 for name, n in known):

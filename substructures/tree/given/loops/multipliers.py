@@ -26,13 +26,15 @@ def loop_multipliers(
     """Those of the loops of dependent coordinates, by symbol ``lambda.<closure>.<row>`` [N, N m].
 
     ``names``: of all multipliers; ``needed``: R by dependent coordinate, without closures and contacts;
-    ``transmitted``: what its joint has to transmit, in which multipliers are linear, -G^T lambda.
+    ``transmitted``: what its joint has to transmit, in which multipliers are linear, -G^T lambda. Raises NotPlanar
+    where G_z is singular in all positions.
     """
     rows = {closure: [x for x in names if x.startswith(f"{PREFIX}{closure}.")] for closure in known.loops}
     z = list(known.values)
     slopes = dict(zip(z, gradient([transmitted[q] for q in z], names), strict=True))
     found: dict[str, Expr] = {}
     for closure, unknown in reversed(known.loops.items()):
+        # of later loops they are known by now; earlier loops do not act on these z, of contacts symbols stay
         forces = {x: found.get(x, known.graph.symbol(x)) for x in names if x not in rows[closure]}
         rest = [
             known.graph.sum(
@@ -41,6 +43,7 @@ def loop_multipliers(
             for q in unknown
         ]
         columns = {x: [-slopes[q][names.index(x)] for q in unknown] for x in rows[closure] if x in names}
+        # rows across the plane of the loop do nothing to z: their multipliers of least norm are 0
         acting = {x: column for x, column in columns.items() if not all(each.is_zero for each in column)}
         found |= dict.fromkeys(rows[closure], known.graph.zero)
         found |= dict(zip(acting, _least_norm(list(acting.values()), rest), strict=True))
@@ -52,6 +55,7 @@ def _least_norm(G: Sequence[Sequence[Expr]], rest: Sequence[Expr]) -> list[Expr]
     add, columns = rest[0].graph.sum, range(len(rest))
     if len(G) == len(rest):
         return [add(x * r for x, r in zip(row, rest, strict=True)) for row in _transposed(inverse(G))]
+    # more rows than unknown coordinates: less of what does nothing to these, the kernel of G_z^T
     square = inverse([[add(row[i] * row[j] for row in G) for j in columns] for i in columns])
     solved = [add(x * r for x, r in zip(row, rest, strict=True)) for row in square]
     return [add(x * s for x, s in zip(row, solved, strict=True)) for row in G]

@@ -93,6 +93,7 @@ class _Reader:
         self.ends = chains.end(closure[1], cut.start), chains.end(closure[2], cut.end, cut.position)
         first, other = (chains.path(end.parent) for end in self.ends)
         while first and other and first[0] == other[0]:
+            # what carries both ends moves neither against the other
             first, other = first[1:], other[1:]
         self.ways = first, other
         topology = chains.part.topology
@@ -105,8 +106,10 @@ class _Reader:
     def loop(self) -> Loop:
         """Where all unknown coordinates are zero, and as it is."""
         first, other = self.ways
+        # from B back to the common carrier and out to A: on the way back a joint moves by -q
         order = [*((k, 1, -1) for k in reversed(other)), *((k, 0, 1) for k in first)]
         open_ = [(k, side, sign) for k, side, sign in order if k in self.moved]
+        # motions in the plane that the cut joint leaves: with the unknown joints there have to be three
         cuts = {**dict.fromkeys(TURNING, 1), **dict.fromkeys(SLIDING, 1), **dict.fromkeys(FIXED, 0), ROD: 2}
         if self.type not in cuts:
             raise NotPlanar(f"its type '{self.type}' is none of a loop in a plane")
@@ -124,8 +127,10 @@ class _Reader:
         self._require_in_plane(plane, poses)
         turn = self._turn(plane, poses)
         motions += self._of_cut(plane, poses, ends[0])
+        # the far end of a rod is what has to come to B
         start = motions[-1].at if self.type == ROD else ends[0]
         motions = [replace(motion, length2=self._length2(open_, i)) for i, motion in enumerate(motions)]
+        # turns that are known: one of them may be the fourth corner of a parallelogram
         fixed = [k for way in self.ways for k in way if k not in self.moved and not self.chains.links[k].s]
         known = tuple(plane.point(self._at_zero(self.chains.pose(self._way(k))).r) for k in fixed)
         return Loop(tuple(unknown), tuple(motions), Closing(turn, start, ends[1]), known, self._rows(plane))
@@ -143,10 +148,12 @@ class _Reader:
 
     def _plane(self, poses: Sequence[Pose]) -> _Plane:
         """Across the axis of the first turn; along axes of the carrier, where they are in it."""
+        # R: common carrier -> joint frame, so that its third row is the joint axis in the carrier
         axis = [self.graph.lift(x) for x in poses[0].R[2]]
         for i in range(3):
             for sign in (1, -1):
                 if all((x - sign * (i == j)).is_zero for j, x in enumerate(axis)):
+                    # right-handed for both senses of the axis
                     j, k = ((i + 1) % 3, (i + 2) % 3)[::sign]
                     return _Plane(self.graph, (IDENTITY[j], IDENTITY[k], tuple(sign * x for x in IDENTITY[i])))  # type: ignore[arg-type]
         return _Plane(self.graph, poses[0].R)
@@ -165,6 +172,7 @@ class _Reader:
 
     def _require_in_plane(self, plane: _Plane, poses: Sequence[Pose]) -> None:
         """Raises NotPlanar unless the ends can meet."""
+        # along its axis, which is across the plane, it slides as it has to
         is_free = self.type == "cylindrical"
         if not is_free and not plane.all(sub(poses[1].r, poses[0].r))[2].is_zero:
             raise NotPlanar("its ends are not in one plane")
@@ -181,11 +189,14 @@ class _Reader:
     def _turn(self, plane: _Plane, poses: Sequence[Pose]) -> Complex:
         """e^(i kappa), the turn from the axes of A to those of B; 1 where the cut joint turns."""
         if self.type not in (*SLIDING, *FIXED):
+            # the total turn is free, as the cut joint turns by itself: 1 fixes it
             return self.graph.one, self.graph.zero
         axes = [[plane.all(apply(transpose(pose.R), axis)) for axis in IDENTITY] for pose in poses]
         flat = [(a[:2], b[:2]) for a, b in zip(*axes, strict=True) if a[2].is_zero]
         if flat:
+            # an axis in the plane has length 1 there: b a* is the turn
             return times(flat[0][1], conjugate(flat[0][0]))
+        # b_i = k a_i for the shadows of all three axes, and sum of |a_i|^2 = 2, the trace of the projection
         total: Complex = self.graph.zero, self.graph.zero
         for a, b in zip(*axes, strict=True):
             total = plus(total, times(b[:2], conjugate(a[:2])))
@@ -201,6 +212,7 @@ class _Reader:
         elif self.type not in FIXED:
             yield Motion(True, end)
             if self.type == ROD:
+                # where all is at zero the rod may point anywhere: along the first axis of the plane
                 yield Motion(True, plus(end, (self.cut.length, self.graph.zero)))
 
     def _length2(self, open_: Sequence[tuple[int, int, int]], i: int) -> Expr | None:
@@ -228,6 +240,7 @@ class _Reader:
             return None
         if self.chains.links[k].s:
             return None
+        # in the frame of a joint whose axis is across the plane the plane is that of its first two axes
         x, y = (self.graph.lift(c) for c in self._at_zero(self.chains.pose(beyond, end)).r[:2])
         return x * x + y * y
 
@@ -240,6 +253,7 @@ class _Reader:
         if self.type in TURNING:
             return x, y
         axes = [[plane.all(apply(transpose(pose.R), axis)) for axis in IDENTITY] for pose in (A, B)]
+        # sines of the angle, each times a constant: any that is not zero for all coordinates will do
         turned = [cross(a[:2], b[:2]) for a, b in zip(*axes, strict=True)]
         angle = next((t for t in turned if not t.is_zero), self.graph.zero)
         return (cross(axes[0][2][:2], (x, y)), angle) if self.type in SLIDING else (x, y, angle)

@@ -73,6 +73,7 @@ def solutions(three: Sequence[Motion], K: Closing, known: Sequence[Complex] = ()
     if slides == 3:
         raise ValueError("three slides")
     motions = list(three)
+    # X_2 X_3 (K^-1 X_1 K) = K: the first motion goes to the end, until the order is that of a formula below
     for _ in range(3):
         if _is_in_order(motions, slides):
             break
@@ -86,6 +87,7 @@ def _is_in_order(motions: Sequence[Motion], slides: int) -> bool:
     """Whether the motion that the formulas take last, or first, is there."""
     if slides:
         return not motions[2].is_turn if slides == 1 else motions[0].is_turn
+    # the side that no body holds is g: the two others are constant lengths, and shorter formulas
     return motions[2].length2 is None and motions[0].length2 is not None
 
 
@@ -133,6 +135,7 @@ def _slide_last(motions: Sequence[Motion], K: Closing, _: Sequence[Complex]) -> 
     one, two, slide = motions
     a, h, d = minus(two.at, one.at), minus(K.of(two.at), one.at), times(K.turn, slide.at)
     A, (along, across) = _length2(one, a), times(h, conjugate(d))
+    # both turns have one centre: only their sum is told
     if A.is_zero:
         raise ZeroDivisionError
     root = A.graph.sqrt(A - across * across)
@@ -145,6 +148,7 @@ def _slide_last(motions: Sequence[Motion], K: Closing, _: Sequence[Complex]) -> 
 def _two_slides(motions: Sequence[Motion], K: Closing, _: Sequence[Complex]) -> Iterator[Solution]:
     turn, two, three = motions
     w = times(conjugate(K.turn), minus(K.of(turn.at), turn.at))
+    # 0 for parallel slides, which do not tell how far: ZeroDivisionError
     det = cross(two.at, three.at)
     yield Solution({(0,): K.turn}, {1: cross(w, three.at) / det, 2: cross(two.at, w) / det})
 
