@@ -89,6 +89,8 @@ def ball_faults(definition: Defined, rates: Collection[str]) -> list[Fault]:
         for name in _OF_ANGLES:
             if getattr(joint, name) not in (0, None):
                 message = f"a {joint.type} joint has no angles, and no {name}: take the type '{INSTEAD[joint.type]}'"
+                spring = ", or for a spring a load of the type 'bushing' between both bodies"
+                message += spring if name == "stiffness" else ""
                 faults.append(Fault(f"{pointer}/{name}", "no-angles", message))
     for i, each in enumerate(definition.relations):
         for field, name in (("coordinate", each.coordinate), ("of", each.of)):

@@ -226,7 +226,7 @@ def test_bad_requests() -> None:
         (model_of(top()), {"rates": {"angular_momentum.z": 1}}, "/rates/angular_momentum.z", "no cyclic rate"),
         (model_of(top()), {"rates": {}, "precession": float("nan")}, "/precession", "finite"),
         (model_of(top()), {}, "/rates", "either 'rates' or 'momenta'"),
-        (model_of(top()), {"rates": {}, "held": "rates"}, "/held", "is not for trees with ball"),
+        (model_of(top()), {"rates": {}, "held": "rates"}, "/held", "are not known with ball"),
         (model_of(top()), {"rates": {}, "vary": "x.w_b_x", "between": (0, 1)}, "/vary", "no cyclic rate"),
         (model_of(top()), {"rates": {}, "precession": "any", **OVER_SPIN}, "/precession", "of single places"),
         (model_of(top()), {"rates": {}, "vary": "x.q", "between": (0, 1)}, "/vary", "no parameter or coordinate"),

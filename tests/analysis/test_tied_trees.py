@@ -15,7 +15,6 @@ from substructures import (
     Model,
     catalogue,
     linearise,
-    regulator,
     simulate,
 )
 from substructures.analysis.equations.nonholonomic.independent_rows import check_constraints, constraints_of
@@ -90,7 +89,6 @@ def test_what_is_left_of_it() -> None:
         lambda: simulate(model, [0, 0, 0], (0, 1), kind=ConstrainedMotion([Linear("x", "s.x'")])),
         lambda: motion_arguments(model, q=[0, 0, 0], span=(0, 1), constraints=(BLADE, BLADE)),
         lambda: quasi_velocity_equations(model, [Linear("x", "s.x'")]),
-        lambda: regulator(model, [0, 0, 0]),
     ]
     for each in refused:
         with pytest.raises(InvalidInput) as caught:

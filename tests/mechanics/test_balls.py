@@ -13,7 +13,7 @@ from damaged import require_all_found
 from in_depth import seeds
 from random_trees import model_of, tree_of, with_parameters
 
-from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate
+from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate, linearise
 from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret
 from substructures.quantities.centroidal import centroidal
@@ -106,6 +106,24 @@ def test_trees_of_parts(seed: int) -> None:
     expected = interpret(model.program, values, names)
     for name in names:
         assert deviation(found[name], expected[name]) < 1e-12, name
+
+
+def test_a_spring_at_a_ball_is_a_bushing() -> None:
+    """-k sin(t) n and k (1 - cos t) of a turn t about n; I w^2 = k_i of three stiffnesses about the axes at rest."""
+
+    def sprung(*k: float) -> Any:
+        load = {"type": "bushing", "from": "base", "to": "b", "angular_stiffness": list(k)}
+        body = {**TOP["bodies"][0], "mass": 1, "com": [0, 0, 0], "inertia": {"xx": 0.3, "yy": 0.4, "zz": 0.5}}
+        return model_of({"name": "sprung", "bodies": [body], "loads": [load]}, (0, 0, 0))
+
+    t, n = 0.8, np.array([1, 2, 2]) / 3
+    found = evaluate(sprung(7, 7, 7), ["forces", "potential_energy"], [np.cos(t / 2), *(np.sin(t / 2) * n)])
+    np.testing.assert_allclose(found["forces"], -7 * np.sin(t) * n, rtol=1e-13)
+    assert found["potential_energy"] == pytest.approx(7 * (1 - np.cos(t)), rel=1e-13)
+    at = linearise(sprung(2, 5, 9), [1, 0, 0, 0])
+    np.testing.assert_allclose(sorted(mode.frequency for mode in at.modes), np.sqrt([2 / 0.3, 5 / 0.4, 9 / 0.5]))
+    assert at.stability is not None
+    assert at.stability.verdict == "stable"
 
 
 def test_euler_and_lagrange_by_hand() -> None:

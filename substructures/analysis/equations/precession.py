@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import Literal
 
 import numpy as np
@@ -41,7 +42,7 @@ class Turning:
     axis: int | None
     wanted: Array
 
-    @property
+    @cached_property
     def blocks(self) -> dict[int, tuple[int, list[list[int]]]]:
         """Of cyclic rates of ball joints the number of their axis, and the rates of the joint in threes."""
         places = {name: a for a, name in enumerate(self.model.coordinates)}

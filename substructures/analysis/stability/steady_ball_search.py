@@ -53,10 +53,13 @@ class TurningSearch(BallSearch):
         self.varied[1][0] = [conditions.parameters.get(name, 0.0) for name in vary]
         self.v, self.second = np.zeros((1, n)), np.zeros((1, n))
         self.D, self.M = np.zeros((1, n, n)), np.zeros((1, n, n))
-        self.g, self.L, self.at_q = np.zeros((1, n, n)), np.zeros((1, n, 3)), np.zeros((1, len(model.positions)))
+        # of a place, and of those beside it
+        self.g, self.L = np.zeros((1 + 2 * n, n, n)), np.zeros((1 + 2 * n, n, 3))
+        self.at_q = np.zeros((1 + 2 * n, len(model.positions)))
         values = _values(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
         outputs = {"metric": self.g, "angular_momentum": self.L}
-        columns = [(list(model.positions), self.at_q), self.varied]
+        columns = [(list(model.positions), self.at_q), (self.varied[0], np.repeat(self.varied[1], 1 + 2 * n, axis=0))]
+        self.more = columns[1][1]
         self.inertia = program_kernel(model.program.select(list(outputs))).bind(outputs, values, columns=columns)
         super().__init__(model, within, conditions)
 
@@ -69,7 +72,7 @@ class TurningSearch(BallSearch):
     def put(self, name: str, value: float) -> None:
         """Another value of a parameter, or of a rate or momentum that is given."""
         if name in self.varied[0]:
-            self.varied[1][0] = value
+            self.varied[1][0] = self.more[:] = value
             self.conditions = replace(self.conditions, parameters={**self.conditions.parameters, name: value})
         else:
             cyclic = [self.model.coordinates[c] for c in self.given.cyclic]
@@ -77,7 +80,7 @@ class TurningSearch(BallSearch):
 
     def motion(self, q: Array) -> tuple[Array, Array, Array, float]:
         """v, S, g and Omega at a place."""
-        self.at_q[0] = q
+        self.at_q[:] = q
         self.inertia()
         return self.given.motion(self.g[0], self.L[0])
 
@@ -89,15 +92,19 @@ class TurningSearch(BallSearch):
             # of what changes with the place: D dv/dq + M dv'/dq
             model, ways = self.model, STEP * np.eye(self.model.dof)
             state = model.positions, model.coordinates, model.balls
-            sides = [self._changed(moved_on(*state, values["q"], way)) for way in (*ways, *-ways)]
-            slopes = (np.array(sides[: model.dof]) - np.array(sides[model.dof :])).T / (2 * STEP)
+            self.at_q[1:] = moved_on(
+                *state, np.repeat(values["q"][None], 2 * model.dof, axis=0), np.vstack((ways, -ways))
+            )
+            self.inertia()
+            sides = np.array([self._changed(k) for k in range(1, 1 + 2 * model.dof)])
+            slopes = (sides[: model.dof] - sides[model.dof :]).T / (2 * STEP)
             by = np.hstack((self.D[0], self.M[0])) @ slopes
             found["K"] = found["K"] + by @ by_displacements(*state, values["q"])
         return found
 
-    def _changed(self, q: Array) -> Array:
-        """v and v' (2n,)."""
-        v, S, _, _ = self.motion(q)
+    def _changed(self, k: int) -> Array:
+        """v and v' (2n,) at one of the places that were evaluated."""
+        v, S, _, _ = self.given.motion(self.g[k], self.L[k])
         return np.concatenate((v, -S @ v))
 
     def _slopes(self, q: Array) -> Array:

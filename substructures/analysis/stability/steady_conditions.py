@@ -99,7 +99,7 @@ def require_of_balls(request: BallRequest, held: Held, vary: str | None) -> None
         message = "'any' is of single places: give a number, or let 'precession' vary"
         raise InvalidArgument.at("/precession", "not-supported", message)
     if held != "momenta":
-        message = "'held' is not for trees with ball and floating joints, on which nothing acts: leave it out"
+        message = "rates that are held are not known with ball and floating joints: leave 'held' out for momenta"
         raise InvalidArgument.at("/held", "not-supported", message)
     if (request.rates is None) == (request.momenta is None):
         message = "give either 'rates' or 'momenta', by name; those that are not named are 0"
