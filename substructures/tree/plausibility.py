@@ -8,30 +8,36 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
+from flint import arb, ctx
 
 from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
-from substructures.part.definition import Body, Definition
-from substructures.part.mass import ARMATURE, limits_in_numbers, number_of, sum_of
+from substructures.part.definition import Definition
+from substructures.part.mass import (
+    PRECISION,
+    Tensor,
+    ball_sum,
+    faults_of,
+    impossible,
+    limits_in_numbers,
+    more,
+    number_of,
+    rounded,
+)
 from substructures.part.parameters import names_in_limits
-from substructures.part.topology import CHAINS
 from substructures.tree.document import TreeSpec
 
-#: an eigenvalue of Binet's tensor may be so much below zero, relative to the largest
-ROUNDING = 1e-9
+#: definitions of which it is remembered what they are by default
+KEPT = 256
 #: so much, relative to 1 and its size, a coordinate may be beside the value that a relation gives it
 APART = 1e-6
-Indices = NDArray[np.intp]
-#: m, h and Theta of a body for every set of values, (10, N); m = 0 where Theta is about the mass centre
-Tensor = NDArray[Any]
 
 
 class _Values(Mapping[str, Any]):
@@ -55,15 +61,45 @@ class _Values(Mapping[str, Any]):
         return len({**self._texts, **self._found})
 
 
-def _names_of(values: _Values, instance: str, names: Iterable[str]) -> dict[str, Any]:
-    """The same by their names in one definition; those that have a value."""
+def _names_of(values: _Values, prefix: str, names: Iterable[str]) -> dict[str, Any]:
+    """The same by their names in one definition, without a ``prefix``; those that have a value."""
     found = {}
     for name in names:
         try:
-            found[name] = values[f"{instance}.{name}"]
+            found[name] = values[f"{prefix}{name}"]
         except (KeyError, ExpressionError):
             continue
     return found
+
+
+@dataclass(frozen=True)
+class _Known:
+    """A definition by its digest."""
+
+    digest: str
+    definition: Definition = field(compare=False)
+
+    def names(self, read: Callable[..., Any], names: Iterable[str]) -> dict[str, Any]:
+        """Values of its parameters by default."""
+        given = self.definition.parameters.items()
+        texts = {name: in_si(each.value) for name, each in given if each.value is not None}
+        return _names_of(_Values(texts, {}, read), "", names)
+
+
+@lru_cache(maxsize=KEPT)
+def _at_defaults(known: _Known) -> tuple[tuple[str, Sequence[tuple[str, str]]], ...]:
+    """Code and message of what its bodies cannot have, where no parameter is given."""
+    names = known.names(value, known.definition.parameters)
+    found = [(body.name, *faults_of(body, names, 0)) for body in known.definition.bodies]
+    tensors = iter(impossible([tensor for *_, tensor in found if tensor is not None], 0))
+    told = ((body, (*faults, *(() if tensor is None else next(tensors)))) for body, faults, tensor in found)
+    return tuple((body, faults) for body, faults in told if faults)
+
+
+@lru_cache(maxsize=KEPT)
+def _mass_at_defaults(known: _Known) -> Any:
+    names = known.names(ball, _in_masses(known.definition))
+    return ball_sum((body.mass, names) for body in known.definition.bodies)
 
 
 def _in_masses(definition: Definition) -> set[str]:
@@ -91,14 +127,24 @@ class Plausibility:
     @cached_property
     def mass(self) -> float | None:
         """Of all bodies in kg where no parameter is given; None where that of one is not known then."""
-        values = _Values(self._texts, {}, ball)
-        names = {name: _names_of(values, name, _in_masses(each)) for name, each in self.definitions.items()}
-        return sum_of((body.mass, names[name]) for name, each in self.definitions.items() for body in each.bodies)
+        values, total = _Values(self._texts, {}, ball), arb(0)
+        for instance in self.spec.instances:
+            definition = self.definitions[instance.name]
+            if instance.parameters:
+                names = _names_of(values, f"{instance.name}.", _in_masses(definition))
+                mass = ball_sum((body.mass, names) for body in definition.bodies)
+            else:
+                mass = _mass_at_defaults(_Known(definition.digest, definition))
+            if mass is None:
+                return None
+            with ctx.workprec(PRECISION):
+                total += mass
+        return rounded(total)
 
     def masses(self, given: Mapping[str, Any]) -> Any:
         """Of all bodies in kg, with the parameters ``given`` (numbers, or (N,)) and defaults; NaN without a value."""
         values, pairs = _Values(self._texts, given), self.definitions.items()
-        names = {name: _names_of(values, name, _in_masses(each)) for name, each in pairs}
+        names = {name: _names_of(values, f"{name}.", _in_masses(each)) for name, each in pairs}
         found = [number_of(body.mass, names[name]) for name, each in pairs for body in each.bodies]
         return sum((np.nan if x is None else x for x in found), 0.0)
 
@@ -125,12 +171,15 @@ class Plausibility:
         """
         values, found = _Values(self._texts, given), list[tuple[str, str, Sequence[tuple[str, str]], Tensor | None]]()
         for i, instance in enumerate(self.spec.instances):
-            definition = self.definitions[instance.name]
-            names = _names_of(values, instance.name, definition.parameters)
+            definition, told = self.definitions[instance.name], f"instance '{instance.name}', body"
+            if not given and not instance.parameters:
+                known = _at_defaults(_Known(definition.digest, definition))
+                found += [(f"/instances/{i}", f"{told} '{body}'", faults, None) for body, faults in known]
+                continue
+            names = _names_of(values, f"{instance.name}.", definition.parameters)
             for body in definition.bodies:
-                told = f"instance '{instance.name}', body '{body.name}'"
-                found.append((f"/instances/{i}", told, *_faults(body, names, first)))
-        tensors = iter(_impossible([tensor for *_, tensor in found if tensor is not None], first))
+                found.append((f"/instances/{i}", f"{told} '{body.name}'", *faults_of(body, names, first)))
+        tensors = iter(impossible([tensor for *_, tensor in found if tensor is not None], first))
         return [
             {"pointer": pointer, "code": code, "message": f"{told}: {message}"}
             for pointer, told, faults, tensor in found
@@ -142,7 +191,7 @@ class Plausibility:
         values, found = _Values(self._texts, given), dict[str, tuple[Any, Any, str]]()
         for instance in self.spec.instances:
             definition = self.definitions[instance.name]
-            names = _names_of(values, instance.name, definition.parameters)
+            names = _names_of(values, f"{instance.name}.", definition.parameters)
             found |= {f"{instance.name}.{q}": ends for q, ends in limits_in_numbers(definition, names).items()}
         return found
 
@@ -162,7 +211,7 @@ class Plausibility:
             if len(bad):
                 k = int(bad[0])
                 range_ = " to ".join(f"{np.broadcast_to(x, len(q))[k]:.6g}" for x in (low, high))
-                value = f"{q[k, a]:.6g} {unit} in state {first + k}{_more(len(bad))}"
+                value = f"{q[k, a]:.6g} {unit} in state {first + k}{more(len(bad))}"
                 message = f"'{name}' is {value}; its joint has limits {range_}"
                 notices.append({"pointer": "/q", "code": "limits-left", "message": message})
         return notices
@@ -193,7 +242,7 @@ class Plausibility:
             if len(bad):
                 i = int(bad[0])
                 message = (
-                    f"'{name}' is {left[i]:.6g} in state {first + i}{_more(len(bad))}, and not {k:g}*'{of}' + {c:g} = "
+                    f"'{name}' is {left[i]:.6g} in state {first + i}{more(len(bad))}, and not {k:g}*'{of}' + {c:g} = "
                     f"{right[i]:.6g}, as the source of its definition says: both coordinates are free here"
                 )
                 notices.append({"pointer": "/q", "code": "relation-left", "message": message})
@@ -214,77 +263,3 @@ def _ends(limits: Mapping[str, tuple[Any, Any, str]], coordinates: Sequence[str]
     none = (-np.inf, np.inf, "")
     low, high = (np.broadcast_arrays(*(limits.get(name, none)[k] for name in coordinates)) for k in (0, 1))
     return np.stack(low, -1) if low else np.zeros(0), np.stack(high, -1) if high else np.zeros(0)
-
-
-def _more(count: int) -> str:
-    return f" (and in {count - 1} more)" if count > 1 else ""
-
-
-def _faults(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tuple[str, str]], Tensor | None]:
-    """Code and message of what a body cannot have, and its inertia where that is to be looked at, too: numbers alone
-    were, when formulas were derived.
-    """
-    tensor = body.inertia
-    inertia = [getattr(tensor, e) for e in ("xx", "yy", "zz", "xy", "xz", "yz")]
-    armature, kinds, found = body.joint.armature, [s for s, _ in CHAINS[body.joint.type]], list[tuple[str, str]]()
-    rotors = armature if isinstance(armature, tuple) else [armature] * len(kinds)
-    for given, s in dict.fromkeys((x, s) for x, s in zip(rotors, kinds, strict=True) if isinstance(x, str)):
-        found += _negative("armature", number_of(given, names), ARMATURE[s], first)
-    if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
-        return found, None
-    numbers = [
-        names[x] if type(x) is str and x in names else number_of(x, names) for x in (body.mass, *body.com, *inertia)
-    ]
-    if isinstance(body.mass, str):
-        found += _negative("mass", numbers[0], "kg", first)
-    if any(x is None for x in numbers):
-        return found, None
-    is_one = all(isinstance(x, float) for x in numbers)
-    together = np.array(numbers if is_one else np.broadcast_arrays(*numbers)).reshape(10, -1)
-    if tensor.about != "origin":
-        together[0] = 0
-    return found, together
-
-
-def _negative(what: str, given: Any, unit: str, first: int) -> Iterator[tuple[str, str]]:
-    if given is None:
-        return
-    if isinstance(given, float) and given >= 0:
-        return
-    found = np.atleast_1d(given)
-    bad = np.flatnonzero(~(found >= 0))
-    if len(bad):
-        is_what = "is negative" if found[bad[0]] < 0 else "is not a number"
-        yield f"negative-{what}", f"the {what} {found[bad[0]]:g} {unit} {is_what}{_place(found, bad, first)}"
-
-
-def _place(found: Array, bad: Indices, first: int) -> str:
-    return f", in state {first + bad[0]}{_more(len(bad))}" if len(found) > 1 else ""
-
-
-def _impossible(tensors: Sequence[Tensor], first: int) -> Iterator[list[tuple[str, str]]]:
-    """Of every tensor: about the mass centre it must have principal moments that obey the triangle inequality."""
-    if not tensors:
-        return
-    # all bodies at all values together: one call for the eigenvalues of many small matrices
-    m, x, y, z, xx, yy, zz, xy, xz, yz = np.concatenate(tensors, axis=1)
-    # what overflows is told below
-    with np.errstate(all="ignore"):
-        # J = tr(Theta)/2 1 - Theta has no negative eigenvalue;   about another point J_C = J - m h h^T
-        half, h = (xx + yy + zz) / 2, (x, y, z)
-        J = np.array([[half - xx, -xy, -xz], [-xy, half - yy, -yz], [-xz, -yz, half - zz]])
-        J = np.moveaxis(J - m * np.array([[a * b for b in h] for a in h]), -1, 0)
-    finite = np.isfinite(J).all(axis=(1, 2))
-    values = np.linalg.eigvalsh(np.where(finite[:, None, None], J, 0.0))
-    is_bad = ~finite | (values[:, 0] < -ROUNDING * np.abs(values).max(axis=1))
-    end = 0
-    for tensor in tensors:
-        start, end = end, end + tensor.shape[1]
-        yield list(_told(values[start:end], np.flatnonzero(is_bad[start:end]), first))
-
-
-def _told(eigenvalues: Array, bad: Indices, first: int) -> Iterator[tuple[str, str]]:
-    if len(bad):
-        shown = ", ".join(f"{x:.6g}" for x in np.sort(eigenvalues[bad[0]].sum() - eigenvalues[bad[0]]))
-        message = f"no rigid body has the principal moments of inertia {shown} kg m^2 about its mass centre"
-        yield "impossible-inertia", f"{message} (triangle inequality){_place(eigenvalues, bad, first)}"
