@@ -27,8 +27,7 @@ _Words = ctypes.c_int64 * len(RUN)
 @dataclass(frozen=True)
 class Pressing:
     """Contacts of a saddle point: see :mod:`.pressing`, whose arrays these are. Those behind ``scales`` are written at
-    every call: ``forces`` F (3 k, n), ``shares`` (m, r), ``columns`` (r, n), ``pressed`` y (r,), and ``power`` (1,), to
-    which theirs is added.
+    every call: ``forces`` F (3 k, n), ``shares`` (m, r), ``columns`` (r, n), and ``pressed`` y (r,).
     """
 
     rate: Array
@@ -41,7 +40,6 @@ class Pressing:
     shares: Array
     columns: Array
     pressed: Array
-    power: Array
 
     def words(self, jacobian: Array, rows: NDArray[np.int64]) -> NDArray[np.int64]:
         """The table PRESSING."""
@@ -57,6 +55,7 @@ class SaddlePoint:
     (m, n), ``acceleration`` c (m,), ``forces``, ``bias`` (n,). ``rows`` (r,): the independent ones of G and c, others
     at the next call where they have changed. ``moving`` (k,): the coordinates that are not held, of which q'' is zero.
     ``first``: place of q'' in what is written. ``pressing``: contacts, whose columns stand in the place of G^T.
+    ``velocities`` q' (n,) and ``power`` (1,), to which that of the forces of rows is added, where it counts.
     """
 
     metric: Array
@@ -68,6 +67,8 @@ class SaddlePoint:
     moving: NDArray[np.int64]
     first: int = 0
     pressing: Pressing | None = None
+    velocities: Array | None = None
+    power: Array | None = None
 
     def words(self, width: int) -> tuple[NDArray[np.int64], Any]:
         """The table SADDLE, and the memory that it needs."""
@@ -76,13 +77,14 @@ class SaddlePoint:
         matrix = Scratch.zeros(size, -(-(size + 1) // width) * width)
         arrays = self.metric, self.jacobian, self.acceleration, self.forces, self.bias, self.rows, self.moving
         sizes = len(self.forces), free, size, matrix.array.shape[1], self.first
-        contacts, beside = np.zeros(1, dtype=np.int64), [0, 0, 0, 0]
+        contacts, pressed, columns = np.zeros(1, dtype=np.int64), np.zeros(len(self.rows)), self.jacobian
         if (p := self.pressing) is not None:
-            contacts = p.words(self.jacobian, self.rows)
-            beside = [*map(address, (p.columns, p.velocities, p.pressed, p.power))]
+            contacts, pressed, columns = p.words(self.jacobian, self.rows), p.pressed, p.columns
+        works = [0 if x is None else address(x) for x in (self.velocities, self.power)]
+        beside = [address(columns), address(pressed), *works]
         own = 0 if p is None else address(contacts)
         table = [*map(address, arrays), matrix.address, *beside, *sizes, own]
-        return np.array(table, dtype=np.int64), (matrix, contacts)
+        return np.array(table, dtype=np.int64), (matrix, contacts, pressed)
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,8 @@ for independent rows of G and c, and the columns of the coordinates that move: a
 stable also where g alone is singular, as the LU factors of LAPACK are (N. J. Higham, Accuracy and Stability of
 Numerical Algorithms, 2002, chapter 9); without a solution q'' is not finite.
 
-Contacts have other columns than G^T beside their rows (see :mod:`.pressing`), and forces C y whose power counts.
+Contacts have other columns C than G^T beside their rows (see :mod:`.pressing`). The power q' . C y of the forces of
+rows that move counts, where that is wanted.
 """
 
 from __future__ import annotations
@@ -17,11 +18,11 @@ from substructures.compile.assembler import AssemblyWriter
 
 #: words of a saddle point: addresses of g (n, n), G (m, n), c (m,), Q, Gamma q'q' (n,), of the numbers of the r rows
 #: and of the k coordinates that move, and of a matrix (k + r, stride), whose rows are filled up to whole vectors;
-#: of contacts, 0 where there are none, the columns C (r, n), q', y (r,) and the power that theirs is added to; n, k,
-#: k + r, stride, the place of q'' in what is written, and the table of contacts, or 0
+#: columns C (r, n) of contacts, y (r,); q' and the power that theirs is added to, or 0; n, k, k + r, stride, the place
+#: of q'' in what is written, and the table of contacts, or 0
 SADDLE = (
     *("metric", "jacobian", "acceleration", "forces", "bias", "rows", "moving", "matrix"),
-    *("columns", "velocities", "pressed", "power"),
+    *("columns", "pressed", "velocities", "power"),
     *("n", "free", "size", "stride", "first", "contacts"),
 )
 
@@ -37,7 +38,7 @@ class _SaddlePoint:
         c = w.words("%table", SADDLE)
         self.at = {name: w.pointer(c[name]) for name in SADDLE[:12]}
         self.n, self.free, self.size, self.stride, self.first, self.contacts = (c[name] for name in SADDLE[12:])
-        self.press = w.do(f"icmp ne i64 {self.contacts}, 0")
+        self.press, self.works = (w.do(f"icmp ne i64 {word}, 0") for word in (self.contacts, c["power"]))
         #: where the largest number of a column is
         self.place = w.do("alloca i64, align 8")
 
@@ -60,7 +61,7 @@ class _SaddlePoint:
             self._store("0.0", w.offset(found, i, "double"))
         with w.loop("0", self.free) as i:
             self._store(self._load(self._entry(i, self.size)), w.offset(found, self._number("moving", i), "double"))
-        with w.when(self.press), w.loop(self.free, self.size) as i:
+        with w.when(self.works), w.loop(self.free, self.size) as i:
             self._work(i)
         return w.function("saddle_point", "ptr %table, ptr %x")
 
@@ -78,11 +79,8 @@ class _SaddlePoint:
             row = self._number("rows", kept)
             with w.loop("0", self.free) as j:
                 a = self._number("moving", j)
-                place = self._element(at["jacobian"], row, a)
-                self._store(self._load(place), self._entry(i, j))
-                beside = self._element(at["columns"], kept, a)
-                chosen = w.do(f"select i1 {self.press}, ptr {beside}, ptr {place}")
-                self._store(self._load(chosen), self._entry(j, i))
+                self._store(self._load(self._element(at["jacobian"], row, a)), self._entry(i, j))
+                self._store(self._load(self._column(kept, row, a)), self._entry(j, i))
             with w.loop(self.free, self.size) as j:
                 self._store("0.0", self._entry(i, j))
             c = self._load(w.offset(at["acceleration"], row, "double"))
@@ -92,11 +90,12 @@ class _SaddlePoint:
         """y of a column, which is that of -y in the matrix, and the power of its force."""
         w, at = self.w, self.at
         kept = w.arithmetic("sub", i, self.free)
+        row = self._number("rows", kept)
         y = w.do(f"fneg double {self._load(self._entry(i, self.size))}")
         self._store(y, w.offset(at["pressed"], kept, "double"))
         with w.loop("0", self.n) as a:
             velocity = self._load(w.offset(at["velocities"], a, "double"))
-            force = w.do(f"fmul double {self._load(self._element(at['columns'], kept, a))}, {y}")
+            force = w.do(f"fmul double {self._load(self._column(kept, row, a))}, {y}")
             power = w.do(f"fmul double {force}, {velocity}")
             self._store(w.do(f"fadd double {self._load(at['power'])}, {power}"), at["power"])
 
@@ -145,6 +144,11 @@ class _SaddlePoint:
     def _entry(self, i: str, j: str) -> str:
         w = self.w
         return w.offset(self.at["matrix"], w.arithmetic("add", w.arithmetic("mul", i, self.stride), j), "double")
+
+    def _column(self, kept: str, row: str, a: str) -> str:
+        """Of C, or of G^T where there are no contacts."""
+        own, other = self._element(self.at["jacobian"], row, a), self._element(self.at["columns"], kept, a)
+        return self.w.do(f"select i1 {self.press}, ptr {other}, ptr {own}")
 
     def _element(self, base: str, i: str, j: str) -> str:
         """Of a matrix with n columns."""

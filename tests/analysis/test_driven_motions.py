@@ -19,6 +19,7 @@ from substructures import (
     InvalidDocument,
     InvalidInput,
     Model,
+    Table,
     couple,
     equilibria,
     evaluate,
@@ -28,12 +29,18 @@ from substructures import (
     simulate_ensemble,
     steady_motions,
 )
+from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reduced import reduced_equations
+from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.simulate import Outputs
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 from substructures.quantities.powers import powers
 from substructures.quantities.reactions import reactions
 
@@ -330,3 +337,29 @@ def test_what_takes_no_moving_closures_says_so() -> None:
             call()
     assert not [each for each in first_integrals(model).integrals if each.kind == "energy"]
     assert loop_state(model, {"rod.q": -0.6, "block.x": 1.4, "bob.q": 0.3}, t=0.1).is_right
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+@pytest.mark.parametrize("is_driven", [True, False])
+def test_closures_that_move_are_machine_code(is_driven: bool) -> None:
+    """x' as in Python, with the power of what moves them; tables are left to it."""
+    law = "0.4 + 3*t + 0.2*sin(4*t)"
+    model = crank({"crank.q": law} if is_driven else {})
+    given: Any = {} if is_driven else {"crank.q": law}
+    start = {"crank.q": 0.4, "rod.q": -0.6, "block.x": 1.4, "bob.q": 0.3}
+    near = {name: start[name] for name in model.coordinates}
+    state = loop_state(model, near, t=0.2, prescribed=given).consistent
+    s = Constrained(model, Start(state.q, state.qd), (0, 1), given)
+    s.move(0.2, state.q, state.qd)
+    reduction = Projected(s, len(s.labels))
+    rates = reduction.compiled()
+    assert rates is not None
+    y = np.concatenate([state.q, state.qd, [0.0]])
+    found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)).rates(0.2, y)
+    np.testing.assert_allclose(found, reduction.rates(0.2, y), rtol=1e-10, atol=1e-10)
+    assert abs(found[-1]) > 1
+    if not is_driven:
+        held = {"crank.q": Table([0.0, 1.0, 2.0], [0.4, 0.5, 0.9])}
+        table = Constrained(model, Start(state.q, state.qd), (0, 1), held)
+        table.move(0.2, state.q, state.qd)
+        assert Projected(table, len(s.labels)).compiled() is None

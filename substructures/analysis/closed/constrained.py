@@ -10,8 +10,9 @@ Closures depend on the time where coordinates are driven.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property, lru_cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -204,17 +205,25 @@ class Constrained:
 
     def compiled(self, chosen: Equations) -> CompiledRates | None:
         """(q', q'', power) of (t, q, q') with these rows, which may change, in machine code; None where more than
-        kernels is called, or closures move.
+        kernels is called.
         """
-        given = self.inputs.runs()
-        runs = [*(given or ()), self._laws.run]
+        given, moved = self.inputs.runs(), self._moved
+        runs = [*(given or ()), self._laws.run, *(moved or ())]
         calls = tuple(run for run in runs if isinstance(run, BoundCall))
-        if given is None or len(calls) < len(runs) or not self.is_still:
+        if given is None or moved is None or len(calls) < len(runs):
             return None
         out = self._out
         saddle = SaddlePoint(self.g, self.G, self.c, out["forces"][0], out["bias"][0], *chosen)
+        if not self.is_still:
+            # what moves rows does the work of their forces
+            saddle = replace(saddle, velocities=self._x[0, self.n :], power=out[POWER])
         written = np.zeros((1, self.n))
         return CompiledRates(calls, self._t, self._x, written, out[POWER], self._folder, saddle, self.inputs.tables)
+
+    @cached_property
+    def _moved(self) -> tuple[Callable[[], None], ...] | None:
+        """What is called for c of prescribed coordinates; None where that is more than kernels."""
+        return self.prescribed.bound(self._t, self.c[None, self.closed :])
 
     @property
     def velocity_residual(self) -> Array:

@@ -57,7 +57,7 @@ class DryConstrained(Constrained):
         if rates is None or rates.saddle is None:
             return None
         call, forces, power = self._forces.taken(rates, self._out["forces"], self.signs)
-        saddle = replace(rates.saddle, forces=forces[0])
+        saddle = replace(rates.saddle, forces=forces[0], power=None if self.is_still else power)
         return replace(rates, calls=(*rates.calls, call), power=power, saddle=saddle)
 
     @property

@@ -62,6 +62,7 @@ class Prescribed:
         names = list(given)
         for k, row in zip(formulas, rows, strict=True):
             _require_smooth(row, span, f"/prescribed/{escape(names[k])}", unit_of(names[k], ""))
+        self._graph, self._rows = scope.graph, rows
         self._run = self._compiled(scope.graph, rows)
 
     def _compiled(self, graph: Graph, rows: Sequence[tuple[Expr, Expr, Expr]]) -> Callable[[], None] | None:
@@ -77,6 +78,15 @@ class Prescribed:
         run()
         self.values[self._places] = self._found[0]
         return run if p.symbols else None
+
+    def bound(self, t: Array, c: Array) -> tuple[Callable[[], None], ...] | None:
+        """Calls that write c = -s'' (1, k) at the time ``t`` (1,); None where there are tables, or pieces meet."""
+        if not self.index or self._run is None:
+            return () if not self._tables else None
+        if self._tables or self._meeting.size:
+            return None
+        p = program(self._graph, {"c": array((len(self.index),), lambda k: -self._rows[k][2])}, {"t": TIME})
+        return (compile_program(p, ["c"]).bind({"c": c}, {"t": t}),)
 
     def at(self, t: float) -> Array:
         """``values`` at a time; the array is used again by the next call."""

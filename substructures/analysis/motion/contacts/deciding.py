@@ -93,9 +93,11 @@ class DecidedContacts(ContactMotion):
             return None
         slow = np.where(self.turns, STOPS * self.approach, 0.0)
         laws = np.column_stack((np.where(rubs, self.friction, 0.0), slow, self.modes[:, 1:3]))
-        contacts = rows.pressing(self.rate.reshape(-1), self._x[0, self.n :], laws, self._out[2])
+        velocities = self._x[0, self.n :]
+        contacts = rows.pressing(self.rate.reshape(-1), velocities, laws)
         place = self.G.reshape(-1, self.n), self.bias.reshape(-1), Q, bias, rows.kept, np.arange(self.n)
-        return replace(rates, calls=(*rates.calls, *calls), saddle=SaddlePoint(self.g, *place, pressing=contacts))
+        saddle = SaddlePoint(self.g, *place, pressing=contacts, velocities=velocities, power=self._out[2])
+        return replace(rates, calls=(*rates.calls, *calls), saddle=saddle)
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power), in machine code where that may be."""

@@ -42,11 +42,11 @@ class Rows:
     inverse: Array
     scales: Array
 
-    def pressing(self, rate: Array, velocities: Array, laws: Array, power: Array) -> Pressing:
+    def pressing(self, rate: Array, velocities: Array, laws: Array) -> Pressing:
         """The same in machine code. ``rate`` G_0 (3 k,); ``laws`` (k, 4): mu, v_0 where ways turn, and ways."""
         n, m, r = len(velocities), len(self.inverse), len(self.kept)
         written = np.zeros((len(rate), n)), np.zeros((m, r)), np.zeros((r, n)), np.zeros(r)
-        return Pressing(rate, velocities, laws, self.held[:m], self.inverse, self.scales, *written, power)
+        return Pressing(rate, velocities, laws, self.held[:m], self.inverse, self.scales, *written)
 
     def forces(self, made: Pressing, force: Array) -> None:
         """x into ``force`` (k, 3), as machine code has found it."""
