@@ -373,6 +373,23 @@ def test_a_slip_from_rest_has_the_way_of_its_acceleration() -> None:
     assert motion.is_right, motion.checks
 
 
+def test_rows_that_depend_on_each_other_may_part() -> None:
+    """Two legs of 1 m side by side, which begin to spread on the ground: the rows of both feet are the same at the
+    start alone. All slide together by gravity, and the hip falls.
+    """
+    feet = [Contact(leg, f"w.f{leg}", type="point_line") for leg in "ab"]
+    model = of("w", walker("1/2"), [1, 0, -G])
+    motion = move(model, [0, 1, 0, 0], [0, 0, 0.5, -0.5], 0.5, feet)
+    assert motion.is_right, motion.checks
+    x, z, a, b = motion.q.T
+    np.testing.assert_allclose(x, motion.t**2 / 2, atol=1e-10)
+    np.testing.assert_allclose([z, b], [np.cos(a), -a], atol=1e-10)
+    # a hip of 1 kg at z = cos(a), and feet of 1/2 kg at -+sin(a) from it
+    rate = motion.qd[:, 2]
+    energy = (np.sin(a) * rate) ** 2 / 2 + (np.cos(a) * rate) ** 2 / 2 + G * np.cos(a)
+    np.testing.assert_allclose(energy, energy[0], rtol=1e-9)
+
+
 def test_a_rod_that_jams_is_told() -> None:
     """P. Painleve, Sur les lois du frottement de glissement, C. R. Acad. Sci. 121 (1895) 112-115: a rod of length 2
     that slides with its end ahead has no contact force where 1 + 3 sin^2 < 3 mu sin cos.

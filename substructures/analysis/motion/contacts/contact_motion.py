@@ -21,7 +21,16 @@ from numpy.typing import NDArray
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions
 from substructures.analysis.motion.contacts.complementarity import LEAST, least
-from substructures.analysis.motion.contacts.pressing import NONE, Pressed, Rows, independent, pressed, turn
+from substructures.analysis.motion.contacts.pressing import (
+    DEPENDENT,
+    NO_ROWS,
+    Pressed,
+    Rows,
+    independent,
+    parted,
+    pressed,
+    turn,
+)
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
@@ -73,14 +82,14 @@ class ContactMotion(RightHandSide):
         self.has_power, self.contacts, self._model = True, tuple(contacts), model
         k, n = len(self.contacts), self.n
         self.modes: Modes = np.zeros((k, 4))
-        self._rows: tuple[bytes, Rows] = b"", NONE
+        self._rows: tuple[bytes, Rows] = b"", NO_ROWS
         self.friction = np.array([contact.friction for contact in self.contacts])
         count = np.array([TANGENTS[contact.type] for contact in self.contacts])
         self.tangents = (np.arange(2) < count[:, None]) & (self.friction > 0)[:, None]
         self.rest_velocity = speed = np.array([contact.rest_velocity for contact in self.contacts])
         self.approach, self.rest = (share * np.minimum(speed, FAST) for share in (APPROACH, REST))
         self.force, self.scale, self.slow = np.zeros((k, 3)), np.ones(k), np.zeros(k)
-        self._watched: dict[tuple[float, bytes], tuple[Array, Array, Array]] = {}
+        self._watched: dict[tuple[float, bytes], tuple[Array, Array, Array, float]] = {}
         found = {GAP: np.zeros((1, k)), ROWS: np.zeros((1, k, 3, n)), RATE: np.zeros((1, k, 3))}
         found |= {BIAS: np.zeros((1, k, 3)), WHEN: np.zeros((1, k))}
         self.gap, self.G, self.rate, self.bias, self.acts = (x[0] for x in found.values())
@@ -224,8 +233,10 @@ class ContactMotion(RightHandSide):
 
     def watches(self) -> list[Watch]:
         """A gap closes, or a point comes back; a contact lifts off, stops, or sticks no more."""
-        found = []
+        found, rows = list[Watch](), self.independent()
         self._watched.clear()
+        if len(rows.inverse):
+            found.append(Watch("parted", lambda t, x: 10 * DEPENDENT - self._seen(t, x)[3], -1))
         # slips that begin end first, and what comes behind is not looked for
         for i, mode in sorted(enumerate(self.modes[:, 0].tolist()), key=lambda each: -each[1]):
             if mode in (OPEN, PASSING):
@@ -263,7 +274,7 @@ class ContactMotion(RightHandSide):
 
         def g(t: float, x: Array) -> float:
             """Of a state."""
-            _, velocities, forces = self._seen(t, x)
+            _, velocities, forces, _ = self._seen(t, x)
             v, way = velocities[i, 1:], self.modes[i, 1:3]
             if mode == STARTS:  # against its friction
                 way = -forces[i, 1:] / max(self.friction[i] * forces[i, 0], LEAST)
@@ -275,13 +286,14 @@ class ContactMotion(RightHandSide):
 
         return g
 
-    def _seen(self, t: float, x: Array) -> tuple[Array, Array, Array]:
-        """Gaps, velocities and forces at a state, which several watches look at."""
+    def _seen(self, t: float, x: Array) -> tuple[Array, Array, Array, float]:
+        """Gaps, velocities and forces at a state, which several watches look at, and how far rows have parted."""
         key = t, x.tobytes()
         if key not in self._watched:
             if len(self._watched) >= MANY:
                 self._watched.clear()
-            self.evaluate(t, x)
+            second = self.evaluate(t, x)[0].copy()
             self.look(t, x)
-            self._watched[key] = self.gap.copy(), self.velocities(x), self.force.copy()
+            apart = parted(self.independent(), self.g, self.G, self.bias, second)
+            self._watched[key] = self.gap.copy(), self.velocities(x), self.force.copy(), apart
         return self._watched[key]

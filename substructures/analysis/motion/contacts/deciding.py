@@ -33,7 +33,7 @@ from substructures.analysis.motion.contacts.contact_motion import (
     ContactMotion,
     Modes,
 )
-from substructures.analysis.motion.contacts.pressing import turn
+from substructures.analysis.motion.contacts.pressing import NO_ROWS, turn
 from substructures.analysis.motion.friction.dry_rates import DYNAMICS
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.right_hand_side import RightHandSide
@@ -135,7 +135,7 @@ class DecidedContacts(ContactMotion):
     def decided(self, t: float, x: Array) -> tuple[Modes, Array]:
         """The modes at a state, and the state after impacts, on the contacts. Raises ArithmeticError."""
         before = self.modes[:, 0].copy()
-        self.modes = self.modes.copy()
+        self.modes, self._rows, self._made = self.modes.copy(), (b"", NO_ROWS), (b"", None, None)
         self.look(t, x)
         approach = self.velocities(x)[:, 0]
         touching = self._touching(approach)

@@ -25,6 +25,8 @@ from substructures.compile.motion import Pressing
 
 #: rows that add less than this part of their length, in the metric, depend on others
 DEPENDENT = 1e-7
+#: of the sizes of accelerations: what a row is not kept by that depends on others
+KEPT = 1e-10
 #: most steps to ways of slips that begin, none longer than this [rad], and the last one, of which the square is left
 STEPS, FAR, FOUND = 30, 1.0, 1e-7
 #: for differences [rad]
@@ -54,19 +56,39 @@ class Rows:
         force.reshape(-1)[self.held] = made.shares @ made.pressed if len(self.inverse) else made.pressed
 
 
-NONE = Rows(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
+NO_ROWS = Rows(np.zeros(0, dtype=np.int64), np.zeros(0, dtype=np.int64), np.zeros(0), np.zeros(0))
 
 
 def independent(g: Array, G: Array, holds: NDArray[np.bool_], yields: Array) -> Rows:
     """Of rows G (k, 3, n) those that hold, by ``holds`` (k, 3); ``yields`` (k,): D. Raises LinAlgError."""
-    held, J = np.flatnonzero(holds), G.reshape(-1, len(g))
-    # lengths and angles in the metric, whatever the coordinates
-    rows = np.linalg.solve(np.linalg.cholesky(g), J[held].T)
-    R, order = scipy.linalg.qr(rows / np.maximum(np.linalg.norm(rows, axis=0), 1e-300), mode="r", pivoting=True)
-    rank = int((np.abs(np.diagonal(R)) > DEPENDENT).sum())
+    held = np.flatnonzero(holds)
+    if not len(held):
+        return NO_ROWS
+    pivots, order = _pivots(g, G, held)
+    rank = int((pivots > DEPENDENT).sum())
     kept = held[np.sort(order[:rank])]
     inverse = 1 / yields[held // 3] if rank < len(held) else np.zeros(0)
     return Rows(held, kept, inverse, 1 / np.diagonal(g))
+
+
+def _pivots(g: Array, G: Array, held: NDArray[np.int64]) -> tuple[Array, NDArray[np.int64]]:
+    """What rows add to those before, as parts of their lengths in the metric, and in which order."""
+    rows = np.linalg.solve(np.linalg.cholesky(g), G.reshape(-1, len(g))[held].T)
+    R, order = scipy.linalg.qr(rows / np.maximum(np.linalg.norm(rows, axis=0), 1e-300), mode="r", pivoting=True)
+    return np.abs(np.diagonal(R)), order
+
+
+def parted(rows: Rows, g: Array, G: Array, bias: Array, second: Array) -> float:
+    """How far rows that depended on others are from that, as :data:`DEPENDENT` is, where q'' = ``second`` (n,) of the
+    independent ones does not keep them; 0 where it does.
+    """
+    if not len(rows.inverse):
+        return 0.0
+    J, c, rank = G.reshape(-1, len(g))[rows.held], bias.reshape(-1)[rows.held], len(rows.kept)
+    if np.abs(J @ second + c).max() <= KEPT * (np.abs(J) @ np.abs(second) + np.abs(c)).max():
+        return 0.0
+    pivots, _ = _pivots(g, G, rows.held)
+    return float(pivots[rank]) if rank < len(pivots) else 0.0
 
 
 class Pressed(NamedTuple):
