@@ -167,6 +167,7 @@ BAD = {
     "free and hinge": (one('<freejoint/><joint/>'), "the only one of its body"),
     "replicate": (one('<replicate count="1.5"><geom size="1"/></replicate>'), "line 4: <replicate>: count is a whole"),
     "copies": (one('<replicate count="1000">' * 3 + "<geom/>" + "</replicate>" * 3), "when copies are written out"),
+    "range reversed": (one('<joint limited="true" range="1 -1"/>'), "line 4: <joint>: the range 1 -1 needs a first"),
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
@@ -199,6 +200,15 @@ def test_what_has_no_name_gets_one_that_nothing_has() -> None:
     found = import_file(one(inside))
     assert [b["joint"].get("coordinate") for b in found.definition["bodies"]][:2] == ["joint1_", "joint1"]
     assert len(found.definition["bodies"]) == 2
+
+
+@pytest.mark.parametrize("given", ["0 0", "1 -1", "-1 2"])
+def test_a_range_without_limited_is_one_where_mujoco_has_it(given: str) -> None:
+    data = one(f'<joint range="{given}"/><geom size="1"/>', '<compiler angle="radian"/>')
+    engine = mujoco.MjModel.from_xml_string(data.decode())
+    limits = import_file(data).definition["bodies"][0]["joint"].get("limits")
+    expected = engine.jnt_range[0].tolist() if engine.jnt_limited[0] else None
+    assert (limits and [float(x) for x in limits]) == expected
 
 
 def test_what_is_left_out_is_told() -> None:

@@ -68,6 +68,23 @@ class Compiler:
         return decimal_of(math.radians(float(degrees)))
 
 
+def range_of(node: Node, compiler: Compiler) -> tuple[Number, Number] | None:
+    """The limits of a joint or tendon, in the units of the file, None of one that has none.
+
+    Without ``limited`` a range of which the first number is not below the second, such as 0 0, is none; with it, it is
+    refused. Raises InvalidDocument.
+    """
+    limited = node.attributes.get("limited", "auto")
+    if "range" not in node.attributes or limited == "false" or (limited == "auto" and not compiler.autolimits):
+        return None
+    low, high = node.numbers("range", 2)
+    if value(low) < value(high):
+        return low, high
+    if limited == "true":
+        raise refuse(node.place, "bad-value", f"the range {low} {high} needs a first number below the second")
+    return None
+
+
 def _sequence(node: Node) -> str:
     found = node.text_of("eulerseq")
     if len(found) != 3 or not set(found.lower()) <= set("xyz"):
