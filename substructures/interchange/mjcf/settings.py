@@ -18,6 +18,12 @@ from substructures.interchange.rotations import from_axis_angle, from_quaternion
 from substructures.interchange.xml import Node
 
 MAIN = "main"
+#: what defaults for any kind of actuator are kept as
+ACTUATOR = "actuator"
+_ACTUATORS = (
+    "general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle",
+    "adhesion", "dcmotor",
+)  # fmt: skip
 _ORIENTATIONS = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
 _YES = {"true": True, "false": False}
 
@@ -119,7 +125,10 @@ _SETTINGS: dict[str, Callable[[Node], Any]] = {
 
 
 class Defaults:
-    """Default classes: the attributes that elements of a tag have where they say nothing else."""
+    """Default classes: the attributes that elements of a tag have where they say nothing else.
+
+    All actuators have the same: what <motor> says there holds for <general>, too, and what comes later replaces it.
+    """
 
     def __init__(self, root: Node) -> None:
         self._classes: dict[str, dict[str, dict[str, str]]] = {MAIN: {}}
@@ -131,7 +140,8 @@ class Defaults:
         own = {tag: dict(attributes) for tag, attributes in (known or inherited).items()}
         for child in node.children:
             if child.tag != "default":
-                own[child.tag] = own.get(child.tag, {}) | child.attributes
+                tag = ACTUATOR if child.tag in _ACTUATORS else child.tag
+                own[tag] = own.get(tag, {}) | child.attributes
         self._classes[name] = own
         for child in node.all("default"):
             self._read(child, own, child.text_of("class"))
