@@ -167,6 +167,7 @@ BAD = {
     "free and hinge": (one('<freejoint/><joint/>'), "the only one of its body"),
     "replicate": (one('<replicate count="1.5"><geom size="1"/></replicate>'), "line 4: <replicate>: count is a whole"),
     "copies": (one('<replicate count="1000">' * 3 + "<geom/>" + "</replicate>" * 3), "when copies are written out"),
+    "range reversed": (one('<joint limited="true" range="1 -1"/>'), "line 4: <joint>: the range 1 -1 needs a first"),
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
@@ -199,6 +200,39 @@ def test_what_has_no_name_gets_one_that_nothing_has() -> None:
     found = import_file(one(inside))
     assert [b["joint"].get("coordinate") for b in found.definition["bodies"]][:2] == ["joint1_", "joint1"]
     assert len(found.definition["bodies"]) == 2
+
+
+@pytest.mark.parametrize(
+    ("head", "actuator"),
+    [
+        ('<general armature="2" gear="3"/>', "<motor {}/>"),
+        ('<motor gear="3"/>', '<general {} armature="2"/>'),
+        ('<position armature="2" damping="1"/><motor gear="3"/>', "<velocity {}/>"),
+        ('<motor gear="3"/><default class="x"><position gear="5" armature="2"/></default>', '<velocity class="x" {}/>'),
+    ],
+)
+def test_defaults_of_one_kind_of_actuator_are_those_of_all(head: str, actuator: str) -> None:
+    on, inside = 'joint="j"', '<joint name="j"/><inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    tail = f"<actuator>{actuator.format(on)}</actuator></mujoco>"
+    data = one(inside, f"<default>{head}</default>").replace(b"</mujoco>", tail.encode())
+    engine = mujoco.MjModel.from_xml_string(data.decode())
+    state = mujoco.MjData(engine)
+    state.qvel[:] = 1
+    mujoco.mj_forward(engine, state)
+    mass = np.zeros(1)
+    mujoco.mj_mulM(engine, state, mass, np.ones(1))
+    joint = import_file(data).definition["bodies"][0]["joint"]
+    ours = [1 + float(joint["armature"]), -float(joint.get("damping", 0))]
+    assert ours == pytest.approx([mass[0], state.qfrc_passive[0]])
+
+
+@pytest.mark.parametrize("given", ["0 0", "1 -1", "-1 2"])
+def test_a_range_without_limited_is_one_where_mujoco_has_it(given: str) -> None:
+    data = one(f'<joint range="{given}"/><geom size="1"/>', '<compiler angle="radian"/>')
+    engine = mujoco.MjModel.from_xml_string(data.decode())
+    limits = import_file(data).definition["bodies"][0]["joint"].get("limits")
+    expected = engine.jnt_range[0].tolist() if engine.jnt_limited[0] else None
+    assert (limits and [float(x) for x in limits]) == expected
 
 
 def test_what_is_left_out_is_told() -> None:

@@ -7,8 +7,9 @@ Source: https://mujoco.readthedocs.io/en/stable/XMLreference.html#actuator
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import replace
 
-from substructures.interchange.mjcf.settings import Defaults
+from substructures.interchange.mjcf.settings import ACTUATOR, Defaults
 from substructures.interchange.numbers import ONE, ZERO, Number, decimal_of, value
 from substructures.interchange.report import Report
 from substructures.interchange.xml import Node
@@ -23,7 +24,7 @@ def rotor_laws(root: Node, defaults: Defaults, report: Report) -> tuple[dict[str
     types = {each.attributes.get("name", ""): each.attributes.get("type", "hinge") for each in _joints(root, defaults)}
     added: tuple[dict[str, Number], dict[str, Number]] = ({}, {})
     for node in (each for actuators in root.all("actuator") for each in actuators.children):
-        actuator = defaults.applied(node, None)
+        actuator = replace(defaults.applied(replace(node, tag=ACTUATOR), None), tag=node.tag)
         _tell(actuator, report)
         laws = {law: value(next(iter(actuator.numbers(law, None, ())), ZERO)) for law in _LAWS}
         name = actuator.attributes.get("joint", actuator.attributes.get("jointinparent", ""))

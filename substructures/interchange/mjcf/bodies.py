@@ -10,7 +10,7 @@ import numpy as np
 from substructures.interchange.merge import Seat, judge, vector
 from substructures.interchange.mjcf.geoms import Mass, mass_of, summed
 from substructures.interchange.mjcf.meshes import Meshes, UnknownMass
-from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation
+from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation, range_of
 from substructures.interchange.numbers import (
     ONE,
     ORIGIN,
@@ -201,13 +201,11 @@ class Bodies:
         return self.compiler.angle(x)
 
     def _limits(self, node: Node, kind: str) -> tuple[Number, Number] | None:
-        if "range" not in node.attributes:
-            return None
-        limited = node.attributes.get("limited", "auto")
-        if limited == "false" or (limited == "auto" and not self.compiler.autolimits):
-            return None
-        low, high = node.numbers("range", 2)
-        return (self._angle(low), self._angle(high)) if kind == "revolute" else (low, high)
+        found = range_of(node, self.compiler)
+        if found is None or kind != "revolute":
+            return found
+        low, high = map(self._angle, found)
+        return low, high
 
     def _rotor(self, motions: tuple[Motion, ...], inertial: Inertial) -> tuple[tuple[Motion, ...], Inertial]:
         """The armature a of a free joint: a |v|^2 / 2 remains a law of its slides, a |omega|^2 / 2 is a moment a 1."""

@@ -18,6 +18,12 @@ from substructures.interchange.rotations import from_axis_angle, from_quaternion
 from substructures.interchange.xml import Node
 
 MAIN = "main"
+#: what defaults for any kind of actuator are kept as
+ACTUATOR = "actuator"
+_ACTUATORS = (
+    "general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle",
+    "adhesion", "dcmotor",
+)  # fmt: skip
 _ORIENTATIONS = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
 _YES = {"true": True, "false": False}
 
@@ -68,6 +74,23 @@ class Compiler:
         return decimal_of(math.radians(float(degrees)))
 
 
+def range_of(node: Node, compiler: Compiler) -> tuple[Number, Number] | None:
+    """The limits of a joint or tendon, in the units of the file, None of one that has none.
+
+    Without ``limited`` a range of which the first number is not below the second, such as 0 0, is none; with it, it is
+    refused. Raises InvalidDocument.
+    """
+    limited = node.attributes.get("limited", "auto")
+    if "range" not in node.attributes or limited == "false" or (limited == "auto" and not compiler.autolimits):
+        return None
+    low, high = node.numbers("range", 2)
+    if value(low) < value(high):
+        return low, high
+    if limited == "true":
+        raise refuse(node.place, "bad-value", f"the range {low} {high} needs a first number below the second")
+    return None
+
+
 def _sequence(node: Node) -> str:
     found = node.text_of("eulerseq")
     if len(found) != 3 or not set(found.lower()) <= set("xyz"):
@@ -102,7 +125,10 @@ _SETTINGS: dict[str, Callable[[Node], Any]] = {
 
 
 class Defaults:
-    """Default classes: the attributes that elements of a tag have where they say nothing else."""
+    """Default classes: the attributes that elements of a tag have where they say nothing else.
+
+    All actuators have the same: what <motor> says there holds for <general>, too, and what comes later replaces it.
+    """
 
     def __init__(self, root: Node) -> None:
         self._classes: dict[str, dict[str, dict[str, str]]] = {MAIN: {}}
@@ -114,7 +140,8 @@ class Defaults:
         own = {tag: dict(attributes) for tag, attributes in (known or inherited).items()}
         for child in node.children:
             if child.tag != "default":
-                own[child.tag] = own.get(child.tag, {}) | child.attributes
+                tag = ACTUATOR if child.tag in _ACTUATORS else child.tag
+                own[tag] = own.get(tag, {}) | child.attributes
         self._classes[name] = own
         for child in node.all("default"):
             self._read(child, own, child.text_of("class"))

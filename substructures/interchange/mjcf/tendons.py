@@ -16,7 +16,7 @@ import numpy as np
 from substructures.errors import meant
 from substructures.interchange.bindings import joints_of
 from substructures.interchange.mjcf.loops import poses_of
-from substructures.interchange.mjcf.settings import Compiler, Defaults
+from substructures.interchange.mjcf.settings import Compiler, Defaults, range_of
 from substructures.interchange.numbers import ONE, ZERO, Number, Triple, decimal_of, value
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Link, Tendon
@@ -33,7 +33,7 @@ def tendons_of(
     root: Node, links: tuple[Link, ...], sites: Sites, defaults: Defaults, report: Report
 ) -> tuple[Tendon, ...]:
     """Those with stiffness or damping. Raises InvalidDocument for joints and sites that are not there."""
-    reader = _Reader(links, sites, Compiler.of(root).autolimits, report)
+    reader = _Reader(links, sites, Compiler.of(root), report)
     found: list[Tendon] = []
     for node in (each for section in root.all("tendon") for each in section.children):
         given = replace(defaults.applied(replace(node, tag="tendon"), None), tag=node.tag)
@@ -47,7 +47,7 @@ class _Reader:
 
     links: tuple[Link, ...]
     sites: Sites
-    autolimits: bool
+    compiler: Compiler
     report: Report
 
     def read(self, node: Node, name: str) -> Iterator[Tendon]:
@@ -55,7 +55,7 @@ class _Reader:
         laws = {law: node.numbers(law, None, (ZERO,)) or (ZERO,) for law in ("stiffness", "damping")}
         acting = [law for law, numbers in laws.items() if any(map(value, numbers))]
         lost = [law for law in _LEFT_OUT if any(value(x) for x in node.numbers(law, None, (ZERO,)))]
-        lost += ["range"] if self._is_limited(node) else []
+        lost += ["range"] if range_of(node, self.compiler) is not None else []
         obstacle = self._obstacle(node, laws)
         lost = [*acting, *lost] if obstacle else lost
         if lost:
@@ -85,10 +85,6 @@ class _Reader:
         if any(value(x) for numbers in laws.values() for x in numbers[1:]):
             return "which is a polynomial"
         return f"which has more than {MOST} sites" if len(node.children) > MOST else ""
-
-    def _is_limited(self, node: Node) -> bool:
-        said = node.attributes.get("limited", "auto")
-        return "range" in node.attributes and (said == "true" or (said == "auto" and self.autolimits))
 
     def _joint(self, node: Node) -> tuple[str, Number]:
         name, known = node.text_of("joint"), joints_of(self.links)
