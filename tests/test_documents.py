@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 import pytest
-from hypothesis import HealthCheck, given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from pydantic import Field
 
@@ -205,11 +205,6 @@ def in_numpy(data: Any, as_array: bool) -> Any:
     return {float: np.float64, str: np.str_}.get(type(data), lambda x: x)(data)
 
 
-# how long an example takes says how busy the machine is
-ANY_TIME = settings(deadline=None, suppress_health_check=[HealthCheck.too_slow])
-
-
-@ANY_TIME
 @given(
     st.recursive(
         st.none() | st.booleans() | st.integers(-(10**20), 10**20) | st.floats(-1e99, 1e99) | st.text(),
@@ -242,7 +237,6 @@ def test_writing_has_the_same_depth() -> None:
     assert fault_of(write_json, [data])[1] == "nesting"
 
 
-@ANY_TIME
 @given(plain)
 def test_round_trip(data: Any) -> None:
     written = write_json(data)
@@ -250,7 +244,6 @@ def test_round_trip(data: Any) -> None:
     assert write_json(read_json(written)) == written
 
 
-@ANY_TIME
 @given(st.binary(max_size=60) | st.text(alphabet="[]{}:,\"\\ \n-&*!|>%@`#?'0eE.+a", max_size=60).map(str.encode))
 def test_arbitrary_bytes_raise_nothing_else(data: bytes) -> None:
     for read in (read_json, read_yaml):
@@ -337,7 +330,6 @@ def test_yaml_that_is_written_is_read_back_exactly(value: Any) -> None:
     assert write_yaml(read_yaml(text)) == text
 
 
-@ANY_TIME
 @given(st.dictionaries(st.text(), plain, max_size=4))
 def test_any_plain_data_in_yaml(value: dict[str, Any]) -> None:
     text = write_yaml(value)
