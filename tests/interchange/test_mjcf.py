@@ -274,6 +274,17 @@ def test_connect_and_weld_are_closures(kind: str, rows: int) -> None:
             assert np.abs(ours).max() < 1e-12
 
 
+@pytest.mark.parametrize("given", ["", 'active="true"', 'class="on"'])
+def test_constraints_that_a_class_takes_back_are_not_there(given: str) -> None:
+    head = '<default><equality active="false"/><default class="on"><equality active="true"/></default></default>'
+    bound = f'<connect body1="b" body2="c" anchor="1 0 0" {given}/><joint joint1="p" joint2="r" {given}/>'
+    text = LOOP.format(bound).replace("<worldbody>", f"{head}<worldbody>")
+    engine = mujoco.MjModel.from_xml_string(text)
+    found = import_file(text.encode())
+    closures = [] if found.tree is None else found.tree.get("closures", [])
+    assert [len(closures), len(found.definition.get("relations", []))] == engine.eq_active0.tolist()
+
+
 @pytest.mark.parametrize(
     ("site", "message"),
     [("tipp", "there is no site 'tipp'; did you mean 'tip'"), ("tip", "both bodies are 'c': name two")],
