@@ -175,6 +175,7 @@ BAD = {
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
+    "no mass to scale": (one("<joint/>", '<compiler settotalmass="5"/>'), "line 3: .*settotalmass has nothing"),
     "no body": (b"<mujoco/>", "the file has no <body>"),
     "two joints": (one('<joint name="j"/>\n<joint name="j" axis="1 0 0"/>'), "line 5: .* a second joint 'j'"),
     "two bodies": (one("<body name='b'/>"), "a second link 'b'"),

@@ -124,7 +124,10 @@ def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:
         if link.unweighed is not None:
             message = "the mass of a mesh needs its file, as all masses are scaled by settotalmass: give an <inertial>"
             raise refuse(link.unweighed, "mesh-inertia", message)
-    factor = total / sum(value(link.inertial.mass) for link in links)
+    mass = sum(value(link.inertial.mass) for link in links)
+    if mass <= 0:
+        raise refuse(links[0].place, "no-mass", "no body has a mass, so that settotalmass has nothing to scale")
+    factor = total / mass
     scaled = []
     for link in links:
         own = link.inertial
