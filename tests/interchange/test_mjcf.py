@@ -47,6 +47,10 @@ FEATURES = {
                            '<geom size="1"/>'),
     "bounds": ('<compiler boundmass="3" boundinertia=".5"/>', '<geom size=".1" pos="1 0 0"/>'),
     "balanced": ('<compiler balanceinertia="true"/>', '<inertial pos="1 0 0" mass="2" diaginertia="1 1 9"/>'),
+    "bounds, then balanced": ('<compiler balanceinertia="true" boundinertia=".5"/>',
+                              '<inertial pos="1 0 0" mass="2" diaginertia=".1 .1 1"/>'),
+    "bounds and balanced": ('<compiler balanceinertia="true" boundinertia=".5"/>',
+                            '<inertial pos="1 0 0" mass="2" diaginertia=".1 .1 9"/>'),
     "total mass": ('<compiler settotalmass="7"/>', '<geom size=".1" pos="1 0 0"/>'),
     "hinges": ("", '<geom size=".1"/><joint name="a" pos="1 2 3" axis="1 1 0"/><joint name="b" pos="-1 0 2"/>'),
     "ref": ("", '<geom size=".1" pos="1 2 0"/><joint name="a" pos="1 0 0" ref="30" springref="40" stiffness="3"/>'),
@@ -171,6 +175,7 @@ BAD = {
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
+    "no mass to scale": (one("<joint/>", '<compiler settotalmass="5"/>'), "line 3: .*settotalmass has nothing"),
     "no body": (b"<mujoco/>", "the file has no <body>"),
     "two joints": (one('<joint name="j"/>\n<joint name="j" axis="1 0 0"/>'), "line 5: .* a second joint 'j'"),
     "two bodies": (one("<body name='b'/>"), "a second link 'b'"),
@@ -272,6 +277,17 @@ def test_connect_and_weld_are_closures(kind: str, rows: int) -> None:
         assert np.linalg.norm(ours[:3]) == pytest.approx(np.linalg.norm(data.efc_pos[:3]), abs=1e-12)
         if not q.any():
             assert np.abs(ours).max() < 1e-12
+
+
+@pytest.mark.parametrize("given", ["", 'active="true"', 'class="on"'])
+def test_constraints_that_a_class_takes_back_are_not_there(given: str) -> None:
+    head = '<default><equality active="false"/><default class="on"><equality active="true"/></default></default>'
+    bound = f'<connect body1="b" body2="c" anchor="1 0 0" {given}/><joint joint1="p" joint2="r" {given}/>'
+    text = LOOP.format(bound).replace("<worldbody>", f"{head}<worldbody>")
+    engine = mujoco.MjModel.from_xml_string(text)
+    found = import_file(text.encode())
+    closures = [] if found.tree is None else found.tree.get("closures", [])
+    assert [len(closures), len(found.definition.get("relations", []))] == engine.eq_active0.tolist()
 
 
 @pytest.mark.parametrize(

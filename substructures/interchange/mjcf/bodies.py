@@ -270,12 +270,13 @@ class Bodies:
         low_mass, low_moment = self.compiler.boundmass, self.compiler.boundinertia
         mass = own.mass if value(own.mass) >= low_mass else decimal_of(low_mass)
         moments, axes = np.linalg.eigh(tensor([value(x) for x in own.inertia]))
-        if self.compiler.balanceinertia and moments[0] + moments[1] < moments[2]:
-            moments = np.full(3, moments.mean())
+        bounded = np.maximum(moments, low_moment)
+        if self.compiler.balanceinertia and bounded[0] + bounded[1] < bounded[2]:
+            bounded = np.full(3, bounded.mean())
         elif moments[0] >= low_moment:
             return replace(own, mass=mass)
         self.report.warning(node.place, "moments of inertia changed as <compiler> asks for", "physics")
-        theta = axes @ np.diag(np.maximum(moments, low_moment)) @ axes.T
+        theta = axes @ np.diag(bounded) @ axes.T
         return Inertial(mass, own.com, cleaned(six_of(theta)))
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +11,7 @@ from substructures.array import Array
 from substructures.errors import among, meant
 from substructures.interchange.bindings import joints_of, mimic_of
 from substructures.interchange.merge import Seat, vector
+from substructures.interchange.mjcf.settings import Defaults
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Link, Loop, Mimic, Motion
@@ -24,32 +25,37 @@ Pose = tuple[Array, Array]
 Sites = Mapping[str, tuple[str | None, Seat]]
 
 
-def loops_of(root: Node, links: tuple[Link, ...], sites: Sites, report: Report) -> tuple[Loop, ...]:
+def equalities(root: Node, defaults: Defaults) -> list[Node]:
+    """The constraints of all <equality>, with what defaults say of them (``active``)."""
+    found = [node for section in root.all("equality") for node in section.children]
+    return [replace(defaults.applied(replace(node, tag="equality"), None), tag=node.tag) for node in found]
+
+
+def loops_of(nodes: Iterable[Node], links: tuple[Link, ...], sites: Sites, report: Report) -> tuple[Loop, ...]:
     """The closures of all active <connect> and <weld>; frames coincide where no joint has moved, or are of sites."""
     found: list[Loop] = []
     poses = poses_of(links, {})
-    for section in root.all("equality"):
-        for node in section.children:
-            if node.attributes.get("active", "true") == "false":
-                report.ignored(node.place, "an equality constraint that is not active")
-            elif node.tag == "joint":
-                continue  # see bindings_of
-            elif node.tag not in ("connect", "weld"):
-                message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
-                report.lost(node.place, message, "topology")
-            else:
-                name = node.attributes.get("name", f"loop{len(found) + 1}")
-                found.append(_loop(node, name, poses, sites))
+    for node in nodes:
+        if node.attributes.get("active", "true") == "false":
+            report.ignored(node.place, "an equality constraint that is not active")
+        elif node.tag == "joint":
+            continue  # see bindings_of
+        elif node.tag not in ("connect", "weld"):
+            message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
+            report.lost(node.place, message, "topology")
+        else:
+            name = node.attributes.get("name", f"loop{len(found) + 1}")
+            found.append(_loop(node, name, poses, sites))
     return tuple(found)
 
 
-def bindings_of(root: Node, links: tuple[Link, ...], report: Report) -> tuple[Mimic, ...]:
+def bindings_of(nodes: Iterable[Node], links: tuple[Link, ...], report: Report) -> tuple[Mimic, ...]:
     """The linear <joint> constraints that are active: q1 - ref1 = c0 + c1 (q2 - ref2)."""
     found: list[Mimic] = []
     refs = {motion.name: value(motion.offset) for link in links for motion in link.motions}
     known = joints_of(links)
-    for node in (each for section in root.all("equality") for each in section.all("joint")):
-        if node.attributes.get("active", "true") == "false":
+    for node in nodes:
+        if node.tag != "joint" or node.attributes.get("active", "true") == "false":
             continue
         first, second = node.text_of("joint1"), node.attributes.get("joint2")
         c = [*(value(x) for x in node.numbers("polycoef", None, (ZERO, ONE))), 0.0, 0.0, 0.0, 0.0, 0.0][:5]

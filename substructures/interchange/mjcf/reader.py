@@ -8,7 +8,7 @@ from dataclasses import replace
 from substructures.interchange.known.mjcf import MJCF
 from substructures.interchange.mjcf.actuators import rotor_laws
 from substructures.interchange.mjcf.bodies import Bodies
-from substructures.interchange.mjcf.loops import bindings_of, loops_of
+from substructures.interchange.mjcf.loops import bindings_of, equalities, loops_of
 from substructures.interchange.mjcf.meshes import Meshes
 from substructures.interchange.mjcf.replicate import written_out
 from substructures.interchange.mjcf.settings import Compiler, Defaults
@@ -52,13 +52,14 @@ def read_mjcf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
     gravity, place = _gravity(root, report)
     links = _with_total_mass(in_order(bodies.links), bodies.compiler.settotalmass)
     points = {name: (link, seat.position) for name, (link, seat) in bodies.sites.items()}
+    bound = equalities(root, defaults)
     robot = Robot(
         root.attributes.get("model", ""),
         links,
         report,
         frames=tuple(bodies.frames),
-        mimics=bindings_of(root, links, report),
-        loops=loops_of(root, links, bodies.sites, report),
+        mimics=bindings_of(bound, links, report),
+        loops=loops_of(bound, links, bodies.sites, report),
         tendons=tendons_of(root, links, points, defaults, report),
         gravity=gravity,
         gravity_place=place,
@@ -123,7 +124,10 @@ def _with_total_mass(links: tuple[Link, ...], total: float) -> tuple[Link, ...]:
         if link.unweighed is not None:
             message = "the mass of a mesh needs its file, as all masses are scaled by settotalmass: give an <inertial>"
             raise refuse(link.unweighed, "mesh-inertia", message)
-    factor = total / sum(value(link.inertial.mass) for link in links)
+    mass = sum(value(link.inertial.mass) for link in links)
+    if mass <= 0:
+        raise refuse(links[0].place, "no-mass", "no body has a mass, so that settotalmass has nothing to scale")
+    factor = total / mass
     scaled = []
     for link in links:
         own = link.inertial
