@@ -122,9 +122,10 @@ def faults_of(body: Body, names: Mapping[str, Any], first: int) -> tuple[list[tu
         found += _negative("armature", number_of(given, names), ARMATURE[s], first)
     if not any(isinstance(x, str) for x in (body.mass, *body.com, *inertia)):
         return found, None
-    numbers = [
-        names[x] if type(x) is str and x in names else number_of(x, names) for x in (body.mass, *body.com, *inertia)
-    ]
+    # most are names of floats, which need not be read; other numbers become floats
+    entries = (body.mass, *body.com, *inertia)
+    known = [names.get(x) if type(x) is str else None for x in entries]
+    numbers = [k if isinstance(k, float) else number_of(x, names) for k, x in zip(known, entries, strict=True)]
     if isinstance(body.mass, str):
         found += _negative("mass", numbers[0], "kg", first)
     if any(x is None for x in numbers):
