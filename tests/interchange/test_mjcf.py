@@ -13,6 +13,8 @@ from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
+from substructures.interchange.mjcf.reader import read_mjcf
+from substructures.interchange.xml import read_xml
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
 pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
@@ -205,6 +207,20 @@ def test_what_has_no_name_gets_one_that_nothing_has() -> None:
     found = import_file(one(inside))
     assert [b["joint"].get("coordinate") for b in found.definition["bodies"]][:2] == ["joint1_", "joint1"]
     assert len(found.definition["bodies"]) == 2
+
+
+def test_closures_and_tendons_without_a_name_get_one_that_nothing_has() -> None:
+    ends = 'body1="b" body2="c" anchor="1 0 0"'
+    tendon = '<fixed {} stiffness="1"><joint joint="p" coef="1"/></fixed>'
+    tendons = tendon.format('name="tendon2"') + tendon.format("")
+    text = LOOP.format(f'<connect name="loop2" {ends}/><connect {ends}/>')
+    text = text.replace("</mujoco>", f"<tendon>{tendons}</tendon></mujoco>")
+    engine = mujoco.MjModel.from_xml_string(text)
+    assert [engine.neq, engine.ntendon] == [2, 2]
+    found = import_file(text.encode())
+    assert found.tree is not None
+    assert len(TreeSpec.read(found.tree).closures) == 2
+    assert [tendon.name for tendon in read_mjcf(read_xml(text.encode())).tendons] == ["tendon2", "tendon2_"]
 
 
 @pytest.mark.parametrize(
