@@ -256,6 +256,24 @@ def test_a_range_without_limited_is_one_where_mujoco_has_it(given: str) -> None:
     assert (limits and [float(x) for x in limits]) == expected
 
 
+@pytest.mark.parametrize(
+    "options",
+    [
+        '<option><flag gravity="disable"/></option><option><flag gravity="enable"/></option>',
+        '<option><flag gravity="enable"/></option><option><flag gravity="disable"/></option>',
+        '<option><flag gravity="disable"/></option><option gravity="0 0 -3"><flag contact="disable"/></option>',
+        '<option gravity="0 0 -3"><flag spring="disable"/></option><option><flag spring="enable"/></option>',
+    ],
+)
+def test_of_flags_the_last_counts_as_in_mujoco(options: str) -> None:
+    text = LOOP.format('<connect body1="b" body2="c" anchor="1 0 0"/>').replace("<worldbody>", f"{options}<worldbody>")
+    engine, found = mujoco.MjModel.from_xml_string(text), import_file(text.encode())
+    assert found.tree is not None
+    is_off = bool(engine.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+    assert TreeSpec.read(found.tree).gravity == ((0, 0, 0) if is_off else tuple(engine.opt.gravity))
+    assert not any("springs and dampers" in remark["message"] for remark in found.report)
+
+
 def test_what_is_left_out_is_told() -> None:
     tail = '<tendon><fixed name="t" armature="2"><joint joint="j" coef="1"/></fixed></tendon>'
     data = one('<joint name="j" frictionloss="1"/><geom size="1"/>').replace(b"</mujoco>", f"{tail}</mujoco>".encode())
