@@ -171,6 +171,8 @@ class Bodies:
             raise refuse(node.place, "not-read", message)
         if kind == "spherical" and value(self._law(node, "armature")):
             raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
+        if kind == "spherical" and range_of(node, self.compiler) is not None:
+            self.report.lost(node.place, "range of a ball joint is not read: it turns to any attitude here")
         if value(node.number("frictionloss", ZERO)):
             message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
             self.report.lost(node.place, message)
