@@ -13,6 +13,7 @@ from decimal import Decimal
 from fractions import Fraction
 from functools import cache, lru_cache
 from importlib import import_module
+from math import inf
 from threading import Lock
 from typing import Any
 
@@ -85,8 +86,12 @@ class Unit:
 
     @property
     def scale(self) -> float:
-        """The factor as a double."""
-        return float(self.factor * Fraction(_registry_pi()) ** self.pi) if self.pi else float(self.factor)
+        """The factor as a double; infinite beyond their range."""
+        exact = self.factor * Fraction(_registry_pi()) ** self.pi if self.pi else self.factor
+        try:
+            return float(exact)
+        except OverflowError:
+            return inf
 
 
 def _written(factor: Fraction, pi: int) -> str:

@@ -62,6 +62,9 @@ class Distribution(DocumentPart):
             raise PydanticCustomError("one-distribution", "give one of 'values', 'uniform' and 'normal'")
         if self.values is not None and self.count is not None:
             raise PydanticCustomError("counted-twice", "'values' are as many as they are: leave 'count' out")
+        factor = self.factor
+        if not all(math.isfinite(x * factor) for x in self.values or self.uniform or self.normal or ()):
+            raise PydanticCustomError("number-not-finite", "in SI a number is not finite: give smaller ones")
         return self
 
 

@@ -79,8 +79,7 @@ def _si_numbers(given: Mapping[str, Any], units: Mapping[str, PlaceUnits], point
     for message in _contradictions(found, given["unit"], units):
         raise InvalidArgument.at(pointer, "unit-mismatch", message)
     values = numeric(given["value"], f"{pointer}/value")
-    with np.errstate(over="ignore"):
-        scaled: Array = values * found.scale if values.ndim else np.asarray(_scaled(given["value"], found))
+    scaled = _all_scaled(values, found) if values.ndim else np.asarray(_scaled(given["value"], found))
     if not np.isfinite(scaled).all():
         raise InvalidArgument.at(f"{pointer}/value", "number-not-finite", "in SI the number is not finite")
     if not scaled.ndim:
@@ -93,6 +92,14 @@ def _contradictions(found: Unit, text: str, units: Mapping[str, PlaceUnits]) -> 
         expected = dimension_of(unit) if isinstance(unit, str) else None
         if isinstance(expected, Dimensioned) and expected.dimension != found.dimension:
             yield f"{expected} expected{f' for {name!r}' if name else ''}, found {text}"
+
+
+def _all_scaled(values: Array, unit: Unit) -> Array:
+    """Numbers in SI; one by one where the factor itself is beyond the range of doubles."""
+    if math.isinf(unit.scale):
+        return np.array([_scaled(x, unit) for x in values.flat], dtype=np.float64).reshape(values.shape)
+    with np.errstate(over="ignore"):
+        return values * unit.scale
 
 
 def _scaled(given: Any, unit: Unit) -> float:

@@ -13,6 +13,8 @@ from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret
 from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import import_file
+from substructures.interchange.mjcf.reader import read_mjcf
+from substructures.interchange.xml import read_xml
 
 mujoco = pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
 pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
@@ -207,6 +209,20 @@ def test_what_has_no_name_gets_one_that_nothing_has() -> None:
     assert len(found.definition["bodies"]) == 2
 
 
+def test_closures_and_tendons_without_a_name_get_one_that_nothing_has() -> None:
+    ends = 'body1="b" body2="c" anchor="1 0 0"'
+    tendon = '<fixed {} stiffness="1"><joint joint="p" coef="1"/></fixed>'
+    tendons = tendon.format('name="tendon2"') + tendon.format("")
+    text = LOOP.format(f'<connect name="loop2" {ends}/><connect {ends}/>')
+    text = text.replace("</mujoco>", f"<tendon>{tendons}</tendon></mujoco>")
+    engine = mujoco.MjModel.from_xml_string(text)
+    assert [engine.neq, engine.ntendon] == [2, 2]
+    found = import_file(text.encode())
+    assert found.tree is not None
+    assert len(TreeSpec.read(found.tree).closures) == 2
+    assert [tendon.name for tendon in read_mjcf(read_xml(text.encode())).tendons] == ["tendon2", "tendon2_"]
+
+
 @pytest.mark.parametrize(
     ("head", "actuator"),
     [
@@ -238,6 +254,24 @@ def test_a_range_without_limited_is_one_where_mujoco_has_it(given: str) -> None:
     limits = import_file(data).definition["bodies"][0]["joint"].get("limits")
     expected = engine.jnt_range[0].tolist() if engine.jnt_limited[0] else None
     assert (limits and [float(x) for x in limits]) == expected
+
+
+@pytest.mark.parametrize(
+    "options",
+    [
+        '<option><flag gravity="disable"/></option><option><flag gravity="enable"/></option>',
+        '<option><flag gravity="enable"/></option><option><flag gravity="disable"/></option>',
+        '<option><flag gravity="disable"/></option><option gravity="0 0 -3"><flag contact="disable"/></option>',
+        '<option gravity="0 0 -3"><flag spring="disable"/></option><option><flag spring="enable"/></option>',
+    ],
+)
+def test_of_flags_the_last_counts_as_in_mujoco(options: str) -> None:
+    text = LOOP.format('<connect body1="b" body2="c" anchor="1 0 0"/>').replace("<worldbody>", f"{options}<worldbody>")
+    engine, found = mujoco.MjModel.from_xml_string(text), import_file(text.encode())
+    assert found.tree is not None
+    is_off = bool(engine.opt.disableflags & mujoco.mjtDisableBit.mjDSBL_GRAVITY)
+    assert TreeSpec.read(found.tree).gravity == ((0, 0, 0) if is_off else tuple(engine.opt.gravity))
+    assert not any("springs and dampers" in remark["message"] for remark in found.report)
 
 
 def test_what_is_left_out_is_told() -> None:

@@ -16,7 +16,7 @@ import numpy as np
 import pyarrow as pa
 import pytest
 from fastapi.testclient import TestClient
-from pydantic import BaseModel
+from pydantic import BaseModel, ValidationError
 
 from service.models.numbers import ANALYSES
 from service.models.requests import arguments, read_request
@@ -26,6 +26,9 @@ from service.schemas.state_sets import Grid, Sample
 from service.settings import Limits
 from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
 from substructures.documents import escape
+from substructures.documents.units import read_unit
+from substructures.ensembles.samples import Distribution
+from substructures.quantities.measured import si_values
 from substructures.quantities.numbers.evaluation import evaluate
 
 from .conftest import PENDULUM, SLIDER
@@ -382,6 +385,28 @@ def test_evaluations_list_no_further_numbers() -> None:
     found = {path for path, has in numbers_of(EvaluationRequest) if has}
     assert {p for p in found if not any(f"{x}.".startswith(f"{p}.") for x in listed)} == set()
     assert [path for path, has in numbers_of(EvaluationRequest) if not has] == []
+
+
+@pytest.mark.parametrize(
+    "q", [measured(1, "km^99/mm^99"), measured([1], "km^99/mm^99"), measured([1e300], "km^9/mm^9")]
+)
+def test_units_beyond_the_range_of_doubles_are_refused(model: Model, filled: TestClient, q: Plain) -> None:
+    body = {"quantities": ["forces"], "q": [0.1], "parameters": {"arm.m": q | {"unit": f"kg*{q['unit']}"}}}
+    answer = filled.post("/v1/trees/cell/evaluations", json=body)
+    assert answer.status_code == 422, answer.text
+    where = "/parameters/arm.m/value"
+    assert [(e["pointer"], e["code"]) for e in answer.json()["errors"]] == [(where, "number-not-finite")]
+    with pytest.raises(InvalidInput) as caught:
+        evaluate(model, ["forces"], q=[0.1, 0.2], parameters=body["parameters"])
+    assert [(f.pointer, f.code) for f in caught.value.faults] == [(where, "number-not-finite")]
+
+
+def test_the_factor_of_a_unit_may_be_beyond_the_range_of_doubles() -> None:
+    small = [Decimal(0), 1e-300]
+    assert si_values(measured(small, "km^99/mm^99"), "", "/q") == [0.0, 1e294]
+    assert read_unit("km^99/mm^99").scale == float("inf")
+    with pytest.raises(ValidationError, match="in SI a number is not finite"):
+        Distribution.model_validate({"values": [1.0], "unit": "km^99/mm^99"})
 
 
 def test_the_science_takes_units_too(model: Model) -> None:

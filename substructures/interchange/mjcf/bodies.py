@@ -10,7 +10,7 @@ import numpy as np
 from substructures.interchange.merge import Seat, judge, vector
 from substructures.interchange.mjcf.geoms import Mass, mass_of, summed
 from substructures.interchange.mjcf.meshes import Meshes, UnknownMass
-from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, orientation, range_of
+from substructures.interchange.mjcf.settings import Compiler, Defaults, choice, name_of, orientation, range_of
 from substructures.interchange.numbers import (
     ONE,
     ORIGIN,
@@ -96,7 +96,7 @@ class Bodies:
         return Seat(triple(node.numbers("pos", 3, ORIGIN)), to_rpy(orientation(node, self.compiler)))
 
     def _body(self, node: Node, parent: str | None, childclass: str | None, outer: Seat) -> None:
-        name = node.attributes.get("name", self._unnamed(f"body{len(self.links) + 1}"))
+        name = name_of(node, f"body{len(self.links) + 1}", self._named)
         childclass = node.attributes.get("childclass", childclass)
         if float(value(node.number("gravcomp", ZERO))):
             message = "gravcomp, a force against gravity, is left out: add a load for it"
@@ -119,12 +119,6 @@ class Bodies:
         self.links.append(replace(made, has_shape=bool(geoms), unweighed=unweighed))
         self._children(node, name, childclass, Seat())
 
-    def _unnamed(self, name: str) -> str:
-        """A name that is not in the file."""
-        while name in self._named:
-            name += "_"
-        return name
-
     def _inside(self, node: Node, childclass: str | None, outer: Seat) -> Iterator[tuple[Node, Seat]]:
         """Joints and geoms with their classes applied, also those in <frame>s, with what they are placed in."""
         for child in node.children:
@@ -139,7 +133,7 @@ class Bodies:
     def _motion(self, node: Node, outer: Seat) -> Motion:
         """One joint."""
         self._joints += 1
-        name = node.attributes.get("name", self._unnamed(f"joint{self._joints}"))
+        name = name_of(node, f"joint{self._joints}", self._named)
         if node.tag == "freejoint":
             return Motion(name, "free", node.place)
         kind = _MOTION[choice(node, "type", tuple(_MOTION))] if "type" in node.attributes else "revolute"
@@ -177,6 +171,8 @@ class Bodies:
             raise refuse(node.place, "not-read", message)
         if kind == "spherical" and value(self._law(node, "armature")):
             raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
+        if kind == "spherical" and range_of(node, self.compiler) is not None:
+            self.report.lost(node.place, "range of a ball joint is not read: it turns to any attitude here")
         if value(node.number("frictionloss", ZERO)):
             message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
             self.report.lost(node.place, message)

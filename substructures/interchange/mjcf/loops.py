@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -11,7 +11,7 @@ from substructures.array import Array
 from substructures.errors import among, meant
 from substructures.interchange.bindings import joints_of, mimic_of
 from substructures.interchange.merge import Seat, vector
-from substructures.interchange.mjcf.settings import Defaults
+from substructures.interchange.mjcf.settings import Defaults, name_of, names_of
 from substructures.interchange.numbers import ONE, ORIGIN, ZERO, decimal_of, value
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Link, Loop, Mimic, Motion
@@ -31,10 +31,10 @@ def equalities(root: Node, defaults: Defaults) -> list[Node]:
     return [replace(defaults.applied(replace(node, tag="equality"), None), tag=node.tag) for node in found]
 
 
-def loops_of(nodes: Iterable[Node], links: tuple[Link, ...], sites: Sites, report: Report) -> tuple[Loop, ...]:
+def loops_of(nodes: Collection[Node], links: tuple[Link, ...], sites: Sites, report: Report) -> tuple[Loop, ...]:
     """The closures of all active <connect> and <weld>; frames coincide where no joint has moved, or are of sites."""
     found: list[Loop] = []
-    poses = poses_of(links, {})
+    poses, names = poses_of(links, {}), names_of(nodes)
     for node in nodes:
         if node.attributes.get("active", "true") == "false":
             report.ignored(node.place, "an equality constraint that is not active")
@@ -44,8 +44,7 @@ def loops_of(nodes: Iterable[Node], links: tuple[Link, ...], sites: Sites, repor
             message = f"the equality constraint <{node.tag[:40]}> is left out: add a velocity constraint for it"
             report.lost(node.place, message, "topology")
         else:
-            name = node.attributes.get("name", f"loop{len(found) + 1}")
-            found.append(_loop(node, name, poses, sites))
+            found.append(_loop(node, name_of(node, f"loop{len(found) + 1}", names), poses, sites))
     return tuple(found)
 
 

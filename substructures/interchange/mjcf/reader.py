@@ -83,8 +83,9 @@ def _with_included(node: Node, included: Mapping[str, bytes], above: list[str]) 
 
 
 def _gravity(root: Node, report: Report) -> tuple[Triple, Place | None]:
-    """The last one that is given, and where; that of the format without any."""
+    """The last one that is given, and where; that of the format without any. Of flags the last counts, too."""
     found, place = GRAVITY.split(), None
+    disabled: dict[str, Place] = {}
     for node in root.all("option"):
         if "gravity" in node.attributes:
             found, place = node.attributes["gravity"].split(), node.place
@@ -92,11 +93,13 @@ def _gravity(root: Node, report: Report) -> tuple[Triple, Place | None]:
             if name in node.attributes and value(node.number(name)):
                 report.lost(node.place, f"forces of a fluid ({name}) are left out")
         for flag in node.all("flag"):
-            for name in ("passive", "spring", "damper"):
-                if flag.attributes.get(name) == "disable":
-                    report.lost(flag.place, f"{name}='disable' is not read: springs and dampers of joints act here")
-            if flag.attributes.get("gravity") == "disable":
-                return ORIGIN, flag.place
+            disabled = {name: at for name, at in disabled.items() if name not in flag.attributes}
+            disabled |= {name: flag.place for name, given in flag.attributes.items() if given == "disable"}
+    for name in ("passive", "spring", "damper"):
+        if name in disabled:
+            report.lost(disabled[name], f"{name}='disable' is not read: springs and dampers of joints act here")
+    if "gravity" in disabled:
+        return ORIGIN, disabled["gravity"]
     here = root.place if place is None else place
     if len(found) != 3:
         raise refuse(here, "wrong-length", "gravity needs 3 numbers")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Container, Iterable, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -72,6 +72,18 @@ class Compiler:
         if (degrees / 15).denominator == 1:
             return multiple_of_pi(degrees / 180)
         return decimal_of(math.radians(float(degrees)))
+
+
+def name_of(node: Node, otherwise: str, taken: Container[str]) -> str:
+    """Its name; ``otherwise`` where it has none, with as much behind it that it is none of those taken in the file."""
+    while otherwise in taken:
+        otherwise += "_"
+    return node.attributes.get("name", otherwise)
+
+
+def names_of(nodes: Iterable[Node]) -> set[str]:
+    """Those that are given."""
+    return {node.attributes["name"] for node in nodes if "name" in node.attributes}
 
 
 def range_of(node: Node, compiler: Compiler) -> tuple[Number, Number] | None:

@@ -16,7 +16,7 @@ import numpy as np
 from substructures.errors import meant
 from substructures.interchange.bindings import joints_of
 from substructures.interchange.mjcf.loops import poses_of
-from substructures.interchange.mjcf.settings import Compiler, Defaults, range_of
+from substructures.interchange.mjcf.settings import Compiler, Defaults, name_of, names_of, range_of
 from substructures.interchange.numbers import ONE, ZERO, Number, Triple, decimal_of, value
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Link, Tendon
@@ -35,9 +35,11 @@ def tendons_of(
     """Those with stiffness or damping. Raises InvalidDocument for joints and sites that are not there."""
     reader = _Reader(links, sites, Compiler.of(root), report)
     found: list[Tendon] = []
-    for node in (each for section in root.all("tendon") for each in section.children):
+    nodes = [each for section in root.all("tendon") for each in section.children]
+    names = names_of(nodes)
+    for node in nodes:
         given = replace(defaults.applied(replace(node, tag="tendon"), None), tag=node.tag)
-        found += reader.read(given, node.attributes.get("name", f"tendon{len(found) + 1}"))
+        found += reader.read(given, name_of(node, f"tendon{len(found) + 1}", names))
     return tuple(found)
 
 

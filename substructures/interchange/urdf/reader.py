@@ -157,6 +157,9 @@ def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Repor
         motions = _planar(joint)
     elif joint.type != "fixed":
         motions = (_motion(joint, rotors.get(joint.name, ZERO), report),)
+    if motions and joint.type not in _MOTION and not is_zero(_damping(joint.node, report)):
+        message = f"damping of a {joint.type} joint is not read: add loads for it"
+        report.lost(joint.node.place, message)
     is_shown = any(node.all("visual", "collision"))
     inertial = _inertial(node, report)
     return Link(joint.child, joint.parent, node.place, position, rpy, motions, inertial, joint.name, is_shown)
@@ -166,15 +169,19 @@ def _motion(joint: _Joint, armature: Number, report: Report) -> Motion:
     """A joint of one degree of freedom."""
     node = joint.node
     kind = _MOTION[joint.type]
-    dynamics, place = node.one("dynamics"), node.place
-    damping: Number = ZERO
-    if dynamics is not None:
-        damping = dynamics.number("damping", ZERO)
-        if not is_zero(dynamics.number("friction", ZERO)):
-            message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
-            report.lost(dynamics.place, message)
-    made = Motion(joint.name, kind, place, _axis(node), damping=damping, armature=armature)
+    made = Motion(joint.name, kind, node.place, _axis(node), damping=_damping(node, report), armature=armature)
     return replace(made, limits=_limits(joint, report))
+
+
+def _damping(node: Node, report: Report) -> Number:
+    """Of <dynamics>; its dry friction is told."""
+    dynamics = node.one("dynamics")
+    if dynamics is None:
+        return ZERO
+    if not is_zero(dynamics.number("friction", ZERO)):
+        message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
+        report.lost(dynamics.place, message)
+    return dynamics.number("damping", ZERO)
 
 
 def _planar(joint: _Joint) -> tuple[Motion, ...]:
