@@ -188,9 +188,11 @@ def tree_formulas(assembly: Assembly, christoffel: bool, admitted: Admitted, wan
     try:
         coupled = couple_parts(over_formulas(graph), assembly.mounted, assembly.gravity, christoffel, group=admitted)
         coupled = replace(coupled, potential=coupled.potential + found_potential(graph, coupled.placed, names))
+        # the order of operations in stored programs is that of nodes: these are made before those of loads
+        left = tuple(all_coordinates(assembly))
         # loops, then motions, then momenta: cyclic is what is so in all that the others leave
         loaded = put_in(assembly, loaded_outputs(assembly, coupled, wanted))
-        outputs = ignore(assembly, tuple(all_coordinates(assembly)), loaded)
+        outputs = ignore(assembly, left, loaded)
         outputs = {name: x for name, x in outputs.items() if wanted is None or name in wanted}
         found = hoisted(program(graph, outputs, assembly.scope.symbols))
         graph.release()

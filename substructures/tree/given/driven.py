@@ -99,7 +99,7 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
     """
     reading, scope, names = assembly.reading, assembly.scope, all_coordinates(assembly)
     given = reading.spec.driven
-    for name in given.keys() - names.keys():
+    for name in sorted(given.keys() - names.keys()):
         message = f"there is no coordinate '{name}'{among(name, names)}"
         if name in assembly.dependent.values:
             message = f"'{name}' follows from the independent coordinates of its loops: drive one of these, or "
@@ -161,7 +161,7 @@ def put_in(
     free = [a for a in range(len(names)) if a not in speeds]
     if "metric" in moving:
         moving |= _inertial(moving, speeds, second, {a: graph.symbol(f"{names[a]}'") for a in free})
-    for name in MOTIONS & moving.keys():
+    for name in sorted(MOTIONS & moving.keys()):
         axis = AXES[name][0]
         rest = _contracted(moving[name].entries, axis, speeds)
         moving[f"{name}_0"] = Formulas(_without(moving[name].shape, axis), rest)

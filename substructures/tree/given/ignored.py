@@ -93,7 +93,7 @@ def at_zero(assembly: Assembly, outputs: Mapping[str, Formulas]) -> dict[str, Fo
 def _momenta(assembly: Assembly, names: Sequence[str]) -> dict[str, Expr]:
     """p_c by name."""
     reading, scope, spec = assembly.reading, assembly.scope, assembly.reading.spec
-    for name in spec.ignored.keys() - set(names):
+    for name in sorted(spec.ignored.keys() - set(names)):
         message = f"there is no coordinate '{name}'{among(name, names)}"
         scope.fault(f"/ignored/{escape(name)}", "unknown-coordinate", message)
     others = {"driven": spec.driven, "closures": assembly.cuts, "velocity_constraints": spec.velocity_constraints}
