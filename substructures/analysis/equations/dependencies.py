@@ -29,8 +29,9 @@ from substructures.expr.rings.modular import Field, NoSquareRoot
 
 #: exact samples after which the search for rows ends
 MAX_SAMPLES = 400
-#: of these, samples at quarter turns
-COARSE = 8
+#: of these, samples at quarter turns, and with those at eighths; behind them there are multiples of 15 degrees: a field
+#: may have square roots in none of the few positions of one coordinate
+COARSE, FINE = 8, 72
 #: numerators and denominators of coefficients that are told by their values in the field
 SMALL = 2**16
 
@@ -192,12 +193,11 @@ class _Search:
     def _more(self) -> None:
         if self.number == MAX_SAMPLES:
             raise TooLarge("the search for dependencies (in samples)", self.number + 1, MAX_SAMPLES)
-        # quarter turns first, then eighths
-        fine, quarter = self.number >= COARSE, self.graph.pi / 2
+        parts = 4 if self.number < COARSE else 8 if self.number < FINE else 24
         point = []
         for turns in self.functions.angular:
-            k = int(self.random.integers(8 if fine else 4)) if self.number else 0
-            point.append(quarter * k / (2 if fine else 1) if turns else self.graph.number(k))
+            k = int(self.random.integers(parts)) if self.number else 0
+            point.append(self.graph.pi * (2 * k) / parts if turns else self.graph.number(k))
         self.number += 1
         # not where a loop cannot be closed, or in a position whose square roots the field has not
         with suppress(NoSquareRoot, ZeroDivisionError, ValueError):

@@ -272,10 +272,11 @@ class _Scales:
 
 def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) -> FirstIntegrals:
     """Those that all trees of its shape have, which are looked for once; but its own where more is searched for than
-    symmetries, which may depend on its numbers.
+    symmetries, which may depend on its numbers, or where directions and reasons name these.
     """
     shape = model.of_shape
     found = first_integrals(shape, forces, zero)
-    if found.degree > 1 and shape is not model:
+    told = str(found.summary()["integrals"])
+    if shape is not model and (found.degree > 1 or any(name in told for name in shape.numbers)):
         return first_integrals(model, forces, zero)
     return replace(found, program=with_numbers(found.program, shape.numbers))
