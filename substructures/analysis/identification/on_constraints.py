@@ -62,7 +62,6 @@ class Rolled(Loops):
         """Positions (count, n) to which allowed motions lead from measured ones, by steps of fourth order."""
         rng, places = np.random.default_rng(5), q[np.arange(count) % len(q)]
         ways = SPREAD * rng.uniform(-1, 1, (count, len(self.independent)))
-        ways[: len(q)] = 0
 
         def rates(x: Array) -> Array:
             return self._allowed(x, ways)
