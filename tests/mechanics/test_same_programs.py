@@ -20,6 +20,8 @@ for name in names:
         print(name, *given, couple({**tree, **given}, {"a": part}).program.digest)
 """
 PARTS = ["furuta-pendulum", "five-bar"]
+#: what stores of 0.1.0 have; where they change, stored trees need ``upgrade``
+STORED = {"furuta-pendulum": "sha256:c48a49f77f72f2c8", "five-bar": "sha256:c420cf462f8b49bc"}
 TIES: list[dict[str, Any]] = [{}, {"driven": {"COORDINATE": "0.1*sin(3*t)"}}]
 
 
@@ -34,3 +36,5 @@ def test_programs_do_not_depend_on_the_process() -> None:
     one, *others = (coupled(seed) for seed in "123")
     assert len(one.splitlines()) == len(PARTS) * len(TIES)
     assert others == [one, one]
+    plain = dict(line.split() for line in one.splitlines() if len(line.split()) == 2)
+    assert {name: digest[: len(STORED[name])] for name, digest in plain.items()} == STORED

@@ -140,6 +140,17 @@ def test_trees_of_the_same_parts_share_what_is_sent(
     assert sent == [{"program", "form"}, frozenset(), frozenset()]
 
 
+def test_trees_of_one_program_keep_their_own_words(filled: TestClient) -> None:
+    told = []
+    for name, words in (("earth", "on Earth"), ("moon", "on the Moon"), ("again", "on Earth")):
+        gravity = {"value": 9, "unit": "m/s^2", "description": words}
+        assert filled.post("/v1/trees", json={**TREE, "name": name, "parameters": {"g": gravity}}).status_code == 201
+        found = filled.get(f"/v1/trees/{name}").json()
+        told.append((found["program"], found["parameters"]["g"]["description"]))
+    assert len({program for program, _ in told}) == 1
+    assert [words for _, words in told] == ["on Earth", "on the Moon", "on Earth"]
+
+
 def _files(arm: Part, hand: Part, share: str | None = None) -> tuple[dict[str, Any], dict[str, bytes]]:
     """What comes of an item, without the time that it took."""
     item, blobs = _item(arm, hand, **({} if share is None else {SHARE: share}))
