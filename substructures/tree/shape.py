@@ -273,11 +273,11 @@ def shape_digest(
 
 
 def _level(instance: Mapping[str, Any], part: Part) -> dict[str, Any]:
-    """Of an instance that takes the reduced level, with the branches of its definition."""
-    if instance.get("level") == "full" or not part.definition.independent:
-        return {}
-    found = dependent(part)
-    return {} if isinstance(found, str) else {"level": "reduced", "branches": found.branches}
+    """Of an instance that takes the reduced level, with what its formulas take from the definition beside its shape."""
+    own = part.definition.independent and instance.get("level") != "full"
+    found, plain = (dependent(part), part.definition.plain()) if own else ("", {})
+    chosen = {name: plain.get(name) for name in ("independent", "start")}
+    return {} if isinstance(found, str) else {"level": "reduced", "branches": found.branches, **chosen}
 
 
 def _numbered(plain: Any, names: Sequence[str]) -> Any:

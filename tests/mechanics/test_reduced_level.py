@@ -281,15 +281,23 @@ def test_faults_in_forces_of_loops_are_found(monkeypatch: pytest.MonkeyPatch) ->
 
 
 def test_shapes_tell_levels_and_branches_apart() -> None:
-    """Programs that were kept for trees with all coordinates are not those of the reduced level."""
+    """Programs that were kept for trees with all coordinates are not those of the reduced level; nor are those of other
+    independent coordinates, and of angles about another start."""
+    others: tuple[Plain, ...] = (
+        {},
+        {"independent": ["psi"]},
+        {"start": {"phi": "1", "psi": "-0.6", "chi": "-1.5"}},
+        {"start": {"phi": "1", "psi": "-0.5", "chi": "1.4"}},
+        {"start": {"phi": "1", "psi": "5.6", "chi": "1.5"}},
+    )
     specs = [
         tree_parts(
-            {"instances": [{"name": "x", "substructure": "rod"} | ({"level": "full"} if full else {})]}, {"rod": each}
+            {"instances": [{"name": "x", "substructure": "bar"} | level]},
+            {"bar": {**NAMES["crank-rocker"], "name": "bar", **each}},
         )
-        for full in (True, False)
-        for each in (NAMES["rod"], {**NAMES["rod"], "start": {"phi": "0.5", "psi": "-1.7"}})
+        for level, each in (({"level": "full"}, {}), *(({}, each) for each in others))
     ]
-    assert len({shape_digest(*spec) for spec in specs}) >= 3
+    assert len({shape_digest(*spec) for spec in specs}) == 6
 
 
 def test_what_is_outside_of_a_loop_is_told() -> None:
