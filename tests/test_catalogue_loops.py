@@ -284,6 +284,10 @@ def test_the_delta_robot_has_codoureys_equations() -> None:
     at positions that are closed by hand.
     """
     model, rng = alone("delta-robot", [0, 0, -9.81]), np.random.default_rng(5)
+    reduced = couple(
+        {"name": "t", "gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "delta-robot"}]},
+        {"x": shipped_part("delta-robot")},
+    )
     p = {name: float(x["value"]) for name, x in load("delta-robot")["parameters"].items()}
     around = 2 * np.pi / 3 * np.arange(3)
     out, up = np.stack([np.cos(around), np.sin(around), 0 * around], axis=1), np.array([0, 0, 1])
@@ -305,6 +309,10 @@ def test_the_delta_robot_has_codoureys_equations() -> None:
         np.testing.assert_allclose(N.T @ found["metric"] @ N, arm * np.eye(3) + mass * J.T @ J, rtol=0, atol=1e-14)
         held = J.T @ (mass * 9.81 * up) - weight * np.cos(angles)
         np.testing.assert_allclose(N.T @ -found["gravity"], held, rtol=0, atol=1e-12)
+        found = evaluate(reduced, ["metric", "gravity", "dependent"], angles)
+        np.testing.assert_allclose(found["dependent"], place, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(found["metric"], arm * np.eye(3) + mass * J.T @ J, rtol=0, atol=1e-14)
+        np.testing.assert_allclose(-found["gravity"], held, rtol=0, atol=1e-12)
 
 
 def below(elbows: Array, length: float) -> Array:

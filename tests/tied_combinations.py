@@ -105,7 +105,8 @@ those without velocity constraints and contacts; FMUs have both. In a tree of se
 `no` of all; balls go with the reduced level, and with no other tie. Identification is of motions that are measured in
 all coordinates: where some are `driven` or `ignored` it is that of the tree without, whose forces of the drives are
 measured, too. On closures and with velocity constraints motions tell fewer base parameters than formulas have:
-`excitations` and `identifications` find in numbers which.
+`excitations` and `identifications` find in numbers which. At the reduced level loops in closed form have base
+parameters; those that are met by steps (delta robots, suspensions) have them at the full level.
 """
 
 

@@ -12,7 +12,7 @@ import random
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from flint import fmpq
+from flint import ctx, fmpq
 
 from substructures.certificate.numbers import Plain
 from substructures.expr.direct import BALL_FUNCTIONS
@@ -22,6 +22,8 @@ from substructures.expr.syntax import MEASURES
 State = dict[str, Any]
 #: what is positive in the first state; everything else has both signs
 POSITIVE = frozenset(("parameter", "inertia"))
+#: bits of balls of defaults
+EXACT = 1100
 #: sets of states that do not depend on defaults
 WITHOUT_DEFAULTS = 2
 #: operations and functions of expressions that are analytic, and one function on all sides of where they have no value
@@ -113,6 +115,7 @@ def _signed(
                 is_negative = negative and k % 2 and kinds[name] == "parameter" and sign < 0
                 state[name] = defaults.get(name, -size if is_negative else size)
             else:
-                # every sign in one of two states
-                state[name] = sign * (-1) ** k * size / smaller + defaults.get(name, 0)
+                # every sign in one of two states; a default is as exact there as it is
+                with ctx.workprec(EXACT):
+                    state[name] = sign * (-1) ** k * size / smaller + defaults.get(name, 0)
     return states

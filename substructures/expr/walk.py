@@ -41,6 +41,11 @@ def reachable(roots: Iterable[Expr], leaf: Callable[[Expr], bool] = lambda _: Fa
     return sorted(seen, key=_INDEX)
 
 
+def symbols_in(roots: Iterable[Expr]) -> set[str]:
+    """The names of all symbols that the roots need."""
+    return {str(node.value) for node in reachable(roots) if node.op == "sym"}
+
+
 def transfer(roots: Iterable[Expr], graph: Graph, bindings: Mapping[str, Expr]) -> list[Expr]:
     """The roots rebuilt in another graph, symbols replaced by ``bindings`` (others by themselves)."""
     roots = list(roots)

@@ -19,8 +19,8 @@ import numpy as np
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Output, Program
 from substructures.mechanics.closure_rows import RowBounds
+from substructures.mechanics.cut_joints import TURNS
 from substructures.quantities.numbers.memo import Known, known_model
-from substructures.tree.closures import TURNS
 from substructures.tree.model import Model
 
 OUTPUTS = ("U", "Omega", "position")

@@ -71,9 +71,10 @@ class RegressorModel:
     is what is fixed to the interface of an instance on a host, in the interface frame. Massless bodies inside compound
     joints are no links. ``parameters``: the free parameters with default, unit and description. ``closures``: of the
     tree; their forces, which Y pi has to balance with the actuators, are not part of it; ``driven``: coordinates whose
-    motion is given, which have no rows; ``reduced``: instances whose loops are in the formulas. ``regrouping``: output
-    ``relations`` (r, 10 links + k): coefficients, functions of the free parameters, with which columns of Y add up to
-    zero, whatever moves; the last k columns are those of massless carriers (:mod:`.regrouping`).
+    motion is given, which have no rows; ``reduced``: instances whose loops are in the formulas, ``followed``: those
+    of these loops that are met by steps of Newton's method. ``regrouping``: output ``relations`` (r, 10 links + k):
+    coefficients, functions of the free parameters, with which columns of Y add up to zero, whatever moves; the last k
+    columns are those of massless carriers (:mod:`.regrouping`).
     """
 
     program: Program
@@ -87,6 +88,7 @@ class RegressorModel:
     driven: tuple[str, ...] = ()
     balls: tuple[BallRow, ...] = field(default=(), hash=False)
     reduced: tuple[str, ...] = ()
+    followed: tuple[str, ...] = ()
 
     @property
     def positions(self) -> tuple[str, ...]:
@@ -164,6 +166,7 @@ def regressor(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NO
         driven_names(assembly),
         ball_rows(assembly.balls, [f"{i.name}.{x.coordinate}" for i, m in pairs for x in m.part.topology.joints]),
         tuple(sorted(assembly.reduced)),
+        tuple(assembly.dependent.followed),
     )
 
 
@@ -192,7 +195,8 @@ def _regrouping(assembly: Assembly) -> Program:
     # nothing that is constant depends on where the joints are
     resting = [replace(m, bindings={**m.bindings, **_resting(m.part)}) for m in assembly.mounted]
     run = bare(over_formulas(graph), (*DYNAMIC, "U", "Omega"))
-    loops = [cut for cut in assembly.full().cuts if cut.rows.name in assembly.dependent.loops]
+    closed = {name for names in assembly.dependent.loops for name in names} - {*assembly.dependent.followed}
+    loops = [cut for cut in assembly.full().cuts if cut.rows.name in closed]
     rows, columns = relations(graph, couple_parts(run, resting, (0, 0, 0), christoffel=False).placed, loops)
     entries: dict[tuple[int, ...], Scalar] = {(r, j): x for r, row in enumerate(rows) for j, x in row.items()}
     return program(graph, {"relations": Formulas((len(rows), columns), entries)}, assembly.scope.symbols)

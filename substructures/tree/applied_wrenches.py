@@ -11,11 +11,12 @@ from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Program
 from substructures.loads.pairs import Acting, Pair, Place, axes_in_world
+from substructures.mechanics.cut_joints import PLACE
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, scale, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.frames import axis_rotation
 from substructures.tree.assembly import Assembly, tree_name
-from substructures.tree.closures import PLACE, ClosureEnd, closure_formulas
+from substructures.tree.closures import ClosureEnd, closure_formulas
 from substructures.tree.frame_points import place
 from substructures.tree.given.ties import KnifeEdgeConstraint, RollingConstraint
 from substructures.tree.loads import load_formulas

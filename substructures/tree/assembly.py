@@ -14,6 +14,7 @@ from substructures.expr.syntax import RESERVED
 from substructures.loads.friction import TreeFriction, read_friction
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.balls import BallJoint
+from substructures.mechanics.cut_joints import ROWS
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import ZERO, Matrix, Vector
 from substructures.part.definition import PartClosure, Placement
@@ -22,7 +23,7 @@ from substructures.part.mechanism import friction_of
 from substructures.part.outputs import over_formulas
 from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
-from substructures.tree.closures import ROWS, ClosureEnd, ClosureRows, Cut
+from substructures.tree.closures import ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
 from substructures.tree.given.loops.closed_form import dependent
 from substructures.tree.given.loops.dependent import Dependent

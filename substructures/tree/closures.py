@@ -43,6 +43,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas
+from substructures.mechanics.cut_joints import ALIGNED, PLACE, TURNS
 from substructures.mechanics.kinematics import Columns, Pose, Twist, from_body
 from substructures.mechanics.linear3 import (
     IDENTITY,
@@ -63,23 +64,6 @@ from substructures.mechanics.newton_euler import BodyMotion
 from substructures.tree.document import Instance
 from substructures.tree.inverse_dynamics import Motions, body_motions
 from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
-
-PLACE = ("x", "y", "z")
-#: the rows of every type of closure; the axis of a joint is the third one
-ROWS: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("pin", "revolute"), (*PLACE, "rx", "ry")),
-    **dict.fromkeys(("slider", "prismatic"), ("x", "y", "rx", "ry", "rz")),
-    **dict.fromkeys(("ball", "spherical"), PLACE),
-    **dict.fromkeys(("weld", "fixed"), (*PLACE, "rx", "ry", "rz")),
-    "cylindrical": ("x", "y", "rx", "ry"),
-    "universal": (*PLACE, "cross"),
-    "planar": ("z", "rx", "ry"),
-    "rod": ("length",),
-}
-#: rows of directions: (axis j of B, axis i of A, sign) with residual sign * m_j . e_i
-TURNS = {"rx": (2, 1, -1), "ry": (2, 0, 1), "rz": (0, 1, 1), "cross": (1, 2, 1)}
-#: the axis that such a row makes parallel
-ALIGNED = {"rx": 2, "ry": 2, "rz": 0}
 
 
 @dataclass(frozen=True, slots=True)

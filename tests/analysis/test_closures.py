@@ -18,7 +18,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
-from substructures.tree.closures import ROWS
+from substructures.mechanics.cut_joints import ROWS
 
 TYPES = tuple(ROWS)
 

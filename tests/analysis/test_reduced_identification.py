@@ -20,7 +20,7 @@ from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.quantities.regressor import RegressorModel, regressor
 
-NAMES = {each["name"]: each for each in PARTS}
+NAMES = {each["name"]: each for each in PARTS if "ranges" not in each}
 GRAVITY = [0, "-9.81", 0]
 
 

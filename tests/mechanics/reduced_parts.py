@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from closed_trees import tree_model
@@ -105,6 +106,89 @@ PARTS: list[Plain] = [
     ),
     {**GEARED, "relations": [{"coordinate": "phi", "of": "motor", "multiplier": "-1/3", "offset": "0.2"}]},
 ]
+#: a suspension, the upright on a ball joint and a tie rod; and a linkage with more rows than unknown coordinates
+WISHBONE: Plain = {
+    "name": "wishbone",
+    "parameters": {"l": {"value": "0.23", "unit": "m"}},
+    "bodies": [
+        body("lower", "base", "lower", axis=[1, 0, 0], placement={}),
+        body("upper", "base", "upper", axis=[1, 0, "0.1"], placement={"position": ["0.02", "0.1", "0.25"]}),
+        body("x", "lower", "a", axis=[1, 0, 0], placement={"position": [0, "0.35", 0]}),
+        body("y", "x", "b", axis=[0, 1, 0], placement={}),
+        body("upright", "y", "c", axis=[0, 0, 1], placement={}),
+    ],
+    "ports": [
+        {"name": "arm", "body": "upper", "position": [0, "l", 0]},
+        {"name": "top", "body": "upright", "position": ["0.02", "-0.02", "0.25"]},
+        {"name": "rack", "body": "base", "position": ["-0.12", "0.03", "0.05"]},
+        {"name": "lever", "body": "upright", "position": ["-0.12", 0, "0.05"]},
+    ],
+    "closures": [
+        {"name": "ball", "type": "ball", "from": "arm", "to": "top"},
+        {"name": "tie", "type": "rod", "from": "rack", "to": "lever", "length": "0.32"},
+    ],
+    "independent": ["lower"],
+    "start": {"lower": 0, "upper": 0, "a": 0, "b": 0, "c": 0},
+    "ranges": {"lower": ["-0.4", "0.4"]},
+}
+BENNETT: Plain = {
+    "name": "bennett",
+    "parameters": {
+        "a": {"value": "0.4", "unit": "m"},
+        "b": {"value": "0.55", "unit": "m"},
+        "alpha": {"value": "0.7", "unit": "rad"},
+    },
+    "bodies": [
+        body("first", "base", "phi"),
+        body("second", "first", "psi", placement={"position": ["a", 0, 0], "rpy": ["alpha", 0, 0]}),
+        body("third", "second", "chi", placement={"position": ["b", 0, 0], "rpy": ["asin(b*sin(alpha)/a)", 0, 0]}),
+        {
+            "name": "end",
+            "parent": "third",
+            "joint": {"type": "fixed", "placement": {"position": ["a", 0, 0], "rpy": ["alpha", 0, 0]}},
+        },
+    ],
+    "closures": [
+        {
+            "name": "loop",
+            "type": "revolute",
+            "from": "end",
+            "to": "base",
+            "placement": {"position": ["-b", 0, 0], "rpy": ["-asin(b*sin(alpha)/a)", 0, 0]},
+        }
+    ],
+    "independent": ["phi"],
+    "start": {"phi": 1, "psi": "2.87", "chi": -1},
+    "ranges": {"phi": ["0.3", "2.8"]},
+}
+PARTS += [WISHBONE, BENNETT]
+
+
+def hexapod() -> Plain:
+    """A platform on six rods of one length, whose lower ends slide upwards: six closures that are met together."""
+    slides, ports, rods = list[Plain](), list[Plain](), list[Plain]()
+    for k in range(6):
+        low, high = math.pi / 3 * k + 0.25 * (-1) ** k, math.pi / 3 * k - 0.28 * (-1) ** k
+        foot = [repr(0.5 * math.cos(low)), repr(0.5 * math.sin(low)), 0]
+        slides.append(body(f"s{k}", "base", f"s{k}", type="prismatic", placement={"position": foot}))
+        top = [repr(0.2 * math.cos(high)), repr(0.2 * math.sin(high)), 0]
+        ports.append({"name": f"p{k}", "body": "plate", "position": top})
+        rods.append({"name": f"rod{k}", "type": "rod", "from": f"s{k}", "to": f"p{k}", "length": "0.8"})
+    plate = {"name": "plate", "parent": "base", "mass": 3, "inertia": INERTIA}
+    joint = {"type": "free", "coordinate": ["x", "y", "z", "a", "b", "c"]}
+    names = [f"s{k}" for k in range(6)]
+    return {
+        "name": "hexapod",
+        "bodies": [*slides, {**plate, "joint": joint}],
+        "ports": ports,
+        "closures": rods,
+        "independent": names,
+        "start": dict.fromkeys(names, 0) | {"z": "0.7", "c": "0.05"},
+        "ranges": {name: ["-0.05", "0.05"] for name in names},
+    }
+
+
+HEXAPOD = hexapod()
 ARM: Plain = {
     "name": "arm",
     "bodies": [body("a", "base", "a"), body("b", "a", "b", theta="pi/2", d="0.5")],

@@ -4,15 +4,29 @@
 
 from __future__ import annotations
 
+import json
+import math
+import re
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 import pytest
 from closed_trees import tree_model, tree_parts
-from mechanics.reduced_parts import ARM, PARTS, Plain
+from mechanics.reduced_parts import ARM, BENNETT, HEXAPOD, PARTS, WISHBONE, Plain
 
-from substructures import Definition, InvalidInput, Model, TreeSpec, catalogue, couple, derive, evaluate, simulate
+from substructures import (
+    Definition,
+    InvalidInput,
+    Model,
+    TreeSpec,
+    catalogue,
+    couple,
+    derive,
+    evaluate,
+    sensitivities,
+    simulate,
+)
 from substructures.analysis.closed.reduced import reduced_equations
 from substructures.errors import VerificationFailed
 from substructures.expr.walk import transfer
@@ -20,7 +34,7 @@ from substructures.quantities import reactions as module
 from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
 from substructures.tree.certificate import certify_tree
-from substructures.tree.given.loops import closed_form
+from substructures.tree.given.loops import closed_form, newton
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.shape import shape_digest
 
@@ -311,6 +325,8 @@ def test_what_is_outside_of_a_loop_is_told() -> None:
     motion = simulate(model, [0.1], (0, 1), qd=[9.0], parameters={"x.l": 0.2})
     assert not motion.is_right
     assert {"range-left", "loop-singular"} <= {w["code"] for w in motion.warnings}
+    # not even at the start: SciPy makes steps without end there
+    assert sensitivities(model, [1.4], (0, 1), ["x.r"], parameters={"x.l": 0.2}).status == "failed"
     with pytest.raises(InvalidInput, match=r"depends on 'x\.phi'"):
         evaluate(model, "metric", {"x.phi": 0.1, "x.x": 1.0})
 
@@ -318,7 +334,7 @@ def test_what_is_outside_of_a_loop_is_told() -> None:
 @pytest.mark.parametrize(
     ("entry", "level", "code", "told"),
     [
-        ("delta-robot", "reduced", "not-reduced", "the closure 'bars1'"),
+        ("andrews-squeezer", "reduced", "not-reduced", "names no independent"),
         ("simple-pendulum", "reduced", "not-reduced", "names no independent"),
         ("five-bar", "half", "literal-error", "'full' or 'reduced'"),
     ],
@@ -332,12 +348,67 @@ def test_levels_that_there_are_not(entry: str, level: str, code: str, told: str)
 
 
 def test_what_does_not_take_it_says_so() -> None:
-    """Loops of another family keep their closures, and say why."""
-    delta = tree_model(
-        {"instances": [{"name": "x", "substructure": "delta-robot"}]}, {"delta-robot": catalogue.load("delta-robot")}
-    )
-    assert [w["code"] for w in delta.certificate["warnings"]] == ["full-level", "gravity-not-given"]
+    """Loops in space keep their closures without ranges, and say why; so do two positions that are as near."""
+    wide = {x: value for x, value in catalogue.load("delta-robot").items() if x != "ranges"}
+    delta = tree_model({"instances": [{"name": "x", "substructure": "delta-robot"}]}, {"delta-robot": wide})
+    warnings = delta.certificate["warnings"]
+    assert [w["code"] for w in warnings] == ["full-level", "gravity-not-given"]
+    assert "the closure 'bars1': of the coordinates around it 3 are unknown" in warnings[0]["message"]
+    assert "'ranges'" in warnings[0]["message"]
     assert len(delta.closures) == 3
+    some = {**wide, "ranges": {"q1": [0, "0.1"], "q2": [0, "0.1"]}}
+    assert "'q3', which has no 'ranges'" in str(closed_form.dependent(derive(Definition.read(some))))
     even = {**NAMES["crank-rocker"], "name": "even", "start": {}}
     told = tree_model({"instances": [{"name": "x", "substructure": "even"}]}, {"even": even}).certificate["warnings"]
     assert "two positions are as near" in told[0]["message"]
+
+
+@pytest.mark.parametrize(
+    ("change", "told"),
+    [
+        ({"ranges": {"lower": ["-2", "0.4"]}}, r"open, or beyond a dead centre, at lower = -0\.\d+"),
+        ({"start": {"lower": "0", "upper": "2", "c": "2"}}, "open, or beyond a dead centre, at lower ="),
+        ({"closures": [{**WISHBONE["closures"][0], "type": "planar"}]}, "does not tell the coordinates"),
+    ],
+)
+def test_steps_that_lead_nowhere_are_told(change: Plain, told: str) -> None:
+    part = derive(Definition.read({**WISHBONE, **change}))
+    assert re.search(told, str(closed_form.dependent(part)))
+
+
+def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Too few of them; another rod; a wrong second derivative."""
+    part, spec = derive(Definition.read(WISHBONE)), {"instances": [{"name": "x", "substructure": "wishbone"}]}
+    right = closed_form.dependent(part)
+    assert isinstance(right, Dependent)
+    bend = {q: {at: x * 2 for at, x in row.items()} for q, row in right.H.items()}
+    with monkeypatch.context() as patch:
+        patch.setattr(newton, "LAST", 0)
+        patch.setattr(newton, "SAME", 1.0)
+        patch.setattr(newton, "OPEN", 1)
+        early = closed_form._Solver(part).solve()
+    other = {**WISHBONE, "closures": [WISHBONE["closures"][0], {**WISHBONE["closures"][1], "length": "0.33"}]}
+    longer = closed_form._Solver(derive(Definition.read(other))).solve()
+    for wrong in (early, longer, replace(right, H=bend)):
+        with monkeypatch.context() as patch:
+            patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
+            with pytest.raises(VerificationFailed, match=r"by the documents|branch"):
+                couple({"name": "t", **spec}, {"x": part})
+
+
+def test_rows_that_meet_by_rounding_are_told() -> None:
+    """A linkage with more rows than unknown coordinates exists by formulas of its lengths, not by their decimals."""
+    text = json.dumps(BENNETT).replace("asin(b*sin(alpha)/a)", repr(math.asin(0.55 * math.sin(0.7) / 0.4)))
+    assert "to the digits of numbers" in str(closed_form.dependent(derive(Definition.read(json.loads(text)))))
+
+
+def test_a_platform_on_six_rods_is_where_they_hold_it() -> None:
+    """All six coordinates at once; nothing beyond what the rods reach, and nothing wrong beyond a dead centre."""
+    model = tree_model({"instances": [{"name": "x", "substructure": "hexapod"}]}, {"hexapod": HEXAPOD})
+    assert model.reduced[0]["dependent"] == ["x.x", "x.y", "x.z", "x.a", "x.b", "x.c"]
+    slides = [0.03, -0.02, 0.04, 0.01, -0.05, 0.02]
+    found = evaluate(model, ["position"], slides)["position"]
+    frames = {name: found[k] for k, name in enumerate(model.frames)}
+    for k in range(6):
+        assert np.linalg.norm(frames[f"x.p{k}"] - frames[f"x.s{k}"]) == pytest.approx(0.8, rel=1e-14)
+    assert evaluate(model, "metric", [0.0, 1.5, 0.0, 1.5, 0.0, 1.5]).failures

@@ -149,6 +149,10 @@ def base_parameters(Y: RegressorModel, drives: Sequence[str] = ()) -> BaseParame
     (size, limit). Source: M. Gautier and W. Khalil, 1990 (see above).
     """
     require_open(Y.closures, "use the regressor, whose forces actuators and reactions of the closures balance together")
+    if Y.followed:
+        names = ", ".join(f"'{name}'" for name in Y.followed)
+        message = f"base parameters are not told by formulas of steps of Newton's method, which meet {names}"
+        raise InvalidArgument.at("", "has-closures", f"{message}: take the tree with 'level': 'full'")
     require_undriven(Y.driven, "take the tree without 'driven', or the regressor")
     for i, name in enumerate(drives):
         if name not in DRIVES:

@@ -9,7 +9,7 @@ import random
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from itertools import count
+from itertools import chain, count, groupby
 from typing import Any
 
 import numpy as np
@@ -30,6 +30,8 @@ Build = Callable[[Plain, Mapping[str, Plain], Mapping[str, Ball]], tuple[Numbers
 PRIMES = ("", "'", "''")
 #: starts that are tried, and steps of Newton's method from each
 STARTS, MANY, STEPS = 5, 40, 12
+#: steps from the start to where independent coordinates are
+WAY = 24
 #: of what no closure depends on, beside masses
 LAWS = frozenset(("stiffness", "rest", "damping", "armature", "limits", "friction"))
 
@@ -78,6 +80,22 @@ class Closing:
             first, tried = [source.uniform(-3, 3) for _ in block.z], tried + 1
         return False
 
+    def follow(self, blocks: Sequence[Block], at: dict[str, float]) -> bool:
+        """Newton's method along the straight line of independent coordinates from the start, on one side."""
+        start = {f"{self.name}.{q}": float(Numbers({}).read(x)) for q, x in self.definition.get("start", {}).items()}
+        ends, sides = {q: float(self.values[q]) for q in self.y}, list[int]()
+        at |= {q: start.get(q, 0.0) for q in self.z}
+        for k in range(WAY + 1):
+            here = {q: start.get(q, 0.0) + k / WAY * (x - start.get(q, 0.0)) for q, x in ends.items()}
+            at |= here
+            if not all(self._newton(block, at) for block in blocks):
+                return False
+            found = [block.sign_at(self, at) for block in blocks]
+            sides = sides or found
+            if found != sides:
+                return False
+        return True
+
     def approach(self, block: Block, at: dict[str, float]) -> None:
         """The nearest closed position."""
         source, start = random.Random(2), {q: at[q] for q in block.z}  # noqa: S311 -- the same for everybody
@@ -94,11 +112,11 @@ class Closing:
         columns, every = [names.index(q) for q in block.z], [k for k, _ in block.all_rows]
         for _ in range(STEPS):
             phi, G, alignment = self.floats(at, every)
+            if not np.isfinite([*phi, *G.ravel()]).all():
+                return False
             step = np.linalg.lstsq(G[:, columns], phi, rcond=1e-12)[0]
             size = np.abs(step).max()
             at |= {q: at[q] - x * min(1.0, 1.0 / size) if size else at[q] for q, x in zip(block.z, step, strict=True)}
-            if not np.isfinite(size):
-                return False
             if size < 1e-13:
                 return bool(np.abs(phi).max() < 1e-9 and min(alignment, default=1.0) > 0)
         return False
@@ -117,20 +135,25 @@ class Closing:
         return found
 
     def floats(self, at: Mapping[str, float], rows: Sequence[int]) -> tuple[Array, Array, list[float]]:
-        """phi and G of rows of one closure, and how its ends are aligned."""
-        own, (_, one) = [self._alone[k][0] for k in rows], self._alone[rows[0]]
-        found, names = one.rows({**self.values, **{q: arb(x) for q, x in at.items()}}), list(self.kinds)
-        matrix, columns = np.zeros((len(rows), len(names))), [names.index(q) for q in one.kinds]
-        phi, G = (found[f"closure.{x}"].entries for x in ("residual", "jacobian"))
-        matrix[:, columns] = [[float(G.get((k, a), arb(0))) for a in range(len(columns))] for k in own]
-        alignment = [float(found["closure.alignment"].entries[k,].mid()) for k in own]
-        return np.array([float(phi.get((k,), arb(0))) for k in own]), matrix, [x for x in alignment if x]
+        """phi and G of rows, and how the ends of their closures are aligned."""
+        names, values = list(self.kinds), {**self.values, **{q: arb(x) for q, x in at.items()}}
+        phi, matrix, alignment = np.zeros(len(rows)), np.zeros((len(rows), len(names))), list[float]()
+        for _, some in groupby(enumerate(rows), lambda each: id(self._alone[each[1]][1])):
+            places = [(i, self._alone[k]) for i, k in some]
+            one = places[0][1][1]
+            found, columns = one.rows(values), [names.index(q) for q in one.kinds]
+            residual, G = (found[f"closure.{x}"].entries for x in ("residual", "jacobian"))
+            for i, (k, _) in places:
+                phi[i] = float(residual.get((k,), arb(0)))
+                matrix[i, columns] = [float(G.get((k, a), arb(0))) for a in range(len(columns))]
+                alignment.append(float(found["closure.alignment"].entries[k,].mid()))
+        return phi, matrix, [x for x in alignment if x]
 
 
 @dataclass(frozen=True)
 class Block:
-    """A closure: its unknown coordinates, all its rows by number and name, those that tell the coordinates, and the
-    sign of their determinant on the branch.
+    """Closures, one or all that are left: their unknown coordinates, all rows by number and name, those that tell the
+    coordinates, and the sign of their determinant on the branch.
     """
 
     z: tuple[str, ...]
@@ -152,7 +175,8 @@ def blocks_of(loops: Closing, at: dict[str, float]) -> Iterator[Block]:
     left, names = list(loops.z), list(loops.kinds)
     with ctx.workprec(64):
         while waiting and left:
-            for rows in waiting:
+            # one by one, and where none tells its coordinates by itself all together
+            for rows in (*waiting, tuple(chain(*waiting))):
                 _, G, _ = loops.floats(at, [k for k, _ in rows])
                 own = [q for q in left if np.abs(G[:, names.index(q)]).max() > 1e-12]
                 columns = [names.index(q) for q in own]
@@ -162,7 +186,7 @@ def blocks_of(loops: Closing, at: dict[str, float]) -> Iterator[Block]:
                     block = Block(tuple(own), rows, tuple(rows[i][0] for i in _pivots(G[:, columns])), 0)
                     yield replace(block, sign=block.sign_at(loops, at))
                     left = [q for q in left if q not in own]
-                    waiting.remove(rows)
+                    waiting = [some for some in waiting if not set(some) <= set(rows)]
                     break
             else:
                 return

@@ -21,6 +21,10 @@ from substructures.certificate.numbers import Numbers
 
 #: bits that floats are exact to at least; each step of Newton's method doubles them
 EXACT = 40
+#: how exact formulas are that follow a position from the start, beside 1
+FOLLOWED = arb(2) ** -80
+#: of all closed positions that on the straight way from the start; none
+WAY, NOWHERE = "way", "nowhere"
 
 
 @dataclass
@@ -38,11 +42,12 @@ class Reduced:
 class Loops(Closing):
     """The closures of one instance, and what they make of its coordinates."""
 
-    def solve(self, found: Reduced, sides: Iterator[int]) -> None:
-        """z and its derivatives, into what was found; ``sides``: 1 or -1, that of the start or the other one."""
+    def solve(self, found: Reduced, sides: Iterator[int] | str) -> None:
+        """z and its derivatives, into what was found; ``sides``: 1 or -1, that of the start or the other one; WAY; or
+        NOWHERE.
+        """
         blocks = _blocks_at_start(_Start(f"{self.name} {self.definition}", self))
-        blocks = tuple(replace(block, sign=block.sign * next(sides, 1)) for block in blocks)
-        at = self._position(blocks)
+        at = None if sides == NOWHERE else self._position(blocks, sides)
         if at is None:
             self._nowhere(found)
             return
@@ -97,11 +102,15 @@ class Loops(Closing):
                 for q, x in zip(self.z, both, strict=True):
                     found.H.setdefault(q, {})[y, other] = x
 
-    def _position(self, blocks: Sequence[Block]) -> dict[str, Ball] | None:
-        """z on the branch of the start, in balls."""
+    def _position(self, blocks: Sequence[Block], sides: Iterator[int] | str) -> dict[str, Ball] | None:
+        """z in balls; on the way from the start to what steps of Newton's method leave open."""
+        is_followed = isinstance(sides, str)
+        if not isinstance(sides, str):
+            blocks = tuple(replace(block, sign=block.sign * next(sides, 1)) for block in blocks)
         numbers = [(name, float(x)) for name, x in self.values.items()]
         # the same ones at all precisions of a state
-        floats = _closed(_Start(f"{self.name} {self.definition} {numbers}", self), blocks)
+        known = _Start(f"{self.name} {self.definition} {numbers}", self)
+        floats = (_followed if is_followed else _closed)(known, blocks)
         if floats is None:
             return None
         at = {q: arb(x) for q, x in floats.items()}
@@ -116,8 +125,8 @@ class Loops(Closing):
                 )
                 step = _solved(G, arb_mat(len(rows), 1, [phi.get((k,), arb(0)) for k in rows])).entries()
                 at = {q: (at[q] - x).mid() for q, x in zip(self.z, step, strict=True)}
-            turned = {q: self.turned(q, x) for q, x in at.items()}
-        small = arb(2) ** (-precision - 16)
+            turned = at if is_followed else {q: self.turned(q, x) for q, x in at.items()}
+        small = FOLLOWED if is_followed else arb(2) ** (-precision - 16)
         return {q: x + (x.abs_upper() + 1) * arb(0, small) for q, x in turned.items()}
 
 
@@ -137,6 +146,14 @@ def _closed(known: _Start, blocks: Sequence[Block]) -> Mapping[str, float] | Non
     found = dict(_closed(known, blocks[:-1]) or {})
     with ctx.workprec(64):
         return found if found and known.loops.close(blocks[-1], found) else None
+
+
+@lru_cache(maxsize=64)
+def _followed(known: _Start, blocks: Sequence[Block]) -> Mapping[str, float] | None:
+    """z on the straight way from the start, to the digits of floats."""
+    found = dict[str, float]()
+    with ctx.workprec(64):
+        return {q: found[q] for q in known.loops.z} if known.loops.follow(blocks, found) else None
 
 
 @lru_cache(maxsize=64)

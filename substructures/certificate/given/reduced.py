@@ -46,11 +46,12 @@ def reduced_symbols(tree: Plain, definitions: Mapping[str, Plain], kinds: Mappin
 
 def reduced_at(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball], build: Build) -> Reduced:
     """The dependent coordinates of a tree at ``values`` of all other symbols, on the sides ``tree["sides"]`` of all
-    closures, by default those of the start; not finite where a loop is open.
+    closures, by default those of the start, or at what this says in words; not finite where a loop is open.
     """
     bound = {f"{i['name']}.{p}": x for i in tree.get("instances", ()) for p, x in i.get("parameters", {}).items()}
     names, found = Bindings(values, bound), Reduced(dict(values), {}, {}, {})
-    sides = iter(tree.get("sides", ()))
+    given = tree.get("sides", ())
+    sides = given if isinstance(given, str) else iter(given)
     for name in tree.get("reduced", ()):
         own = {f"{name}.{p}": names[f"{name}.{p}"] for p in definitions[name].get("parameters", ())}
         Loops(name, definitions[name], {**values, **own}, build).solve(found, sides)

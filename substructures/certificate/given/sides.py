@@ -13,10 +13,11 @@ from typing import Any
 
 from flint import arb, ctx
 
+from substructures.certificate.given.loops import NOWHERE, WAY
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.states import draws
+from substructures.certificate.states import EXACT, draws
 from substructures.certificate.stored import Stored, operations_in_balls
 from substructures.errors import VerificationFailed
 
@@ -30,7 +31,9 @@ Make = Callable[[Plain, Mapping[str, Any]], Outputs]
 
 
 def on_a_side(tree: Plain, definitions: Mapping[str, Plain], program: Stored, make: Make) -> Callable[[Any], Outputs]:
-    """What ``make`` gives for the position that the program has at a state; for the first one where it has none."""
+    """What ``make`` gives for the position that the program has at a state; for the first one where it has none, but
+    nothing outside of stated ranges, where Newton's method may go anywhere.
+    """
     if not tree.get("reduced"):
         return lambda values: make(tree, values)
 
@@ -42,14 +45,38 @@ def on_a_side(tree: Plain, definitions: Mapping[str, Plain], program: Stored, ma
             if _agrees(program, stored, outputs, outputs.keys()) or not _is_closed(outputs):
                 return outputs
             first = first or outputs
+        if not _is_stated(tree, definitions, values):
+            return make({**tree, "sides": NOWHERE}, values)
         return first or Outputs()
 
     return expected
 
 
-def _sides(tree: Plain, definitions: Mapping[str, Plain]) -> Iterator[tuple[int, ...]]:
+def _sides(tree: Plain, definitions: Mapping[str, Plain]) -> Iterator[tuple[int, ...] | str]:
+    yield from _ways(tree, definitions)
     count = sum(len(definitions[name]["closures"]) for name in tree["reduced"])
-    return islice(product((1, -1), repeat=count), MOST)
+    yield from islice(product((1, -1), repeat=count), MOST)
+
+
+def _ways(tree: Plain, definitions: Mapping[str, Plain]) -> tuple[str, ...]:
+    """Of what may be found by steps from the start."""
+    return (WAY,) if any(definitions[name].get("ranges") for name in tree["reduced"]) else ()
+
+
+def _is_stated(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> bool:
+    """Whether the ranges of definitions hold, which are those of the default values of their parameters."""
+    number = Numbers({}).read
+    for name in tree["reduced"]:
+        definition = definitions[name]
+        for q, (low, high) in definition.get("ranges", {}).items():
+            if not float(number(low)) <= float(values.get(f"{name}.{q}", number(low))) <= float(number(high)):
+                return False
+        given = {f"{name}.{p}": x.get("value") for p, x in definition.get("parameters", {}).items()}
+        if definition.get("ranges") and not all(
+            x is None or number(x).overlaps(values[p]) for p, x in given.items() if p in values
+        ):
+            return False
+    return True
 
 
 def _is_closed(outputs: Outputs) -> bool:
@@ -63,14 +90,16 @@ def _agrees(program: Stored, stored: list[Ball], outputs: Outputs, names: Any) -
         output, values = program.outputs[name], outputs[name]
         for index, entry in zip(output.index, output.entries, strict=True):
             x = values.entries.get(tuple(index), arb(0))
-            if tuple(index) not in values.others and not (x.is_finite() and stored[entry].overlaps(x)):
+            # what is not finite overlaps everything
+            is_same = x.is_finite() and stored[entry].is_finite() and stored[entry].overlaps(x)
+            if tuple(index) not in values.others and not is_same:
                 return False
     return True
 
 
 def starts_of(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
     """Where the independent coordinates of reduced instances start, by name."""
-    with ctx.workprec(1100):
+    with ctx.workprec(EXACT):
         return {
             f"{name}.{q}": Numbers({}).read(definitions[name].get("start", {}).get(q, 0))
             for name in tree.get("reduced", ())
@@ -91,7 +120,9 @@ def require_start(
             given = {f"{name}.{p}": x.get("value") for p, x in definitions[name].get("parameters", {}).items()}
             values |= {p: Numbers({}).read(1 if x is None else x) for p, x in given.items() if p in values}
         values |= {q: x for q, x in starts_of(tree, definitions).items() if q in values}
-        outputs, stored = make(tree, values), operations_in_balls(program, values)
-        known = all(x.is_finite() for name in PLACES if name in outputs for x in outputs[name].entries.values())
-        if known and not _agrees(program, stored, outputs, PLACES):
+        stored = operations_in_balls(program, values)
+        # the nearest position, or that which Newton's method finds from the start
+        found = [make({**tree, "sides": sides}, values) for sides in ((), *_ways(tree, definitions))]
+        known = all(x.is_finite() for name in PLACES if name in found[0] for x in found[0][name].entries.values())
+        if known and not any(_agrees(program, stored, outputs, PLACES) for outputs in found):
             raise VerificationFailed("the loops are not on the branch of the start of their definitions")

@@ -176,6 +176,9 @@ class _Run:
         s, motion, solver = self.settings, self.motion, None
         try:
             solver = s.stepper(self.f, start, x, end)
+            if np.isnan(getattr(solver, "h_abs", 0.0)):
+                # of it SciPy makes steps without end
+                raise ArithmeticError("the equations have no finite value")
             while solver.status == "running" and motion.status == "finished" and self.corner is None:
                 message = solver.step()
                 if solver.status == "failed":

@@ -1,8 +1,8 @@
-"""Dependent coordinates of a part as functions of its independent ones, where its loops are planar four-bars.
+"""Dependent coordinates of a part as functions of its independent ones.
 
-Of the four-bar family, that is: one closure after the other may leave three motions unknown (:mod:`.triangle`), until
-all coordinates but the independent ones y are known. With phi = 0 what a closure demands in its plane, z its unknown
-coordinates,
+In closed form those of the planar four-bar family: one closure after the other may leave three motions unknown
+(:mod:`.triangle`), until all coordinates but the independent ones y are known. What is left is met together, by steps
+(:mod:`.newton`). With phi = 0 what a closure demands, z its unknown coordinates,
 
     q' = N y'           N_z = -phi_z^-1 phi_other N_other
     q'' = N y'' + H y' y'     H_z = -phi_z^-1 (phi_other H_other + phi_ab N_a N_b)
@@ -23,12 +23,16 @@ from substructures.expr.interpret import interpret
 from substructures.expr.operations import Symbol
 from substructures.expr.program import array, program
 from substructures.expr.trigonometry import cos, sin
+from substructures.expr.walk import symbols_in
 from substructures.loads.scope import Scope, no_names
+from substructures.part.definition import PartClosure
 from substructures.part.frames import constant, cut_frames
 from substructures.part.outputs import over_formulas
 from substructures.part.part import Part
-from substructures.tree.given.loops.dependent import Dependent, Sum
-from substructures.tree.given.loops.planar import Chains, Loop, NotPlanar, loop_of
+from substructures.tree.given.loops.dependent import Dependent, NotReduced, Sum
+from substructures.tree.given.loops.linear import solver
+from substructures.tree.given.loops.newton import Group, Newton, Rows, Sample, groups_of, require_consistent, rows_of
+from substructures.tree.given.loops.planar import Chains, Loop, loop_of
 from substructures.tree.given.loops.triangle import Complex, Solution, solutions, times
 
 #: relative difference of distances from the start that tells no branch
@@ -47,11 +51,11 @@ class _Known:
 
 
 def dependent(part: Part) -> Dependent | str:
-    """The closed form of a part that names independent coordinates, or why there is none.
+    """What coordinates of a part depend on, where it names independent ones; or why there are no formulas of it.
 
     >>> from substructures import derive
-    >>> dependent(derive("delta-robot"))
-    "the closure 'bars1': of the coordinates around it 3 are unknown"
+    >>> dependent(derive("delta-robot")).loops
+    {('bars1', 'bars2', 'bars3'): ('x', 'y', 'z')}
     """
     return _dependent(_Known(part.definition.digest, part.program.digest, part))
 
@@ -60,7 +64,7 @@ def dependent(part: Part) -> Dependent | str:
 def _dependent(known: _Known) -> Dependent | str:
     try:
         return _Solver(known.part).solve()
-    except NotPlanar as why:
+    except NotReduced as why:
         return str(why)
     except (ZeroDivisionError, ValueError):
         return "its loops cannot be closed, or are singular, in every position"
@@ -89,13 +93,13 @@ class _Solver:
         return constant(Scope(Graph()).read(given, "", no_names))
 
     def solve(self) -> Dependent:
-        """All of them. Raises NotPlanar."""
+        """All of them. Raises NotReduced."""
         waiting, why = list(self.definition.closures), ""
         while waiting:
             for closure in waiting:
                 try:
                     self._close(closure)
-                except NotPlanar as reason:
+                except NotReduced as reason:
                     why = why or f"the closure '{closure.name}': {reason}"
                 else:
                     # from the first one again: this one may bring an earlier one down to three unknown motions
@@ -103,21 +107,58 @@ class _Solver:
                     why = ""
                     break
             else:
-                raise NotPlanar(why)
+                break
+        if waiting and not self.definition.ranges:
+            raise NotReduced(f"{why}; loops like that take the 'ranges' of the independent coordinates")
+        for group in groups_of(map(self._group, waiting)):
+            self._follow(group)
         left = [q for q in self.part.coordinates if q not in self.found.N]
         if left:
-            raise NotPlanar(f"no closure tells '{left[0]}' from the independent coordinates")
+            raise NotReduced(f"no closure tells '{left[0]}' from the independent coordinates")
         return self.found
 
+    def _group(self, closure: PartClosure) -> Group:
+        """A closure that is not met by itself."""
+        cut = cut_frames(Scope(self.graph), closure, "", self.graph.symbol)
+        ways, ends = self.chains.ways(closure.from_, closure.to, cut)
+        A, B = (self.chains.pose(way, end) for way, end in zip(ways, ends, strict=True))
+        rows = rows_of(self.graph, closure.type, cut, A, B).without_what_cancels(self.part.coordinates)
+        return Group(
+            (closure.name,), frozenset(symbols_in(rows.zero) - self.found.N.keys() & {*self.part.coordinates}), rows
+        )
+
+    def _follow(self, group: Group) -> None:
+        """Closures that are met together, by Newton's method. Raises NotReduced."""
+        found, rows = self.found, group.rows
+        rows = Rows(tuple(found.put_in(rows.zero)), tuple(found.put_in(rows.scale)))
+        z = tuple(q for q in self.part.coordinates if q in group.z)
+        y = tuple(q for q in found.independent if q in symbols_in(rows.zero))
+        scope = Scope(self.graph)
+        start = {q: scope.read(self.definition.start.get(q, 0), "", no_names) for q in (*z, *y)}
+        ranges = {q: (self._constant(low), self._constant(high)) for q, (low, high) in self.definition.ranges.items()}
+        angles = frozenset(joint.coordinate for joint in self.part.topology.joints if not joint.s)
+        loop = Newton(self.graph, rows, z, y, start, angles)
+        try:
+            sample = Sample(loop, self.numbers | {q: self.start.get(q, 0.0) for q in z}, ranges)
+            found.branches.append(sample.steps())
+            values = loop.values(found.branches[-1], sample.chosen)
+            require_consistent(loop, values, self.numbers)
+        except NotReduced as why:
+            raise NotReduced(f"{', '.join(map(repr, group.closures))}: {why}") from None
+        found.values |= values
+        found.loops[group.closures] = z
+        found.followed += group.closures
+        self._move(z, group.rows.zero)
+
     def _close(self, closure: Any) -> None:
-        """One more. Raises NotPlanar."""
+        """One more. Raises NotReduced."""
         scope = Scope(self.graph)
         cut = cut_frames(scope, closure, "", self.graph.symbol)
         loop = loop_of(self.chains, (closure.type, closure.from_, closure.to), cut, self.found.N)
         try:
             found = [self._known(loop, each) for each in solutions(loop.motions, loop.K, loop.known)]
         except (ZeroDivisionError, ValueError):
-            raise NotPlanar("points that have to be apart coincide") from None
+            raise NotReduced("points that have to be apart coincide") from None
         # chosen at numbers, the branch is that of all positions that are reached without a dead centre
         best = self._nearest([self._numbers(values) for values, _ in found])
         values, angles = found[best]
@@ -125,8 +166,8 @@ class _Solver:
         self.numbers |= self._numbers(values)
         self.found.values |= values
         self.found.angles |= angles
-        self.found.loops[closure.name] = tuple(values)
-        self._move(loop)
+        self.found.loops[closure.name,] = tuple(values)
+        self._move(tuple(values), loop.rows)
         for name in values:
             self._straighten(name, angles)
 
@@ -184,32 +225,31 @@ class _Solver:
         return sum(abs(x - self.start.get(name, 0.0)) for name, x in position.items())
 
     def _nearest(self, positions: Sequence[Mapping[str, float]]) -> int:
-        """Which one of one or two positions, nan where there is none, is nearest to the start. Raises NotPlanar."""
+        """Which one of one or two positions, nan where there is none, is nearest to the start. Raises NotReduced."""
         gaps = [self._gap(each) for each in positions]
         best = min(range(len(gaps)), key=lambda k: math.inf if math.isnan(gaps[k]) else gaps[k])
         if math.isnan(gaps[best]):
-            raise NotPlanar("it does not close at the start of the independent coordinates, at default values")
+            raise NotReduced("it does not close at the start of the independent coordinates, at default values")
         if len(positions) > 1:
             if abs(gaps[0] - gaps[1]) < SAME * max(gaps):
-                raise NotPlanar("two positions are as near to the start as each other: give one near a closed position")
+                raise NotReduced("two positions are as near to the start as each other: give it near a closed one")
             # both branches go through it, and N has no value there: the start tells neither of them
             if _meet(*(list(each.values()) for each in positions)):
-                raise NotPlanar("its two positions meet at the start, a dead centre: give one away from it")
+                raise NotReduced("its two positions meet at the start, a dead centre: give one away from it")
         return best
 
-    def _move(self, loop: Loop) -> None:
-        """N and H of the unknown coordinates of a loop."""
-        z = [x.coordinate for x in loop.unknown]
+    def _move(self, z: Sequence[str], rows: Sequence[Expr]) -> None:
+        """N and H of the unknown coordinates z of rows that are zero."""
         names = [*z, *self.found.N]
         N, H = self.found.N, self.found.H
-        slopes = gradient(loop.rows, names)
+        slopes = gradient(rows, names)
         bent = [gradient(row, names) for row in slopes]
-        back = inverse([row[: len(z)] for row in slopes])
+        solve = solver([row[: len(z)] for row in slopes])
         graph, y = self.graph, self.found.independent
 
         def solved(columns: Sequence[Expr]) -> list[Expr]:
             """-phi_z^-1 x, as a number where it is one."""
-            found = [-graph.sum(a * x for a, x in zip(row, columns, strict=True)) for row in back]
+            found = [-x for x in solve(columns)]
             # the ratio of bars that stay parallel is a number on closed positions alone: z(y) is put in to see it
             return [w if w.is_number else x for x, w in zip(found, self.found.put_in(found), strict=True)]
 
@@ -236,26 +276,3 @@ class _Solver:
 
 def _meet(one: Sequence[float], other: Sequence[float]) -> bool:
     return sum(abs(x - y) for x, y in zip(one, other, strict=True)) <= MEETING * sum(map(abs, (*one, *other)))
-
-
-def inverse(A: Sequence[Sequence[Expr]]) -> list[list[Expr]]:
-    """Of one, two or three rows, by Cramer's rule. Raises NotPlanar for a determinant that is always zero."""
-    n = len(A)
-
-    def det(rows: Sequence[int], columns: Sequence[int]) -> Expr:
-        """Of a block."""
-        if not rows:
-            return A[0][0].graph.one
-        terms = [
-            A[rows[0]][c] * det(rows[1:], [x for x in columns if x != c]) * (-1) ** k for k, c in enumerate(columns)
-        ]
-        return A[0][0].graph.sum(terms)
-
-    every = range(n)
-    whole = det(every, every)
-    if whole.is_zero:
-        raise NotPlanar("it does not tell the coordinates that are unknown")
-    return [
-        [det([r for r in every if r != i], [c for c in every if c != j]) * (-1) ** (i + j) / whole for i in every]
-        for j in every
-    ]

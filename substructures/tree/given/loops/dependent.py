@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
@@ -14,12 +14,17 @@ from substructures.tree.given.loops.triangle import Complex, conjugate, times
 Sum = frozenset[tuple[str, int]]
 
 
+class NotReduced(Exception):
+    """Loops that have no reduced level; says why."""
+
+
 @dataclass
 class Dependent:
     """What the coordinates of a part are: values of dependent ones, cosines and sines of sums of them, rows of N by
-    coordinate and independent coordinate, H by coordinate and two of these; ``branches``: the signs that were taken;
-    ``sums``: angles that are, but for turns, sums of independent ones; ``loops``: the coordinates that each closure
-    tells, in the order in which they are found.
+    coordinate and independent coordinate, H by coordinate and two of these; ``branches``: the signs that were taken,
+    or steps of Newton's method; ``sums``: angles that are, but for turns, sums of independent ones; ``loops``: the
+    coordinates that closures tell together, in the order in which they are found; ``followed``: closures that are met
+    by steps from the start.
 
     Values and angles are formulas of independent coordinates and parameters; N and H of all coordinates.
     """
@@ -29,34 +34,41 @@ class Dependent:
     values: dict[str, Expr] = field(default_factory=dict)
     angles: dict[Sum, Complex] = field(default_factory=dict)
     N: dict[str, dict[str, Expr]] = field(default_factory=dict)
-    H: dict[str, dict[tuple[str, str], Expr]] = field(default_factory=dict)
+    H: dict[str, dict[tuple[str, ...], Expr]] = field(default_factory=dict)
     branches: list[int] = field(default_factory=list)
     sums: dict[str, Expr] = field(default_factory=dict)
-    loops: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    loops: dict[tuple[str, ...], tuple[str, ...]] = field(default_factory=dict)
+    followed: list[str] = field(default_factory=list)
 
     def moved(self, graph: Graph, instance: str, bindings: Mapping[str, Expr]) -> Dependent:
         """In another graph, where symbols are ``bindings``, and coordinates and closures those of an instance."""
-        names = {name: f"{instance}.{name}" for name in (*self.independent, *self.values, *self.loops)}
         given = [*self.values.values(), *(x for pair in self.angles.values() for x in pair)]
         given += [x for row in self.N.values() for x in row.values()]
         given += [*(x for bend in self.H.values() for x in bend.values()), *self.sums.values()]
         # all in one pass, for what they have in common; taken off below in the order in which they are given
         found = iter(transfer(given, graph, bindings))
-        own = tuple(names[q] for q in self.independent)
-        values = {names[q]: next(found) for q in self.values}
-        angles = {frozenset((names[q], n) for q, n in known): (next(found), next(found)) for known in self.angles}
-        N = {names[q]: {names[j]: next(found) for j in row} for q, row in self.N.items()}
-        H = {names[q]: {(names[j], names[k]): next(found) for j, k in row} for q, row in self.H.items()}
-        sums = {names[q]: next(found) for q in self.sums}
-        loops = {names[x]: tuple(names[q] for q in z) for x, z in self.loops.items()}
-        return Dependent(graph, own, values, angles, N, H, list(self.branches), sums, loops)
+
+        def inside(names: Iterable[str]) -> tuple[str, ...]:
+            """As the tree calls them."""
+            return tuple(f"{instance}.{name}" for name in names)
+
+        values = {q: next(found) for q in inside(self.values)}
+        angles = {
+            frozenset((f"{instance}.{q}", n) for q, n in sum_): (next(found), next(found)) for sum_ in self.angles
+        }
+        N = {f"{instance}.{q}": {j: next(found) for j in inside(row)} for q, row in self.N.items()}
+        H = {f"{instance}.{q}": {inside(pair): next(found) for pair in row} for q, row in self.H.items()}
+        sums = {q: next(found) for q in inside(self.sums)}
+        loops = {inside(closures): inside(z) for closures, z in self.loops.items()}
+        own, followed = inside(self.independent), [*inside(self.followed)]
+        return Dependent(graph, own, values, angles, N, H, list(self.branches), sums, loops, followed)
 
     def beside(self, other: Dependent) -> Dependent:
         """Those of both."""
         values, angles = self.values | other.values, self.angles | other.angles
         rest = self.N | other.N, self.H | other.H, self.branches + other.branches, self.sums | other.sums
-        loops = self.loops | other.loops
-        return Dependent(self.graph, self.independent + other.independent, values, angles, *rest, loops)
+        loops = self.loops | other.loops, self.followed + other.followed
+        return Dependent(self.graph, self.independent + other.independent, values, angles, *rest, *loops)
 
     def put_in(self, roots: Sequence[Expr]) -> list[Expr]:
         """Formulas with what dependent coordinates are in their places."""

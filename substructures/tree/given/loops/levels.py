@@ -11,8 +11,8 @@ from substructures.tree.given.loops.closed_form import dependent
 
 
 def reduced_instances(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> frozenset[str]:
-    """The instances whose parts name independent coordinates, with a closed form. Notes in the scope those that have
-    none; raises InvalidDocument (``not-reduced``) where it is asked for.
+    """The instances whose parts name independent coordinates, with formulas of the others. Notes in the scope those
+    that have none; raises InvalidDocument (``not-reduced``) where it is asked for.
     """
     found = set[str]()
     for i, instance in enumerate(spec.instances):

@@ -15,16 +15,13 @@ from substructures.mechanics.linear3 import E3, IDENTITY, ZERO, Matrix, Vector, 
 from substructures.part.frames import CutFrames
 from substructures.part.outputs import PartOutputs
 from substructures.part.part import Part
+from substructures.tree.given.loops.dependent import NotReduced
 from substructures.tree.given.loops.triangle import Closing, Complex, Motion, conjugate, cross, over, plus, times
 from substructures.tree.mounted_part import frame_placement, links_of
 
 #: types of closures in a plane, by how many of the three numbers of a motion in it they leave free
 TURNING = ("pin", "revolute", "ball", "spherical", "cylindrical")
 SLIDING, FIXED, ROD = ("slider", "prismatic"), ("weld", "fixed"), "rod"
-
-
-class NotPlanar(Exception):
-    """A loop that is none of the planar four-bar family; says why."""
 
 
 @dataclass(frozen=True)
@@ -76,11 +73,20 @@ class Chains:
             found = found.beyond(link)
         return found
 
+    def ways(self, from_: str, to: str, cut: CutFrames) -> tuple[tuple[list[int], list[int]], tuple[Link, Link]]:
+        """Carriers on the ways to both ends of a closure from the last one that they have in common; the ends."""
+        ends = self.end(from_, cut.start), self.end(to, cut.end, cut.position)
+        first, other = (self.path(end.parent) for end in ends)
+        while first and other and first[0] == other[0]:
+            # what carries both ends moves neither against the other
+            first, other = first[1:], other[1:]
+        return (first, other), ends
+
 
 def loop_of(chains: Chains, closure: tuple[str, str, str], cut: CutFrames, known: Collection[str]) -> Loop:
     """The loop of a closure (type, from, to). ``known``: coordinates that move by themselves, or that were found.
 
-    Raises NotPlanar.
+    Raises NotReduced.
     """
     return _Reader(chains, closure, cut, known).loop()
 
@@ -90,17 +96,13 @@ class _Reader:
 
     def __init__(self, chains: Chains, closure: tuple[str, str, str], cut: CutFrames, known: Collection[str]) -> None:
         self.chains, self.type, self.cut, self.graph = chains, closure[0], cut, chains.graph
-        self.ends = chains.end(closure[1], cut.start), chains.end(closure[2], cut.end, cut.position)
-        first, other = (chains.path(end.parent) for end in self.ends)
-        while first and other and first[0] == other[0]:
-            # what carries both ends moves neither against the other
-            first, other = first[1:], other[1:]
-        self.ways = first, other
+        self.ways, self.ends = chains.ways(closure[1], closure[2], cut)
+        first, other = self.ways
         topology = chains.part.topology
         names = [chains.part.coordinates[i] for i in topology.moved_by]
         moved = [k for k in (*first, *other) if names[k] not in known]
         if any(k not in topology.movers for k in moved):
-            raise NotPlanar("relations move a joint of the loop with one that depends on others")
+            raise NotReduced("relations move a joint of the loop with one that depends on others")
         self.names, self.moved = names, frozenset(moved)
 
     def loop(self) -> Loop:
@@ -112,9 +114,9 @@ class _Reader:
         # motions in the plane that the cut joint leaves: with the unknown joints there have to be three
         cuts = {**dict.fromkeys(TURNING, 1), **dict.fromkeys(SLIDING, 1), **dict.fromkeys(FIXED, 0), ROD: 2}
         if self.type not in cuts:
-            raise NotPlanar(f"its type '{self.type}' is none of a loop in a plane")
+            raise NotReduced(f"its type '{self.type}' is none of a loop in a plane")
         if len(open_) + cuts[self.type] != 3:
-            raise NotPlanar(f"of the coordinates around it {len(open_)} are unknown")
+            raise NotReduced(f"of the coordinates around it {len(open_)} are unknown")
         places = {k: self._at_zero(self.chains.pose(self._way(k))) for k, _, _ in open_}
         poses = [self._at_zero(self.chains.pose(way, end)) for way, end in zip(self.ways, self.ends, strict=True)]
         plane = self._plane([places[k] for k, _, _ in open_ if not self.chains.links[k].s] + poses[:1])
@@ -163,28 +165,28 @@ class _Reader:
         x, y, z = plane.all(apply(transpose(pose.R), E3))
         if self.chains.links[k].s:
             if not z.is_zero:
-                raise NotPlanar(f"'{self.names[k]}' slides out of the plane of the loop")
+                raise NotReduced(f"'{self.names[k]}' slides out of the plane of the loop")
             return Motion(False, (x, y)), 1
         for sign in (1, -1):
             if (z - sign).is_zero:
                 return Motion(True, plane.point(pose.r)), sign
-        raise NotPlanar(f"the axis of '{self.names[k]}' is not across the plane of the loop")
+        raise NotReduced(f"the axis of '{self.names[k]}' is not across the plane of the loop")
 
     def _require_in_plane(self, plane: _Plane, poses: Sequence[Pose]) -> None:
-        """Raises NotPlanar unless the ends can meet."""
+        """Raises NotReduced unless the ends can meet."""
         # along its axis, which is across the plane, it slides as it has to
         is_free = self.type == "cylindrical"
         if not is_free and not plane.all(sub(poses[1].r, poses[0].r))[2].is_zero:
-            raise NotPlanar("its ends are not in one plane")
+            raise NotReduced("its ends are not in one plane")
         if self.type in TURNING and self.type not in ("ball", "spherical"):
             across = [plane.all(apply(transpose(pose.R), E3))[2] for pose in poses]
             if not any(all((z - sign).is_zero for z in across) for sign in (1, -1)):
-                raise NotPlanar("the axis of the joint that is cut is not across the plane of the loop")
+                raise NotReduced("the axis of the joint that is cut is not across the plane of the loop")
         elif self.type in (*SLIDING, *FIXED):
             for axis in IDENTITY:
                 a, b = (plane.all(apply(transpose(pose.R), axis))[2] for pose in poses)
                 if not (a - b).is_zero:
-                    raise NotPlanar("its ends are turned against each other")
+                    raise NotReduced("its ends are turned against each other")
 
     def _turn(self, plane: _Plane, poses: Sequence[Pose]) -> Complex:
         """e^(i kappa), the turn from the axes of A to those of B; 1 where the cut joint turns."""
@@ -207,7 +209,7 @@ class _Reader:
         if self.type in SLIDING:
             x, y, z = plane.all(apply(transpose(poses[0].R), E3))
             if not z.is_zero:
-                raise NotPlanar("the joint that is cut slides out of the plane of the loop")
+                raise NotReduced("the joint that is cut slides out of the plane of the loop")
             yield Motion(False, (x, y))
         elif self.type not in FIXED:
             yield Motion(True, end)
