@@ -121,7 +121,7 @@ class Caller:
             headers["Content-Length"] = str(content.size)
             content = content.pieces
         with self._bulk.transfer(path, content, headers, is_repeatable=is_repeatable) as answer:
-            if answer.status >= 400:
+            if answer.status >= 300:
                 raise problem_of(answer.status, httpx2.Headers(answer.getheaders()), answer.read())
             yield answer
 
@@ -131,7 +131,7 @@ class Caller:
 
     def _download(self, path: str, target: Path) -> int:
         with self._http.stream("GET", path) as answer:
-            if answer.is_error:
+            if not answer.is_success:
                 answer.read()
                 check(answer)
             with target.open("wb") as file:

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from threading import Thread
 from typing import Any, ClassVar
 
@@ -12,6 +13,7 @@ import httpx2
 import numpy as np
 import pytest
 
+from service.cli.main import main
 from substructures.client import Client, ProblemError, retries
 from substructures.formats.arrays import as_npz
 
@@ -72,6 +74,25 @@ def test_twice_unavailable_then_answered(client: Client) -> None:
     fail(503, 502)
     assert client.limits()["id"] == "x"
     assert len(_Flaky.seen) == 3
+
+
+def test_an_address_that_is_another(client: Client, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Redirects are not followed, and pages are no answers: both are told, with what should be given."""
+    asked: dict[str, Callable[[], Any]] = {
+        "limits": client.limits,
+        "archive": lambda: client.job_archive("x", tmp_path / "x.zip"),
+        "numbers": lambda: client.evaluate("x", quantities=["metric"], q=np.zeros((1, 1))),
+    }
+    for ask in asked.values():
+        fail((308, {"Location": "https://there/"}, None))
+        with pytest.raises(ProblemError, match="308: Permanent Redirect to https://there/"):
+            ask()
+    for script, told in (((308, {"Location": "https://there/"}, None), "https://there/"), (204, "no JSON")):
+        fail(script)
+        assert main(["list", "--server", client.address]) == 1
+        error = capsys.readouterr().err
+        assert told in error
+        assert f"'{client.address}' should be the address of such a server" in error
 
 
 def test_what_is_sent_again_acts_once(client: Client) -> None:
