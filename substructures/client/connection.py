@@ -126,8 +126,14 @@ class Caller:
             yield answer
 
     def download(self, path: str, target: Path) -> int:
-        """Save what is at a path, however large; its size in bytes."""
-        return self._retries.ask(lambda: self._download(path, target), True)
+        """Save what is at a path, however large, or nothing; its size in bytes."""
+        beside = target.with_name(f".{target.name}.{token_hex(4)}")
+        try:
+            size = self._retries.ask(lambda: self._download(path, beside), True)
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+        return size
 
     def _download(self, path: str, target: Path) -> int:
         with self._http.stream("GET", path) as answer:

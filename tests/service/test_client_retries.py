@@ -95,6 +95,17 @@ def test_an_address_that_is_another(client: Client, tmp_path: Path, capsys: pyte
         assert f"'{client.address}' should be the address of such a server" in error
 
 
+def test_a_download_that_breaks_off_leaves_the_file_that_was_there(client: Client, tmp_path: Path) -> None:
+    file = tmp_path / "x.zip"
+    file.write_bytes(b"whole")
+    fail(*[(200, {"Content-Length": "1000", "Connection": "close"}, None)] * 4)
+    with pytest.raises(httpx2.RemoteProtocolError):
+        client.job_archive("x", file)
+    assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"whole"]
+    client.job_archive("x", file)
+    assert [each.read_bytes()[:1] for each in tmp_path.iterdir()] == [b"{"]
+
+
 def test_what_is_sent_again_acts_once(client: Client) -> None:
     """The server has acted when the connection ends; the second request has the same key."""
     fail(DROP, 503, DROP)
