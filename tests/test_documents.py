@@ -90,6 +90,7 @@ def test_limits_are_inclusive(read: Any) -> None:
 @READERS
 def test_bytes_must_be_utf8(read: Any) -> None:
     assert fault_of(read, b'"\xff"')[1:] == ("encoding", "byte 1 is not UTF-8: invalid start byte")
+    assert read(b'\xef\xbb\xbf{"q": 1}') == {"q": 1}
     assert fault_of(read, b'["\\ud800"]')[1] == "encoding"
     assert read('"\u00e9\U0001f600"'.encode()) == "\u00e9\U0001f600"
 
@@ -103,7 +104,7 @@ def test_json_has_no_nan(word: str) -> None:
     )
 
 
-@pytest.mark.parametrize("data", [b"", b"{", b'{"a": 1,}', b"[1 2]", b"01", b"'a'", b'"\\', b"\xef\xbb\xbf1"])
+@pytest.mark.parametrize("data", [b"", b"{", b'{"a": 1,}', b"[1 2]", b"01", b"'a'", b'"\\', b"1\xef\xbb\xbf"])
 def test_json_syntax(data: bytes) -> None:
     _, code, message = fault_of(read_json, data)
     assert code == "syntax"

@@ -10,6 +10,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from importlib import import_module
+from json import JSONDecodeError
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec
 
@@ -96,18 +97,24 @@ class Server:
                 ended = code in ("key-expired", "key-revoked")
                 new = "ask whoever runs the server for a new one ('substructures key create') and " if ended else ""
                 advice = f"{new}give it by {self.key_from}"
-            elif error.status == 404 and code in (None, "not-found"):
-                advice = f"'{address}' should be the address of such a server, as in {SERVER}, without a path"
+            elif error.status < 400 or (error.status == 404 and code in (None, "not-found")):
+                advice = _of_no_server(address)
             else:
                 raise
             detail = f"{error.problem.get('detail')}; {advice}"
             raise ProblemError(error.status, {**error.problem, "detail": detail}) from None
+        except JSONDecodeError:
+            raise ValueError(f"this is answered with no JSON; {_of_no_server(address)}") from None
         except import_module("httpx2").ConnectError:  # which is there where it was raised
             if not self.is_other:
                 raise
             tls = "; without TLS it begins with http://" if address.startswith("https") else ""
             message = f"nothing answers at {address}: is this the URL of the other server, and does it run?{tls}"
             raise ValueError(message) from None
+
+
+def _of_no_server(address: str) -> str:
+    return f"'{address}' should be the address of such a server, as in {SERVER}, without a path"
 
 
 def kept_in() -> Path:

@@ -14,7 +14,7 @@ with one is compared with what was derived by its digest, and never read.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import IO, Annotated, Any
@@ -94,26 +94,27 @@ class _List(BaseModel):
     parts: tuple[_Listed, ...]
 
 
-def write_bundle(parts: Sequence[BundledPart], limits: Limits) -> bytes:
-    """A bundle that can be read again within the same limits. Raises Refused 422 for one that is too large."""
-    listed = [
-        {
-            "name": part.name,
-            **({} if part.number is None else {"number": part.number}),
-            "digest": part.digest,
-            "program": part.program_digest,
-            "folder": part.folder,
-            "files": {name: digest_of(data) for name, data in part.contents.items()},
-        }
-        for part in parts
-    ]
-    files = {LIST: write_json({"format": FORMAT, "version": VERSION, "parts": listed})}
-    files |= {part.file(name): data for part in parts for name, data in part.contents.items()}
-    packed = archive(files)
-    if len(packed) > limits.binary_bytes:
-        detail = f"the bundle has {len(packed):,} bytes; the limit is {limits.binary_bytes:,}: ask for fewer parts"
-        raise unprocessable("too-large", detail, "/query/refs", size=len(packed), limit=limits.binary_bytes)
+def write_bundle(parts: Iterable[BundledPart], limits: Limits) -> bytes:
+    """A bundle that can be read again within the same limits. Raises Refused 422 for one that is too large, as soon as
+    it is: no further ``parts`` are taken then."""
+    listed, files, size = list[dict[str, Any]](), dict[str, bytes](), 0
+    for part in parts:
+        number = {} if part.number is None else {"number": part.number}
+        digests = {"digest": part.digest, "program": part.program_digest}
+        own = {name: digest_of(data) for name, data in part.contents.items()}
+        listed.append({"name": part.name, **number, **digests, "folder": part.folder, "files": own})
+        files |= {part.file(name): data for name, data in part.contents.items()}
+        size += sum(map(len, part.contents.values()))
+        _require_room(size, limits)
+    packed = archive({LIST: write_json({"format": FORMAT, "version": VERSION, "parts": listed}), **files})
+    _require_room(len(packed), limits)
     return packed
+
+
+def _require_room(size: int, limits: Limits) -> None:
+    if size > limits.binary_bytes:
+        detail = f"the bundle has {size:,} bytes and more; the limit is {limits.binary_bytes:,}: ask for fewer parts"
+        raise unprocessable("too-large", detail, "/query/refs", size=size, limit=limits.binary_bytes)
 
 
 def read_bundle(file: IO[bytes], limits: Limits) -> list[BundledPart]:

@@ -8,7 +8,6 @@ dropped, and nothing is stored twice.
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import AsyncIterator, Awaitable, Callable, Iterable
 from contextlib import suppress
@@ -227,11 +226,10 @@ async def in_time(
 ) -> Response:
     """The answer of an endpoint that lets a worker print formulas. Raises Refused 503 when it takes too long.
 
-    ``advice``: what to do then. ``job``: prepares the job that does the same, for those who may submit jobs; while its
-    answer is kept, the same request does not become another one.
+    ``advice``: what to do then. ``job``: prepares the job that does the same, for those who may submit jobs.
     """
     store, deadline = store_of(request), deadline_of(store_of(request))
-    act = None if job is None else Act(request, tuple, store, _key_of(request))
+    act = None if job is None else Act(request, tuple, store, None)
     worker = worker_of(store, request.state.viewer, deadline)
 
     def late() -> Response:
@@ -247,12 +245,6 @@ async def in_time(
 
     threads = store.runtime.threads["print"]
     return await deadline.within(partial(threads.submit, request.state.principal), watched)
-
-
-def _key_of(request: Request) -> str:
-    """An idempotency key for a GET: what it asks for."""
-    asked = "\n".join((request.url.path, request.url.query, request.headers.get("accept", "")))
-    return f"GET {hashlib.sha256(asked.encode()).hexdigest()}"
 
 
 def timed(task: Task) -> Callable[[Callable[..., Response]], Callable[..., Awaitable[Response]]]:

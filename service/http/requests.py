@@ -143,6 +143,10 @@ async def spooled_body(request: Request) -> AsyncIterator[Spool]:
 
 
 async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
+    coding = request.headers.get("content-encoding", "identity")
+    if coding.strip().lower() != "identity":
+        detail = f"send the body as it is; Content-Encoding '{coding[:40]}' was received"
+        raise Refused(415, "unsupported-media-type", detail, headers={"Accept-Encoding": "identity"})
     declared = request.headers.get("content-length", "0")
     if declared.isdigit() and int(declared) > limit:
         raise _too_long(limit)

@@ -2,13 +2,15 @@
 (:mod:`service.http.one_state`).
 
 They take less time than a change of threads. Everything else, also what is asked for the first time, goes the long way,
-which leaves behind here what the next request of the same kind needs. Pinned trees never change.
+which leaves behind here what the next request of the same kind needs. Pinned trees never change, but are removed: every
+now and then a request goes the long way, which finds out.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, replace
+from time import monotonic
 from typing import Any
 
 from service.messages.answers import Answer, json_answer
@@ -28,16 +30,18 @@ from substructures.quantities.quantity import OF_PARTS, REACTIONS
 EVERYBODY = ""  # no owner
 BODY = 4096  # bytes of the request
 OPERATIONS, NUMBERS = 20_000, 2_000  # for one state: some tens of microseconds
+SECONDS = 1.0  # for which a tree that was there is taken to be there
 KEPT = 4_000  # operations whose memory is that of what is prepared for one state
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class AtHand:
-    """An evaluation with the programs it takes by source, and their outputs."""
+    """An evaluation with the programs it takes by source, and their outputs; ``seen``: when the tree was there."""
 
     evaluation: TreeEvaluation
     programs: Mapping[str, tuple[Program, list[str]]]
     one_state: OneState | None
+    seen: float
 
     def is_ready(self, store: Store) -> bool:
         """Whether all kernels are in memory."""
@@ -56,7 +60,7 @@ def answer(store: Store, viewer: Viewer, ref: str, body: bytes) -> Answer | None
     if isinstance(names, list):
         kept = store.caches.evaluations
         found = kept.get(_key(EVERYBODY, ref, names)) or kept.get(_key(viewer.owner, ref, names))
-    if found is None or not found.is_ready(store):
+    if found is None or monotonic() - found.seen >= SECONDS or not found.is_ready(store):
         return None
     quick = None if found.one_state is None else found.one_state.at(data)
     if quick is not None:
@@ -72,6 +76,11 @@ def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, eva
     owner.
     """
     sources, names = evaluation.sources, request.quantities
+    kept, key = store.caches.evaluations, _key(EVERYBODY if tree.is_public else tree.owner, ref, names)
+    known: AtHand | None = kept.get(key)
+    if known is not None:
+        known.seen = monotonic()
+        return
     operations, numbers = cost(sources, names)
     if operations > OPERATIONS or numbers > NUMBERS or sources.model.closures or REACTIONS in names:
         return
@@ -79,12 +88,10 @@ def remember(store: Store, tree: Tree, ref: str, request: EvaluationRequest, eva
     own = {source: sources.of(source) for source in programs if source in OF_PARTS}
     derived = lambda _, source: programs[source][0]  # noqa: E731 -- nothing is derived anew
     at_hand = Sources(sources.model, derived, own.__getitem__, sources.plausibility)
-    found = AtHand(replace(evaluation, sources=at_hand), programs, None)
+    found = AtHand(replace(evaluation, sources=at_hand), programs, None, monotonic())
     if found.is_ready(store):
         one_state = prepared(at_hand, names, lambda program, outputs: store.kernels.compiled(program, outputs)[0])
-        found = replace(found, one_state=one_state)
-        whose = EVERYBODY if tree.is_public else tree.owner
-        store.caches.evaluations.put(_key(whose, ref, names), found)
+        kept.put(key, replace(found, one_state=one_state))
 
 
 def _key(owner: str, ref: str, quantities: Iterable[Any]) -> tuple[str, ...]:

@@ -252,8 +252,8 @@ def store(
         current = trees.resolve(connection, viewer, Reference(name))
         if current is not None and current.digest == digest:
             return current, False
-    if base is not None and not is_exact and latest != base:
-        raise StaleError(f"'{name}' was changed meanwhile")
+    if base is not None and ((not is_exact and latest != base) or not trees.is_there(connection, name, base)):
+        raise StaleError(f"'{name}' was changed or removed meanwhile")
     for part in coupled.inline:
         catalogue.store_part(connection, part)
     if coupled.program is not None:

@@ -64,7 +64,7 @@ def compute_velocity_equations(ref: str, body: JsonBody, store: StoreOf, act: Ac
 
     Formats as those of the quantities of a tree; the JSON answer names velocities, constraints and gaps.
     """
-    how = {"format": style.format, "form": style.form, "bind": style.bind}
+    how = {"format": style.format, "form": style.form, "bind": style.bind, "name": style.name}
     item = {"tree": ref, "quantity": "velocity-equations", "request": body, **how}
     later = deferred(act, "export", item, "/request")
     return act.compute(lambda: velocity_equations(store, act.viewer, act.worker, ref, body, style), later)

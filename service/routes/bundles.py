@@ -45,8 +45,8 @@ def get_bundle(
     def make() -> Answer:
         """Read and pack them."""
         with store.database.read() as connection:
-            parts = [bundles.bundled(connection, version) for version in versions]
-        data = write_bundle(parts, store.settings.limits)
+            parts = (bundles.bundled(connection, version) for version in versions)
+            data = write_bundle(parts, store.settings.limits)
         name = f"{versions[0].name}.zip" if len(versions) == 1 else "bundle.zip"
         return Answer(200, data, {"Content-Type": MEDIA_TYPE, "Content-Disposition": f'attachment; filename="{name}"'})
 

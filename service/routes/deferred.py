@@ -12,6 +12,7 @@ from service.http.acting import Act, Commit
 from service.messages.answers import Answer, json_answer
 from service.messages.viewer import Viewer
 from service.operations.jobs import jobs
+from service.queries.jobs import results
 from service.queries.jobs.jobs import Job
 from service.schemas.jobs import JobView
 from service.store.store import Store
@@ -37,11 +38,15 @@ def answer(connection: Connection, job: Job, status: int = 200, skipped: Sequenc
     return json_answer(dump(view), status, headers)
 
 
-def committed(store: Store, viewer: Viewer, submission: jobs.JobSubmission) -> Commit:
-    """What queues a submission and answers 202."""
+def committed(store: Store, viewer: Viewer, submission: jobs.JobSubmission, is_asked: bool = False) -> Commit:
+    """What queues a submission and answers 202; ``is_asked``: by a GET, which becomes no other job than it has become
+    already."""
 
     def commit(connection: Connection) -> Answer:
         """Queue the job and answer it, unless there is no room for results."""
+        known = results.job_of(connection, viewer.key, submission.items[0].key) if is_asked else None
+        if known is not None:
+            return answer(connection, jobs.find(connection, viewer, known), 202)
         store.usage.take(connection, "result", viewer.key, 0)
         return answer(
             connection, jobs.submit(connection, viewer, submission, store.settings.limits), 202, submission.skipped

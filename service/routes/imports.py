@@ -13,6 +13,7 @@ from service.database.connections import Connection
 from service.http.acting import ActOf, timed
 from service.http.requests import RawBody, StoreOf, declared_type, needs, received
 from service.jobs.files import Wanted, read
+from service.jobs.kinds.assemble import NAMED
 from service.messages.addresses import tree_path, version_path
 from service.messages.answers import Answer, json_answer
 from service.messages.refusals import Refused
@@ -120,7 +121,7 @@ def _tree(store: StoreOf, act: ActOf, found: Mapping[str, Any], entry: PartEntry
 
         return commit
 
-    return act.run(prepare, deferred(act, "assemble", {**found["tree"], **_said(entry)}))
+    return act.run(prepare, deferred(act, "assemble", {**found["tree"], **_said(entry)}, members={NAMED: True}))
 
 
 def _said(entry: PartEntry) -> dict[str, Any]:

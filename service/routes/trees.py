@@ -120,11 +120,15 @@ def get_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Re
 
 
 @router.delete("/{ref}", status_code=204, dependencies=WRITE)
-def remove_tree(ref: str, store: StoreOf, viewer: ViewerOf) -> Response:
+def remove_tree(ref: str, act: ActOf) -> Response:
     """Remove a tree with all its revisions. Its parts stay, and later revisions of the name count on."""
-    with store.database.write() as connection:
-        trees.remove(connection, viewer, ref)
-    return Response(status_code=204)
+
+    def commit(connection: Connection) -> Answer:
+        """Remove it."""
+        trees.remove(connection, act.viewer, ref)
+        return Answer(204, b"")
+
+    return act.submit(lambda: commit)
 
 
 @router.post(

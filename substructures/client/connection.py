@@ -121,17 +121,23 @@ class Caller:
             headers["Content-Length"] = str(content.size)
             content = content.pieces
         with self._bulk.transfer(path, content, headers, is_repeatable=is_repeatable) as answer:
-            if answer.status >= 400:
+            if answer.status >= 300:
                 raise problem_of(answer.status, httpx2.Headers(answer.getheaders()), answer.read())
             yield answer
 
     def download(self, path: str, target: Path) -> int:
-        """Save what is at a path, however large; its size in bytes."""
-        return self._retries.ask(lambda: self._download(path, target), True)
+        """Save what is at a path, however large, or nothing; its size in bytes."""
+        beside = target.with_name(f".{target.name}.{token_hex(4)}")
+        try:
+            size = self._retries.ask(lambda: self._download(path, beside), True)
+            beside.replace(target)
+        finally:
+            beside.unlink(missing_ok=True)
+        return size
 
     def _download(self, path: str, target: Path) -> int:
         with self._http.stream("GET", path) as answer:
-            if answer.is_error:
+            if not answer.is_success:
                 answer.read()
                 check(answer)
             with target.open("wb") as file:

@@ -32,8 +32,8 @@ def _told(problem: Mapping[str, Any]) -> str:
 
 
 def check(answer: httpx2.Response) -> None:
-    """Raise ProblemError unless it is a success."""
-    if answer.is_error:
+    """Raise ProblemError unless it is a success; no redirect is followed."""
+    if not answer.is_success:
         raise problem_of(answer.status_code, answer.headers, answer.content)
 
 
@@ -41,7 +41,8 @@ def problem_of(status: int, headers: Mapping[str, str], body: bytes) -> ProblemE
     """What an answer that is no success tells; ``headers`` find names in any case."""
     is_problem = headers.get("content-type", "").startswith("application/problem+json")
     seconds = headers.get("retry-after", "")
-    told = json.loads(body) if is_problem else {"detail": _phrase(status)}
+    place = f" to {headers['location']}" if "location" in headers else ""
+    told = json.loads(body) if is_problem else {"detail": _phrase(status) + place}
     return ProblemError(status, told, float(seconds) if seconds.isascii() and seconds.isdigit() else None)
 
 

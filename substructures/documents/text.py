@@ -34,9 +34,10 @@ def fault_at(line: int, column: int, code: str, message: str, pointer: str = "")
 
 
 def decoded(data: bytes) -> str:
-    """UTF-8 text. Raises :class:`InvalidDocument` with the position of the first bad byte."""
+    """UTF-8 text, without the mark that some editors put before it. Raises :class:`InvalidDocument` with the position
+    of the first bad byte."""
     try:
-        return data.decode("utf-8")
+        return data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
         raise InvalidDocument.at("", "encoding", f"byte {error.start} is not UTF-8: {error.reason}") from None
 

@@ -148,7 +148,7 @@ def test_a_family_of_orbits(client: TestClient) -> None:
 WRONG = [
     ("simulations", {"q": [0]}, "/span", "missing"),
     ("simulations", {"q": [0, 0, 0], "span": [0, 1]}, "/q", "wrong-length"),
-    ("simulations", {"q": [0, 0], "span": [1, 0]}, "", "empty-span"),
+    ("simulations", {"q": [0, 0], "span": [1, 0]}, "/span", "empty-span"),
     ("simulations", {"q": [0, 0], "span": [0, 1], "inputs": {"tau.nobody": 1}}, "/inputs/tau.nobody", "unknown-input"),
     (
         "simulations",

@@ -17,8 +17,9 @@ URL = "/v1/trees/cell@1/evaluations"
 
 
 @pytest.fixture
-def warm(filled: TestClient) -> TestClient:
-    """The tree ``cell`` with kernels."""
+def warm(filled: TestClient, monkeypatch: pytest.MonkeyPatch) -> TestClient:
+    """The tree ``cell`` with kernels; it is looked for again much later."""
+    monkeypatch.setattr(at_hand, "SECONDS", 600.0)
     assert filled.post("/v1/trees/cell@1/kernels", json={"quantities": QUANTITIES}).status_code == 201
     return filled
 
@@ -50,6 +51,18 @@ def test_the_second_request_needs_no_thread(warm: TestClient, threads: list[obje
     other = warm.post(URL, json={**STATE, "q": {"arm.q": 0.7}, "parameters": {"arm.m": 3}, "inputs": {"tau.arm.q": 1}})
     assert (other.status_code, len(threads)) == (200, 1)
     assert other.json()["forces"] != first.json()["forces"]
+
+
+def test_a_tree_that_was_removed(warm: TestClient, threads: list[object], monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is looked for again after a while, and is at hand again where it is there."""
+    assert [warm.post(URL, json=STATE).status_code for _ in range(2)] == [200, 200]
+    with monkeypatch.context() as now:
+        now.setattr(at_hand, "SECONDS", 0.0)
+        assert (warm.post(URL, json=STATE).status_code, len(threads)) == (200, 2)
+    assert (warm.post(URL, json=STATE).status_code, len(threads)) == (200, 2)
+    assert warm.delete("/v1/trees/cell").status_code == 204
+    monkeypatch.setattr(at_hand, "SECONDS", 0.0)
+    assert warm.post(URL, json=STATE).status_code == 404
 
 
 def test_other_methods_are_refused(warm: TestClient) -> None:

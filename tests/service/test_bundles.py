@@ -18,8 +18,9 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.content.bundles import LIST, MOST_PARTS
+from service.content.bundles import LIST, MOST_PARTS, BundledPart, write_bundle
 from service.content.integrity import digest_of
+from service.messages.refusals import Refused
 from service.settings import Limits, Settings
 from service.store import keys
 from service.store.store import Store
@@ -619,6 +620,14 @@ def test_what_takes_too_long_is_not_gone_on_with(files: Files, tmp_path: Path, m
 def test_other_media_types(client: TestClient) -> None:
     answer = client.post(BUNDLES, json={})
     assert (answer.status_code, answer.headers["accept"]) == (415, "application/zip")
+
+
+def test_no_more_parts_are_read_than_a_bundle_may_have() -> None:
+    digest = "sha256:" + 64 * "0"
+    parts = iter([BundledPart(name, 1, digest, digest, b"x" * 700, b"", b"{}") for name in "abc"])
+    with pytest.raises(Refused, match="1,404 bytes and more; the limit is 1,000"):
+        write_bundle(parts, Limits(binary_bytes=1000))
+    assert [part.name for part in parts] == ["c"]
 
 
 def test_limits(source: TestClient, tmp_path: Path) -> None:

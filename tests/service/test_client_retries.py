@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from threading import Thread
 from typing import Any, ClassVar
 
@@ -12,6 +13,7 @@ import httpx2
 import numpy as np
 import pytest
 
+from service.cli.main import main
 from substructures.client import Client, ProblemError, retries
 from substructures.formats.arrays import as_npz
 
@@ -72,6 +74,36 @@ def test_twice_unavailable_then_answered(client: Client) -> None:
     fail(503, 502)
     assert client.limits()["id"] == "x"
     assert len(_Flaky.seen) == 3
+
+
+def test_an_address_that_is_another(client: Client, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Redirects are not followed, and pages are no answers: both are told, with what should be given."""
+    asked: dict[str, Callable[[], Any]] = {
+        "limits": client.limits,
+        "archive": lambda: client.job_archive("x", tmp_path / "x.zip"),
+        "numbers": lambda: client.evaluate("x", quantities=["metric"], q=np.zeros((1, 1))),
+    }
+    for ask in asked.values():
+        fail((308, {"Location": "https://there/"}, None))
+        with pytest.raises(ProblemError, match="308: Permanent Redirect to https://there/"):
+            ask()
+    for script, told in (((308, {"Location": "https://there/"}, None), "https://there/"), (204, "no JSON")):
+        fail(script)
+        assert main(["list", "--server", client.address]) == 1
+        error = capsys.readouterr().err
+        assert told in error
+        assert f"'{client.address}' should be the address of such a server" in error
+
+
+def test_a_download_that_breaks_off_leaves_the_file_that_was_there(client: Client, tmp_path: Path) -> None:
+    file = tmp_path / "x.zip"
+    file.write_bytes(b"whole")
+    fail(*[(200, {"Content-Length": "1000", "Connection": "close"}, None)] * 4)
+    with pytest.raises(httpx2.RemoteProtocolError):
+        client.job_archive("x", file)
+    assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"whole"]
+    client.job_archive("x", file)
+    assert [each.read_bytes()[:1] for each in tmp_path.iterdir()] == [b"{"]
 
 
 def test_what_is_sent_again_acts_once(client: Client) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gzip
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -46,6 +47,9 @@ def test_problems(client: TestClient) -> None:
         415,
         "unsupported-media-type",
     )
+    coded = {**JSON, "Content-Encoding": "gzip"}
+    packed = client.post("/v1/substructures", content=gzip.compress(b"{}"), headers=coded)
+    assert "send the body as it is" in problem(packed, 415, "unsupported-media-type")["detail"]
     problem(client.post("/v1/substructures", content=b"{", headers=JSON), 422, "invalid-document")
     assert problem(client.get("/v1/substructures?page_size=0"), 422, "invalid-request")["detail"].endswith('found "0"')
     for body, message in (({}, "'name' is needed"), ({"name": "x", "colour": 1}, "unknown field 'colour'")):

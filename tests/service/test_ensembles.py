@@ -49,7 +49,7 @@ def test_as_arrays(client: TestClient) -> None:  # noqa: F811
     ("body", "pointer"),
     [
         ({}, "/span"),
-        ({"span": [1, 0]}, ""),
+        ({"span": [1, 0]}, "/span"),
         ({"span": [0, 1], "q": [[0, 1, 2]]}, "/q"),
         ({"span": [0, 1], "method": "Radau"}, "/method"),
         ({"span": [0, 1], "columns": {"a": {}}}, "/columns/a"),

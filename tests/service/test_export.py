@@ -308,6 +308,27 @@ def test_a_long_export_becomes_one_job(made: TestClient, hurried: TestClient, st
     assert ours["arm_selftest.c"] == theirs["arm_selftest.c"]
 
 
+def test_an_export_is_of_the_tree_as_it_is(filled: TestClient) -> None:
+    """The same request becomes another job where the tree has changed, and where its job is cancelled or removed."""
+
+    def job() -> str:
+        """Of the request."""
+        answer = filled.get("/v1/trees/to-go/export", params={"target": "c"}, headers={"Prefer": "respond-async"})
+        return str(answer.json()["id"])
+
+    assert filled.post("/v1/trees", json=TREE).status_code == 201
+    first = job()
+    assert filled.post("/v1/trees", json={**TREE, "gravity": [0, 0, -2]}).status_code == 201
+    second = job()
+    assert first != second == job()
+    filled.post(f"/v1/jobs/{second}/cancel")
+    third = job()
+    assert second != third
+    filled.post(f"/v1/jobs/{third}/cancel")
+    assert filled.delete(f"/v1/jobs/{third}").status_code == 204
+    assert filled.get(f"/v1/jobs/{job()}").status_code == 200
+
+
 def test_a_long_export_of_a_reader_is_refused(hurried: TestClient, store: Store) -> None:
     with store.database.write() as connection:
         key = create(connection, "reader", ["read"])

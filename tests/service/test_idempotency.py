@@ -21,7 +21,7 @@ from service.settings import Settings
 from service.store import idempotency as claims
 from service.store.runtime import COMPUTED, Computed
 
-from .conftest import HAND, PENDULUM, make_client
+from .conftest import HAND, PENDULUM, TREE, make_client
 from .databases import fresh
 
 KEY = {"Idempotency-Key": "3f6b"}
@@ -37,6 +37,15 @@ def test_replay(filled: TestClient, rows: Any) -> None:
     assert second.headers["location"] == first.headers["location"]
     assert second.headers["idempotency-replayed"] == "true"
     assert rows() == before
+
+
+def test_a_removal_that_is_sent_again(filled: TestClient) -> None:
+    """It takes nothing away that is new, and is no failure; the client sends it again where no answer comes."""
+    removed = [filled.delete("/v1/trees/cell", headers=KEY)]
+    assert filled.post("/v1/trees", json=TREE).status_code == 201
+    removed += [filled.delete("/v1/trees/cell", headers=KEY)]
+    assert [answer.status_code for answer in removed] == [204, 204]
+    assert filled.get("/v1/trees/cell").status_code == 200
 
 
 def test_other_requests_under_the_same_key(filled: TestClient) -> None:

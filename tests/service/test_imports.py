@@ -9,10 +9,12 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.cli.main import main
+from service.store.store import Store
 from tests.interchange.test_meshes import ROBOT as ROBOT_WITH_MESHES
 from tests.interchange.test_meshes import zipped
 
 from .conftest import PENDULUM
+from .fake_engine import FakeEngine, finished, running
 
 LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1"/></inertial>'
 ARM = f"""<robot name="My Arm">
@@ -175,6 +177,21 @@ def test_parts_of_a_cut_file_are_versions_of_their_names(client: TestClient) -> 
     made = client.post("/v1/imports?store=true&name=arm&cut=hand&parameters=none", content=LONG, headers=XML)
     assert made.status_code == 201  # a version more of one's own name
     assert client.get("/v1/substructures/arm-hand").json()["version"] == 2
+
+
+def test_parts_of_a_cut_file_are_in_the_catalogue_where_it_becomes_a_job(client: TestClient, store: Store) -> None:
+    """As where they are stored at once."""
+    name, later = "/v1/imports?store=true&cut=hand&visibility=private&name=", {**XML, "Prefer": "respond-async"}
+    with running(store, FakeEngine()):
+        made = client.post(f"{name}arm", content=LONG, headers=later)
+        assert finished(client, made.json()["id"])["state"] == "succeeded"
+    assert client.post(f"{name}leg", content=LONG, headers=XML).status_code == 201
+    for ref in ("arm", "leg"):
+        tree = client.get(f"/v1/trees/{ref}").json()
+        for instance, part in zip(tree["instances"], (f"{ref}-robot", f"{ref}-hand"), strict=True):
+            version = client.get(f"/v1/substructures/{part}").json()
+            assert instance["substructure"] == f"{part}@{version['digest']}"
+            assert (version["origin"], version["visibility"]) == ("import", "private")
 
 
 def test_a_cut_that_cannot_be_stores_nothing(client: TestClient) -> None:

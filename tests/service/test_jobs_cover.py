@@ -112,9 +112,10 @@ def test_every_quantity(client: TestClient, store: Store) -> None:
             assert file(client, item).text == known.text, name
 
 
-def test_formulas_with_a_document(client: TestClient, store: Store) -> None:
+@pytest.mark.parametrize("query", ["format=latex", "format=latex&document=true", "format=c&name=skating"])
+def test_formulas_with_a_document(client: TestClient, store: Store, query: str) -> None:
     assert list(WITH_DOCUMENT) == ["velocity-equations"]
-    url, body = "/v1/trees/skate/velocity-equations?format=latex", {"constraints": [EDGE]}
+    url, body = f"/v1/trees/skate/velocity-equations?{query}", {"constraints": [EDGE]}
     answer = client.post(url, json=body, headers={"Prefer": "respond-async"})
     assert answer.status_code == 202, answer.text
     with running(store, FakeEngine()):

@@ -72,6 +72,20 @@ def test_too_long_requests_become_jobs(filled: TestClient, store: Store, rows: A
     assert rows()["jobs"] == 2
 
 
+def test_a_change_of_a_tree_that_was_removed_meanwhile(filled: TestClient, store: Store) -> None:
+    """It does not bring the tree back."""
+    with running(store, FakeEngine(is_open=False)) as engine:
+        places = [f"/v1/trees/{ref}/couplings" for ref in ("cell", "cell@1")]
+        jobs = [filled.post(place, json=HAND, headers=ASYNC).json() for place in places]
+        assert filled.delete("/v1/trees/cell").status_code == 204
+        engine.open()
+        for job in jobs:
+            finished(filled, job["id"])
+            (item,) = filled.get(f"/v1/jobs/{job['id']}/items").json()["items"]
+            assert (item["state"], item["problem"]["code"]) == ("failed", "conflict")
+    assert filled.get("/v1/trees/cell").status_code == 404
+
+
 @pytest.mark.parametrize("fails", [False, True])
 def test_work_that_is_given_up_acts_once(
     filled: TestClient, store: Store, rows: Any, monkeypatch: pytest.MonkeyPatch, fails: bool

@@ -140,6 +140,24 @@ def test_equal_items_are_computed_once(filled: TestClient, store: Store) -> None
         assert (again["state"], again["attempts"]) == ("succeeded", 0)
 
 
+def test_a_tree_that_was_removed_is_assembled_again(filled: TestClient, store: Store) -> None:
+    """And one that has become another gets a revision, as by POST; what was verified is verified again."""
+    trees = [{"name": "two", "instances": [{"name": name, "substructure": "pendulum"}]} for name in "ab"]
+
+    def outcome(kind: str, item: dict[str, Any]) -> Any:
+        """What a job of one item says of it."""
+        job = submitted(filled, {"kind": kind, "items": [item]})
+        assert finished(filled, job)["attempts"] == 1
+        return items(filled, job)[0]["result"]
+
+    with running(store, FakeEngine()):
+        assert [outcome("assemble", trees[k])["revision"] for k in (0, 0, 1, 0)] == [1, 1, 2, 3]
+        assert filled.delete("/v1/trees/two").status_code == 204
+        assert outcome("assemble", trees[0])["revision"] == 4
+        assert filled.get("/v1/trees/two@4").status_code == 200
+        assert outcome("verify", {"tree": "two"}) == outcome("verify", {"tree": "two"})
+
+
 def test_cancel(filled: TestClient, store: Store) -> None:
     with running(store, FakeEngine(slots=1, is_open=False)) as engine:
         job = submitted(filled, export("cell", "metric", "gravity", "forces"))

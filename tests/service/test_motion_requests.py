@@ -48,16 +48,16 @@ def faults(model: Model, name: str, body: Any) -> list[tuple[str, str]]:
 
 
 OF_SPANS: list[tuple[Plain, str, str]] = [
-    ({"count": 5, "step": 0.1}, "", "one-grid"),
-    ({"span": [0, 0]}, "", "empty-span"),
+    ({"count": 5, "step": 0.1}, "/step", "one-grid"),
+    ({"span": [0, 0]}, "/span", "empty-span"),
     ({"span": None}, "/span", "tuple-type"),
     ({"span": [0]}, "/span/1", "missing"),
     ({"span": [0, 10**400]}, "/span/1", "number-not-finite"),
     ({"span": [0, "b"]}, "/span/1", "number-expected"),
-    ({"step": 1e-9}, "", "too-many-outputs"),
+    ({"step": 1e-9}, "/step", "too-many-outputs"),
     ({"count": 1}, "/count", "greater-than-equal"),
-    ({"times": [0, 0]}, "", "not-increasing"),
-    ({"times": [0, 2]}, "", "outside"),
+    ({"times": [0, 0]}, "/times", "not-increasing"),
+    ({"times": [0, 2]}, "/times", "outside"),
     ({"relative_tolerance": -1}, "/relative_tolerance", "greater-than-equal"),
     ({"events": [{"name": "x"}]}, "/events/0/quantity", "missing"),
     ({"velocity": 1}, "/velocity", "extra-forbidden"),
@@ -78,8 +78,8 @@ def test_spans(change: Plain, pointer: str, code: str) -> None:
 
 OF_LOOPS: list[tuple[Plain, str, str]] = [
     ({"fixed": 5}, "/fixed", "tuple-type"),
-    ({"inputs": {"tau.x.crank": {"times": [0, 0], "values": [1, 2]}}}, "/inputs/tau.x.crank", "not-increasing"),
-    ({"inputs": {"tau.x.crank": {"times": [0, 1], "values": [1, 2, 3]}}}, "/inputs/tau.x.crank", "wrong-length"),
+    ({"inputs": {"tau.x.crank": {"times": [0, 0], "values": [1, 2]}}}, "/inputs/tau.x.crank/times", "not-increasing"),
+    ({"inputs": {"tau.x.crank": {"times": [0, 1], "values": [1, 2, 3]}}}, "/inputs/tau.x.crank/values", "wrong-length"),
     ({"inputs": {"tau.x.crank": {"times": [0, 1]}}}, "/inputs/tau.x.crank/values", "missing"),
     ({"speed": 1}, "/speed", "extra-forbidden"),
     ({"t": [1, 2]}, "/t", "number-expected"),

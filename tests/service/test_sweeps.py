@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 import pytest
@@ -11,6 +11,8 @@ from fastapi.testclient import TestClient
 
 from service.content.cache import Cache
 from service.jobs.kinds import sweep as kind
+from service.operations.jobs import tables
+from service.operations.jobs.tables import Table
 from service.store.store import Store
 from substructures.formats.arrays import read_npz
 from substructures.sweeps import block
@@ -98,6 +100,15 @@ def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
     for label in ("study:night", "arm:long", "study:night arm:long"):
         assert [each["id"] for each in filled.get("/v1/jobs", params={"label": label}).json()["items"]] == [job]
     assert filled.get("/v1/jobs?label=study").json()["items"] == []
+
+
+@pytest.mark.parametrize("bins", [1, 20, 1000])
+@pytest.mark.parametrize("values", [[1, 1 + 2**-52], [1e17, 1e17], [0, 5e-324], [3, 3], [-1, 2], [-1.7e308, 1.7e308]])
+def test_histograms_of_what_differs_by_rounding(values: list[float], bins: int) -> None:
+    """There is none of what is further apart than the largest number."""
+    found = tables.distribution(Table(cast("Any", None), {"x": np.array(values, float)}, {}), "x", bins)["histogram"]
+    told = None if found is None else (sum(found["counts"]), len(set(found["edges"])))
+    assert told == (None if values[1] > 1e300 else (2, bins + 1))
 
 
 def test_what_rows_do_is_columns_too(filled: TestClient, store: Store) -> None:

@@ -6,8 +6,6 @@ It needs the store at every step, and the network: the process that watches over
 
 from __future__ import annotations
 
-import secrets
-
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.items import Mirrored
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind
@@ -23,7 +21,7 @@ MIRROR_KIND = "mirror"
 
 
 def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDocument]:
-    """The item with the address as it is listed; another run is another item, since there may be new parts."""
+    """The item with the address as it is listed."""
     try:
         source = read_source(read_model(Mirrored, item).source)
     except ValueError:
@@ -35,7 +33,7 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     if source.address not in library.sources():
         message = f"'{source.address[:200]}' is none of the instances that the operator lists in {SETTING}"
         raise InvalidDocument.at("/source", "source-not-allowed", message)
-    return [{"source": source.address, "run": secrets.token_hex(8), "nodes": limits.job_nodes}]
+    return [{"source": source.address, "nodes": limits.job_nodes}]
 
 
 def _resolve(item: ItemDocument, _library: Library) -> tuple[ItemDocument, tuple[str, ...]]:

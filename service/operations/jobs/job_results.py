@@ -13,11 +13,13 @@ from service.content.tree_content import TreeContent, TreeSummary
 from service.database.connections import Connection
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
+from service.jobs.kinds.assemble import NAMED
 from service.jobs.kinds.kind import ENTRY
 from service.messages.addresses import tree_path, version_path
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
+from service.operations.imports import IMPORTED
 from service.operations.sharing.provenance import Origin
 from service.operations.upgrade import TreeProgram, put_part, put_tree
 from service.queries.attempts import Attempt
@@ -69,6 +71,9 @@ def _result(connection: Connection, viewer: Viewer, attempt: Attempt, outcome: O
 
 def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     coupled = TreeContent.of_files(outcome.summary, outcome.files)
+    entry = PartEntry(**item.get(ENTRY, {}))
+    for part in coupled.inline if item.get(NAMED) else ():
+        catalogue.submit(connection, viewer, PartSubmission(part.name, part.digest, part, entry=entry, origin=IMPORTED))
     tree, _ = trees.store(connection, viewer, coupled, _entry(item), item.get(BASE_REVISION), bool(item.get(IS_EXACT)))
     return {"revision": tree.revision, "tree": f"{tree.name}@{tree.revision}", "location": tree_path(tree)}
 

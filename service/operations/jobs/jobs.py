@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import secrets
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from time import sleep
@@ -27,6 +28,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge
 
 NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and versions, of which every item names one
 STORING = (*NAMING, "mirror")  # kinds that need the right to write
+AFRESH = ("assemble", "upgrade", "verify", "mirror")  # kinds whose results are about a store that goes on changing
 YIELD = 8  # items that are resolved at a stretch
 RECENT = 30.0  # seconds over which the rate is measured
 
@@ -161,6 +163,8 @@ def _resolved(
     resolved: list[NewItem] = []
     faults: list[Fault] = []
     bad = 0
+    if kind in AFRESH:  # equal items of other submissions are others
+        members = {**members, "run": secrets.token_hex(8)}
     if kind in NAMING and kind != "upgrade":
         library.foresee(kind, items)
     for k, (item, (place, note)) in enumerate(zip(items, places, strict=True)):

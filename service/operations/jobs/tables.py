@@ -214,16 +214,28 @@ def distribution(table: Table, name: str, bins: int) -> dict[str, Any]:
     values = table.columns[name].astype(np.float64)
     if not len(values):
         return {"column": name, "count": 0, "mean": None, "deviation": None, "quantiles": {}, "histogram": None}
-    counts, edges = np.histogram(values, bins)
-    quantiles = np.quantile(values, QUANTILES)
-    return {
-        "column": name,
-        "count": len(values),
-        "mean": float(values.mean()),
-        "deviation": float(values.std()),
-        "quantiles": {f"{q:g}": float(x) for q, x in zip(QUANTILES, quantiles, strict=True)},
-        "histogram": {"edges": edges.tolist(), "counts": counts.tolist()},
-    }
+    with np.errstate(over="ignore", invalid="ignore"):  # what is beyond the range of doubles is null
+        quantiles = np.quantile(values, QUANTILES)
+        return {
+            "column": name,
+            "count": len(values),
+            "mean": float(values.mean()),
+            "deviation": float(values.std()),
+            "quantiles": {f"{q:g}": float(x) for q, x in zip(QUANTILES, quantiles, strict=True)},
+            "histogram": _histogram(values, bins),
+        }
+
+
+def _histogram(values: Column, bins: int) -> dict[str, Any] | None:
+    """Edges and counts, around values that differ by rounding alone; None where they are too far apart."""
+    low, high = values.min(), values.max()
+    least = 4 * bins * np.spacing(max(abs(low), abs(high)))  # so that bins have a width
+    if high - low < least:
+        low, high = low - max(0.5, least), high + max(0.5, least)
+    if not np.isfinite(high - low):
+        return None
+    counts, edges = np.histogram(values, bins, (low, high))
+    return {"edges": edges.tolist(), "counts": counts.tolist()}
 
 
 def tree_of(table: Table, row: int) -> dict[str, Any]:

@@ -232,8 +232,8 @@ class Mirror:
             except (ValueError, LookupError, TypeError, AttributeError):
                 raise self._failed(f"{path} is answered with a problem that cannot be read") from None
             except ProblemError as error:
-                if error.status in DENIED:
-                    raise self._denied(error) from None
+                if error.status in DENIED or error.status < 400:
+                    raise self._denied(error, path) from None
                 if error.status not in GONE:
                     raise
                 why = _reason(error)[1]
@@ -246,8 +246,11 @@ class Mirror:
                 sleep(pause)
         raise self._failed(why)
 
-    def _denied(self, error: ProblemError) -> Refused:
-        """502: the source asks for a key, or does not take the one it is sent; who gives it another one."""
+    def _denied(self, error: ProblemError, path: str) -> Refused:
+        """502: the source sends elsewhere; or it asks for a key, or does not take the one it is sent; who gives it
+        another one."""
+        if error.status < 400:
+            return self._failed(f"{path} is answered with {error.status}")
         kept = self._found.source.replace("://", "://KEY@")
         given = f"in {SETTING}, as {kept}"
         if not self._has_key:

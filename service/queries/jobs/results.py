@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from sqlalchemy import Connection, delete, select
 
 from service.content.integrity import checked, digest_of
-from service.database.job_tables import job_items, result_files, results
+from service.database.job_tables import job_items, jobs, result_files, results
 from service.queries.common import now, put_all
 
 
@@ -92,6 +92,14 @@ def as_kept(what: str, digest: str, content: bytes) -> bytes:
 def all_keys(connection: Connection) -> list[str]:
     """The keys of all results."""
     return list(connection.execute(select(results.c.key).order_by(results.c.key)).scalars())
+
+
+def job_of(connection: Connection, principal: str, key: str) -> str | None:
+    """The latest job of a principal of the one item of this key, unless it has failed or is cancelled."""
+    is_its = (job_items.c.key == key) & (jobs.c.total == 1)
+    is_of_use = (jobs.c.principal == principal) & jobs.c.state.in_(("queued", "running", "succeeded"))
+    query = select(jobs.c.id).join(job_items, job_items.c.job == jobs.c.id).where(is_its, is_of_use)
+    return connection.execute(query.order_by(jobs.c.id.desc()).limit(1)).scalar_one_or_none()
 
 
 def first_item(connection: Connection, job: str) -> str:

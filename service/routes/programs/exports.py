@@ -17,8 +17,9 @@ from service.messages.references import is_pinned
 from service.messages.viewer import Viewer
 from service.models.exporting import ALL_TARGETS, ZIP, ExportRequest
 from service.operations import analyses, catalogue
+from service.operations.jobs import jobs
 from service.routes.bodies import APIRouter, binary
-from service.routes.deferred import ACCEPTED, deferred
+from service.routes.deferred import ACCEPTED, committed
 from service.store.store import Store
 from substructures.errors import InvalidInput
 
@@ -86,10 +87,12 @@ async def export_substructure(
 def export_job(act: Act, of: Mapping[str, str], wanted: ExportRequest) -> Commit:
     """Prepare the job that exports the same. Raises InvalidInput with pointers into the query."""
     item = {**of, **asdict(wanted), "quantities": list(wanted.quantities), "independent": list(wanted.independent)}
+    act.require("jobs")
     try:
-        return deferred(act, "export", item)()
+        submission = jobs.prepare_one(act.store, act.viewer, "export", item)
     except InvalidInput as error:
         raise error.below("/query") from None
+    return committed(act.store, act.viewer, submission, is_asked=True)
 
 
 def _export(

@@ -11,7 +11,6 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from pydantic import BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
-from pydantic_core import PydanticCustomError
 
 from service.schemas.analyses.velocity_constraints import VelocityConstraints
 from service.schemas.measured import (
@@ -30,6 +29,7 @@ from service.schemas.measured import (
     Values,
 )
 from service.schemas.parts import RequestPart
+from service.schemas.shapes import refused
 from substructures.analysis import simulate as science
 from substructures.analysis.motion.problems.contacts import ROUGHEST
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS, OutputGrid, OutputTimes
@@ -51,7 +51,7 @@ def checked(make: Callable[[], object]) -> None:
         make()
     except InvalidArgument as error:
         (fault,) = error.faults
-        raise PydanticCustomError(fault.code, "{text}", {"text": fault.message}) from None
+        raise refused(fault.code, fault.message, fault.pointer) from None
 
 
 #: numbers in a tuple, a list or a numpy array
