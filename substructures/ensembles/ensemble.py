@@ -21,7 +21,7 @@ from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
 from substructures.ensembles.columns import MotionColumns, statistics
 from substructures.ensembles.constrained import accelerations, kept_gaps
-from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
+from substructures.ensembles.lanes import CUT, FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
 from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
 from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.one_by_one import OneByOne
@@ -139,8 +139,9 @@ class _Run:
             found = march(rates, start, grid, settings, told)
             self._note(begin, found)
             self.parts.append(self._part(chosen, grid, found.x, rates, integrals))
-            if told(len(start)) is False:
-                is_cancelled = chosen.stop < members.count
+            is_cut = bool((found.endings == CUT).any())
+            if is_cut or not told(len(start)):
+                is_cancelled = is_cut or chosen.stop < members.count
                 break
         return self._result(grid, is_cancelled)
 
@@ -165,7 +166,7 @@ class _Run:
     def _note(self, begin: int, found: LaneMotions) -> None:
         self.steps += int(found.steps.sum())
         self.evaluations += found.evaluations
-        lost = np.flatnonzero(found.endings != FINISHED)
+        lost = np.flatnonzero(~np.isin(found.endings, (FINISHED, CUT)))
         self.failed += len(lost)
         for k in lost[: TOLD - len(self.failures)].tolist():
             why = WHY.get(int(found.endings[k]), f"more than {self.integrator.max_steps:,} steps are needed")
