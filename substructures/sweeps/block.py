@@ -32,6 +32,8 @@ from substructures.tree.document import TreeSpec
 Rows = NDArray[np.int64]
 #: rows that are evaluated at a time: their intermediate values stay in the cache of a core
 AT_ONCE = 8192
+#: rows of a front, of which others may beat the first ones, that a part of a sweep has beside those that it is to keep
+OF_FRONT = 20_000
 #: relative difference from the slow way, times the condition number of the mass matrix
 AGREE = 1e-12
 
@@ -103,7 +105,7 @@ def compute(
             continue
         refusals.ways[shape.way] = refusals.ways.get(shape.way, 0) + len(here)
         found.append(_fitting(plan, Block(numbers[here], {**own, **columns}), refusals, finite))
-    return joined(plan, found, stop - start)
+    return joined(plan, found, stop - start, is_whole=False)
 
 
 def _samples(plan: Plan, sample: Rows, start: int, stop: int) -> dict[str, Array]:
@@ -161,9 +163,9 @@ def _fitting(plan: Plan, block: Block, refusals: Refusals, finite: list[int]) ->
     return block if fits.all() else block.take(np.flatnonzero(fits))
 
 
-def joined(plan: Plan, blocks: Iterable[Block], count: int) -> Block:
-    """One block in the order of rows, of those that are to be kept. Every block is put in its place as it comes, so
-    that none is there twice; ``count``: rows of all together, at most.
+def joined(plan: Plan, blocks: Iterable[Block], count: int, is_whole: bool = True) -> Block:
+    """One block in the order of rows, of those that are to be kept; unless it ``is_whole`` of those that may be. Every
+    block is put in its place as it comes, so that none is there twice; ``count``: rows of all together, at most.
     """
     rows, end = np.empty(count, dtype=np.int64), 0
     columns: dict[str, Array] = {}
@@ -182,7 +184,7 @@ def joined(plan: Plan, blocks: Iterable[Block], count: int) -> Block:
     if (found.rows[1:] < found.rows[:-1]).any():
         found = found.take(np.argsort(found.rows, kind="stable"))
     keep = plan.document.keep
-    return found if keep is None or end <= keep else found.take(best(found, plan.document.pareto, keep))
+    return found if keep is None or end <= keep else found.take(best(found, plan.document.pareto, keep, is_whole))
 
 
 def objectives(columns: Mapping[str, Array], pareto: Pareto) -> Array:
@@ -191,14 +193,17 @@ def objectives(columns: Mapping[str, Array], pareto: Pareto) -> Array:
     return np.stack([*down, *(-x for x in up)], axis=1)
 
 
-def best(block: Block, pareto: Pareto | None, keep: int) -> Rows:
-    """The places of so many rows: the Pareto front, then by its first column; without one the first rows."""
+def best(block: Block, pareto: Pareto | None, keep: int, is_whole: bool) -> Rows:
+    """The places of so many rows: the Pareto front, then by its first column; without one the first rows. Of a part of
+    a sweep, which other rows may throw off the front, so many beside the front.
+    """
     if pareto is None:
         return np.arange(keep, dtype=np.int64)
     values = objectives(block.columns, pareto)
     on_front = np.zeros(len(values), dtype=np.int64)
     on_front[front(values)] = 1
-    return np.sort(np.lexsort((block.rows, values[:, 0], -on_front))[:keep])
+    count = keep if is_whole else keep + min(int(on_front.sum()), OF_FRONT)
+    return np.sort(np.lexsort((block.rows, values[:, 0], -on_front))[:count])
 
 
 def _code(error: Exception) -> str:

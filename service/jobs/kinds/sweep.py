@@ -209,7 +209,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     for first in range(start, stop, AT_ONCE):
         blocks.append(compute(plan, first, min(first + AT_ONCE, stop), option, shape_of, refusals, finite))
         progress(0.95 * (min(first + AT_ONCE, stop) - start) / (stop - start))
-    found = joined(plan, blocks, stop - start)
+    found = joined(plan, blocks, stop - start, is_whole=False)
     wrong, proven = _proven(plan, found, item, option)
     summary = {
         "rows": [start, stop],
