@@ -132,10 +132,9 @@ def _values(plan: Plan, shape: Shape, options: Sequence[Sequence[Option]]) -> di
     for name in parameters:
         if name in sampled or "." not in name:
             continue  # a parameter of the tree itself has its default in the model
-        column = np.array([some.get(name, np.nan) for some in numbers])
-        if np.isnan(column).all():
-            continue
-        values[name] = float(column[0]) if (column == column[0]).all() else column
+        if name in numbers[0]:  # or in none: such options have other shapes
+            column = np.array([some[name] for some in numbers])
+            values[name] = float(column[0]) if (column == column[0]).all() else column
     return values
 
 
