@@ -40,7 +40,7 @@ from substructures.sweeps.block import (
     slow_columns,
 )
 from substructures.sweeps.document import Query, SweepDocument
-from substructures.sweeps.names import check_names
+from substructures.sweeps.names import ROW, check_names
 from substructures.sweeps.plan import Plan, check_size, check_template, given_options
 from substructures.sweeps.shapes import Option, Shape, option_of
 
@@ -220,7 +220,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "ways": refusals.ways,
         "media_type": "application/x-npz",
     }
-    files = {"rows": b"".join(write_npz({"row": found.rows, **found.columns}).pieces)}
+    files = {"rows": b"".join(write_npz({ROW: found.rows, **found.columns}).pieces)}
     if wrong:
         detail = f"row {wrong[0]}: {wrong[1]}; nothing of these rows is to be believed"
         return Outcome(summary, files, problem(Refused(500, "proof-failed", detail)))
