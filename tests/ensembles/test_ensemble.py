@@ -112,6 +112,11 @@ def test_integrals_are_as_exact_as_the_motion(oscillator: Model) -> None:
     assert list(found.columns) == ["square", "end", "work"]
     np.testing.assert_allclose(found.columns["square"], 0.045 * w**2 * (1 - np.sin(2 * w) / (2 * w)), rtol=1e-9)
     assert not found.columns["work"].any()
+    # up to the end, whatever the times that results are wanted at
+    short = simulate_ensemble(oscillator, [[0.3]], (0, 1), **{**given, "grid": OutputGrid(times=[0.5])}, states=True)
+    assert (short.t.tolist(), short.q.shape) == ([0, 0.5], (2, 2, 1))  # type: ignore[union-attr]
+    np.testing.assert_allclose(short.columns["square"], found.columns["square"], rtol=1e-9)
+    np.testing.assert_allclose(short.columns["end"], 0.3 * np.cos(0.5 * w), rtol=1e-9)
     # what an input does is what the energy grows by
     moved = simulate_ensemble(oscillator, [[0.3]], (0, 1), inputs=driven, states=True, **given)
     assert moved.q is not None
