@@ -63,6 +63,8 @@ class Distribution(DocumentPart):
         if self.values is not None and self.count is not None:
             raise PydanticCustomError("counted-twice", "'values' are as many as they are: leave 'count' out")
         factor = self.factor
+        if not factor:
+            raise PydanticCustomError("unit-too-small", "the factor of the unit is below the range of doubles")
         if not all(math.isfinite(x * factor) for x in self.values or self.uniform or self.normal or ()):
             raise PydanticCustomError("number-not-finite", "in SI a number is not finite: give smaller ones")
         if self.uniform is not None and not math.isfinite((self.uniform[1] - self.uniform[0]) * factor):
