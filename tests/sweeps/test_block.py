@@ -127,6 +127,24 @@ def test_a_planted_fault_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "by the tree of this row" in disagreement(wrong, slow, condition)
 
 
+def test_what_cancels_is_rounding() -> None:
+    """A balance with 0.3 kg at 0.7 m and 2.1 kg at 0.1 m, whose moments are 0 in exact numbers alone."""
+    other = {"name": "other", "parent": "rod", "joint": {"type": "fixed"}, "mass": "M", "com": ["-L", 0, 0]}
+    numbers = {"m": 0.3, "l": 0.7, "M": 2.1, "L": 0.1}
+    beam = {**ROD, "parameters": {name: {} for name in (*numbers, "c", "d")}, "bodies": [*ROD["bodies"], other]}
+    samples = {
+        "method": "list",
+        "of": {f"a.{name}": {"values": [x]} for name, x in (numbers | {"c": 0, "d": 0}).items()},
+    }
+    columns = {"moment": {"quantity": "forces", "of": "a.q", "over": {"q": [0.3]}}}
+    sweep = Sweep({"template": SPRUNG["template"], "samples": samples, "columns": columns}, {"rod": beam})
+    (moment,), (slow, condition) = sweep.rows().columns["moment"].tolist(), sweep.slow(0)
+    assert 0 < abs(moment) < 1e-15
+    assert slow == {"moment": 0}
+    assert not disagreement({"moment": moment}, slow, condition, (), lambda: sweep.moved(0))
+    assert disagreement({"moment": moment + 1e-10}, slow, condition, (), lambda: sweep.moved(0))
+
+
 def test_the_front_is_kept_first() -> None:
     sweep = Sweep(CRANE, pareto={"minimise": ["mass"], "maximise": ["x"]}, keep=9, choices={})
     kept, every = joined(sweep.plan, [sweep.rows()], 40), Sweep(CRANE, choices={}).rows()

@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from io import BytesIO
 from math import prod
 from random import SystemRandom
@@ -32,10 +33,13 @@ from substructures.part.definition import Definition
 from substructures.sweeps.block import (
     AT_ONCE,
     Block,
+    OptionOf,
     Refusals,
+    ShapeOf,
     compute,
     disagreement,
     joined,
+    rounding,
     shape_maker,
     slow_columns,
 )
@@ -210,7 +214,7 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         blocks.append(compute(plan, first, min(first + AT_ONCE, stop), option, shape_of, refusals, finite))
         progress(0.95 * (min(first + AT_ONCE, stop) - start) / (stop - start))
     found = joined(plan, blocks, stop - start, is_whole=False)
-    wrong, proven = _proven(plan, found, item, option)
+    wrong, proven = _proven(plan, found, item, option, shape_of)
     summary = {
         "rows": [start, stop],
         "kept": len(found.rows),
@@ -227,19 +231,22 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     return Outcome(summary, files)
 
 
-def _proven(plan: Plan, found: Block, item: ItemDocument, option: Any) -> tuple[tuple[int, str] | None, int]:
+def _proven(
+    plan: Plan, found: Block, item: ItemDocument, option: OptionOf, shape_of: ShapeOf
+) -> tuple[tuple[int, str] | None, int]:
     """A row that differs from the slow way, if there is one, and how many were compared."""
     done = 0
     places = {int(row): k for k, row in enumerate(found.rows)}
     for row in (each for each in item["proof"] if each in places):
         chosen = plan.chosen(row // plan.sampler.size)
-        parts = [option(i, k).part for i, k in enumerate(chosen)]
+        options = [option(i, k) for i, k in enumerate(chosen)]
         try:
-            slow, condition = slow_columns(plan, row, parts, item["nodes"])
+            slow, condition = slow_columns(plan, row, [each.part for each in options], item["nodes"])
         except InvalidInput as error:
             return (row, f"its tree is refused: {error}"), done
         fast = {name: float(found.columns[name][places[row]]) for name in slow}
-        if told := disagreement(fast, slow, condition, plan.columns.of_motions):
+        moved = partial(rounding, plan, row, options, shape_of)
+        if told := disagreement(fast, slow, condition, plan.columns.of_motions, moved):
             return (row, told), done
         done += 1
     return None, done
