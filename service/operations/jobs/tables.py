@@ -214,7 +214,7 @@ def distribution(table: Table, name: str, bins: int) -> dict[str, Any]:
     values = table.columns[name].astype(np.float64)
     if not len(values):
         return {"column": name, "count": 0, "mean": None, "deviation": None, "quantiles": {}, "histogram": None}
-    counts, edges = np.histogram(values, bins)
+    counts, edges = np.histogram(values, bins, _ends(values, bins))
     quantiles = np.quantile(values, QUANTILES)
     return {
         "column": name,
@@ -224,6 +224,14 @@ def distribution(table: Table, name: str, bins: int) -> dict[str, Any]:
         "quantiles": {f"{q:g}": float(x) for q, x in zip(QUANTILES, quantiles, strict=True)},
         "histogram": {"edges": edges.tolist(), "counts": counts.tolist()},
     }
+
+
+def _ends(values: Column, bins: int) -> tuple[float, float]:
+    """Least and largest value, further apart where rounding leaves no room for so many intervals between them."""
+    low, high = float(values.min()), float(values.max())
+    size = max(abs(low), abs(high))
+    room = 0.0 if high - low > 8 * bins * np.spacing(size) else max(0.5, 1e-9 * size)
+    return low - room, high + room
 
 
 def tree_of(table: Table, row: int) -> dict[str, Any]:
