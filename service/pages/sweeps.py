@@ -8,11 +8,12 @@ from urllib.parse import urlencode
 import numpy as np
 
 from service.messages.addresses import BASE
-from service.operations.jobs.tables import ROW, Table
+from service.operations.jobs.tables import Table
 from service.pages.html import Content, Html, html, joined, link, table, tag
 from substructures.array import Array
 from substructures.sweeps.block import objectives
 from substructures.sweeps.front import front
+from substructures.sweeps.names import ROW
 
 ROWS = 50
 #: points of the plot; of more rows every so many-th, and all of the front

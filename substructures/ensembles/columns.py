@@ -64,11 +64,31 @@ class MotionColumns:
         x: Array,
         integrals: Array,
         second: Callable[[], Array] | None = None,
+        wanted: int | None = None,
     ) -> dict[str, Array]:
-        """The columns (M,) of motions ``x`` (M, K, 2n); ``values``: of all other symbols, numbers or (M, K);
-        ``integrals`` (M, k): of :attr:`integrands` up to the end; ``second``: the accelerations (M K, n) where they are
-        not those of the tree.
+        """The columns (M,) of motions ``x`` (M, K, 2n), not a number of those that have not come to their ends;
+        ``values``: of all other symbols, numbers or (M, K); ``integrals`` (M, k): of :attr:`integrands` up to the end;
+        ``second``: the accelerations (M K, n) where they are not those of the tree; ``wanted``: how many of the times
+        are looked at, all by default.
         """
+        found = {name: np.full(len(x), np.nan) for name in self.columns}
+        whole = np.isfinite(x).all(axis=(1, 2))
+        if whole.any():
+            some = {name: v[whole] if isinstance(v, np.ndarray) else v for name, v in values.items()}
+            moved = second and (lambda: second().reshape(*x.shape[:2], -1)[whole].reshape(-1, self.sources.model.dof))
+            for name, column in self._of_whole(some, x[whole], integrals[whole], moved, wanted).items():
+                found[name][whole] = column
+        return found
+
+    def _of_whole(
+        self,
+        values: Mapping[str, float | Array],
+        x: Array,
+        integrals: Array,
+        second: Callable[[], Array] | None,
+        wanted: int | None,
+    ) -> dict[str, Array]:
+        """The same of motions that have come to their ends."""
         model, (rows, times) = self.sources.model, x.shape[:2]
         state = np.ascontiguousarray(x).reshape(rows * times, -1)
         flat = {name: np.ravel(v) if np.ndim(v) else v for name, v in values.items()}
@@ -86,8 +106,8 @@ class MotionColumns:
                 message = f"'{column.quantity}' is several numbers: say which by 'of'"
                 raise InvalidArgument.at(f"/columns/{name}/of", "several-numbers", message)
             with np.errstate(invalid="ignore"):
-                found[name] = _TAKEN[column.take](numbers.reshape(rows, times))
-        return {name: found[name] for name in self.columns}
+                found[name] = _TAKEN[column.take](numbers.reshape(rows, times)[:, :wanted])
+        return found
 
     def _evaluated(
         self, values: Mapping[str, Any], state: Array, second: Callable[[], Array] | None

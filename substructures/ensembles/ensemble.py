@@ -21,7 +21,7 @@ from substructures.analysis.motion.problems.problem import Integrator
 from substructures.array import Array
 from substructures.ensembles.columns import MotionColumns, statistics
 from substructures.ensembles.constrained import accelerations, kept_gaps
-from substructures.ensembles.lanes import FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
+from substructures.ensembles.lanes import CUT, FINISHED, TOO_SMALL, LaneMotions, LaneSettings, march
 from substructures.ensembles.members import Given, KernelRates, Members, along, read_members
 from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.one_by_one import OneByOne
@@ -126,8 +126,10 @@ class _Run:
     def run(self) -> Ensemble:
         """All members, or those up to where whoever watches the progress says that it is enough."""
         members, settings, grid = self.members, self._settings(), _grid(self.times)
+        # motions go on to the end, which results may not be wanted at
+        times = np.unique([*grid, self.times.span[1]])
         integrals = self._integrals()
-        size = max(settings.lanes, STATES // len(grid))
+        size = max(settings.lanes, STATES // len(times))
         is_cancelled = False
         for begin in range(0, members.count, size):
             chosen = slice(begin, min(begin + size, members.count))
@@ -136,11 +138,12 @@ class _Run:
             rates = KernelRates(members, lanes, self.integrator.folder, self.columns.integrands, begin)
             start = np.concatenate([start, np.zeros((len(start), rates.size - rates.held))], axis=1)
             told = self._told(begin)
-            found = march(rates, start, grid, settings, told)
+            found = march(rates, start, times, settings, told)
             self._note(begin, found)
-            self.parts.append(self._part(chosen, grid, found.x, rates, integrals))
-            if told(len(start)) is False:
-                is_cancelled = chosen.stop < members.count
+            self.parts.append(self._part(chosen, times, len(grid), found.x, rates, integrals))
+            is_cut = bool((found.endings == CUT).any())
+            if is_cut or not told(len(start)):
+                is_cancelled = is_cut or chosen.stop < members.count
                 break
         return self._result(grid, is_cancelled)
 
@@ -165,20 +168,20 @@ class _Run:
     def _note(self, begin: int, found: LaneMotions) -> None:
         self.steps += int(found.steps.sum())
         self.evaluations += found.evaluations
-        lost = np.flatnonzero(found.endings != FINISHED)
+        lost = np.flatnonzero(~np.isin(found.endings, (FINISHED, CUT)))
         self.failed += len(lost)
         for k in lost[: TOLD - len(self.failures)].tolist():
             why = WHY.get(int(found.endings[k]), f"more than {self.integrator.max_steps:,} steps are needed")
             self.failures.append(Failure(begin + k, float(found.reached[k]), why))
 
     def _part(
-        self, chosen: slice, grid: Array, x: Array, rates: KernelRates, integrals: FirstIntegrals | None
+        self, chosen: slice, t: Array, wanted: int, x: Array, rates: KernelRates, integrals: FirstIntegrals | None
     ) -> dict[str, Array]:
-        """Columns, verdicts and states of a part of the members."""
+        """Columns, verdicts and states of a part of the members, of which so many times are wanted."""
         n = rates.n
-        values, states = along(self.members, chosen, grid, x)
+        values, states = along(self.members, chosen, t, x)
         work = x[..., rates.held] if rates.has_power else np.zeros(x.shape[:2])
-        motions = MotionStates(np.tile(grid, (len(x), 1)), states[..., :n], states[..., n:], values, work)
+        motions = MotionStates(np.tile(t, (len(x), 1)), states[..., :n], states[..., n:], values, work)
         integrals_to_end = x[:, -1, rates.size - rates.integrals :]
         equations, held = self.members.equations, list[Condition]()
         second = None
@@ -189,11 +192,11 @@ class _Run:
         if model.balls:
             held = list(conditions_in_rates(model, motions, not self.members.conditions.varied_potential()))
             states = np.concatenate([with_lengths(model, states[..., :n]), states[..., n:]], axis=-1)
-        columns = self.columns.of(values, states, integrals_to_end, second)
+        columns = self.columns.of(values, states, integrals_to_end, second, wanted)
         found = {f"columns.{name}": v for name, v in columns.items()}
         found["violation"] = self._judged(motions, integrals, held)
         if self.keeps:
-            found |= {"q": states[..., :n], "qd": states[..., n:]}
+            found |= {"q": states[:, :wanted, :n], "qd": states[:, :wanted, n:]}
         return found
 
     def _judged(self, motions: MotionStates, integrals: FirstIntegrals | None, held: Sequence[Condition]) -> Array:

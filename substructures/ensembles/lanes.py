@@ -26,7 +26,8 @@ Places = NDArray[np.int64]
 SAFETY, LEAST, MOST = 0.9, 0.2, 10.0
 #: steps are no shorter than so many distances of the time from the next number
 RESOLUTION = 10
-FINISHED, TOO_SMALL, TOO_MANY = 0, 1, 2
+#: how motions end; CUT: whoever watched the progress ended them all
+FINISHED, TOO_SMALL, TOO_MANY, CUT = 0, 1, 2, 3
 
 
 class LaneRates(Protocol):
@@ -153,7 +154,7 @@ class _March:
         self.x = np.full((count, len(times), size), np.nan)
         self.x[:, 0] = starts
         self.steps, self.reached = np.zeros(count, dtype=np.int64), np.full(count, times[0])
-        self.endings = np.full(count, FINISHED, dtype=np.int8)
+        self.endings = np.full(count, CUT if len(times) > 1 else FINISHED, dtype=np.int8)
         self.begun = self.ended = self.evaluations = 0
 
     def run(self, progress: Callable[[int], bool]) -> LaneMotions:

@@ -125,6 +125,8 @@ def read_members(
 
 
 def _require_no_tables(inputs: Given) -> None:
+    if not isinstance(inputs, Mapping):
+        raise InvalidArgument.at("/inputs", "object-expected", "an object of numbers by name is needed")
     for name, x in inputs.items():
         if isinstance(x, Table):
             message = "a table is not taken in an ensemble: give an expression in t, or simulate one after the other"

@@ -21,11 +21,11 @@ from pydantic_core import PydanticCustomError
 
 from substructures.array import Array
 from substructures.documents import DocumentPart
-from substructures.documents.fields import unit_of
+from substructures.documents.fields import Real, unit_of
 
 #: rows that may be drawn
 MOST_ROWS = 10**8
-Values = Annotated[list[float], Field(min_length=1, max_length=1_000_000)]
+Values = Annotated[list[Real], Field(min_length=1, max_length=1_000_000)]
 Words = NDArray[np.uint64]
 ROUNDS = 6  # of the Feistel network; 4 are as good as random to a polynomial adversary (Luby, Rackoff 1988)
 _GAMMA = 0x9E3779B97F4A7C15
@@ -39,8 +39,8 @@ class Distribution(DocumentPart):
     """
 
     values: Values | None = None
-    uniform: tuple[float, float] | None = None
-    normal: tuple[float, Annotated[float, Field(ge=0)]] | None = None
+    uniform: tuple[Real, Real] | None = None
+    normal: tuple[Real, Annotated[float, Field(ge=0)]] | None = None
     count: Annotated[int, Field(ge=1, le=MOST_ROWS)] | None = None
     unit: Annotated[str, Field(max_length=64)] = ""
 
@@ -63,8 +63,12 @@ class Distribution(DocumentPart):
         if self.values is not None and self.count is not None:
             raise PydanticCustomError("counted-twice", "'values' are as many as they are: leave 'count' out")
         factor = self.factor
+        if not factor:
+            raise PydanticCustomError("unit-too-small", "the factor of the unit is below the range of doubles")
         if not all(math.isfinite(x * factor) for x in self.values or self.uniform or self.normal or ()):
             raise PydanticCustomError("number-not-finite", "in SI a number is not finite: give smaller ones")
+        if self.uniform is not None and not math.isfinite((self.uniform[1] - self.uniform[0]) * factor):
+            raise PydanticCustomError("number-not-finite", "the range is not finite: give smaller numbers")
         return self
 
 

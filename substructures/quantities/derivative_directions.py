@@ -11,6 +11,7 @@ from substructures.errors import InvalidArgument, InvalidInput
 from substructures.quantities.derivatives import direction
 from substructures.quantities.measured import si_values
 from substructures.quantities.numbers.states import StateInput, States, ValueInput, given_values, read_states
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 #: what follows the name of a coordinate in that of its position, velocity and acceleration
@@ -31,9 +32,12 @@ class Direction:
 
 
 def direction_values(model: Model, along: Direction | None, states: States) -> dict[str, Any]:
-    """Values of all symbols ``d.*``; zero where nothing is given. Raises InvalidArgument (``/along/...``)."""
+    """Values of all symbols ``d.*``; zero where nothing is given. Raises InvalidArgument (``/along/...``),
+    and InvalidDocument (``has-balls``) for rates that are no derivatives of coordinates.
+    """
     if along is None:
         raise InvalidArgument.at("/along", "missing", "the direction 'along' is needed: q, qd, qdd and inputs")
+    require_chains(model.balls, pointer="/quantities")
     count = states.count
     values: dict[str, Any] = {direction(name): 0.0 for name in model.input_names}
     for field, primes in PRIMES.items():

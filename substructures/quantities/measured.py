@@ -7,6 +7,7 @@ the SI unit there, and :func:`si_values` takes the arguments as they came and ha
 from __future__ import annotations
 
 import math
+import sys
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
 from fractions import Fraction
@@ -95,8 +96,8 @@ def _contradictions(found: Unit, text: str, units: Mapping[str, PlaceUnits]) -> 
 
 
 def _all_scaled(values: Array, unit: Unit) -> Array:
-    """Numbers in SI; one by one where the factor itself is beyond the range of doubles."""
-    if math.isinf(unit.scale):
+    """Numbers in SI; one by one where the factor itself is beyond the range of doubles, or has lost digits there."""
+    if math.isinf(unit.scale) or unit.scale < sys.float_info.min:
         return np.array([_scaled(x, unit) for x in values.flat], dtype=np.float64).reshape(values.shape)
     with np.errstate(over="ignore"):
         return values * unit.scale

@@ -32,8 +32,12 @@ from substructures.tree.document import TreeSpec
 Rows = NDArray[np.int64]
 #: rows that are evaluated at a time: their intermediate values stay in the cache of a core
 AT_ONCE = 8192
+#: rows of a front, of which others may beat the first ones, that a part of a sweep has beside those that it is to keep
+OF_FRONT = 20_000
 #: relative difference from the slow way, times the condition number of the mass matrix
 AGREE = 1e-12
+#: units of rounding by which numbers are moved to see what terms that cancel leave, and how often
+EPS, UNITS, TRIES = float(np.finfo(np.float64).eps), 4, 8
 
 
 @dataclass
@@ -103,7 +107,7 @@ def compute(
             continue
         refusals.ways[shape.way] = refusals.ways.get(shape.way, 0) + len(here)
         found.append(_fitting(plan, Block(numbers[here], {**own, **columns}), refusals, finite))
-    return joined(plan, found, stop - start)
+    return joined(plan, found, stop - start, is_whole=False)
 
 
 def _samples(plan: Plan, sample: Rows, start: int, stop: int) -> dict[str, Array]:
@@ -130,10 +134,9 @@ def _values(plan: Plan, shape: Shape, options: Sequence[Sequence[Option]]) -> di
     for name in parameters:
         if name in sampled or "." not in name:
             continue  # a parameter of the tree itself has its default in the model
-        column = np.array([some.get(name, np.nan) for some in numbers])
-        if np.isnan(column).all():
-            continue
-        values[name] = float(column[0]) if (column == column[0]).all() else column
+        if name in numbers[0]:  # or in none: such options have other shapes
+            column = np.array([some[name] for some in numbers])
+            values[name] = float(column[0]) if (column == column[0]).all() else column
     return values
 
 
@@ -161,9 +164,9 @@ def _fitting(plan: Plan, block: Block, refusals: Refusals, finite: list[int]) ->
     return block if fits.all() else block.take(np.flatnonzero(fits))
 
 
-def joined(plan: Plan, blocks: Iterable[Block], count: int) -> Block:
-    """One block in the order of rows, of those that are to be kept. Every block is put in its place as it comes, so
-    that none is there twice; ``count``: rows of all together, at most.
+def joined(plan: Plan, blocks: Iterable[Block], count: int, is_whole: bool = True) -> Block:
+    """One block in the order of rows, of those that are to be kept; unless it ``is_whole`` of those that may be. Every
+    block is put in its place as it comes, so that none is there twice; ``count``: rows of all together, at most.
     """
     rows, end = np.empty(count, dtype=np.int64), 0
     columns: dict[str, Array] = {}
@@ -182,7 +185,7 @@ def joined(plan: Plan, blocks: Iterable[Block], count: int) -> Block:
     if (found.rows[1:] < found.rows[:-1]).any():
         found = found.take(np.argsort(found.rows, kind="stable"))
     keep = plan.document.keep
-    return found if keep is None or end <= keep else found.take(best(found, plan.document.pareto, keep))
+    return found if keep is None or end <= keep else found.take(best(found, plan.document.pareto, keep, is_whole))
 
 
 def objectives(columns: Mapping[str, Array], pareto: Pareto) -> Array:
@@ -191,14 +194,17 @@ def objectives(columns: Mapping[str, Array], pareto: Pareto) -> Array:
     return np.stack([*down, *(-x for x in up)], axis=1)
 
 
-def best(block: Block, pareto: Pareto | None, keep: int) -> Rows:
-    """The places of so many rows: the Pareto front, then by its first column; without one the first rows."""
+def best(block: Block, pareto: Pareto | None, keep: int, is_whole: bool) -> Rows:
+    """The places of so many rows: the Pareto front, then by its first column; without one the first rows. Of a part of
+    a sweep, which other rows may throw off the front, so many beside the front.
+    """
     if pareto is None:
         return np.arange(keep, dtype=np.int64)
     values = objectives(block.columns, pareto)
     on_front = np.zeros(len(values), dtype=np.int64)
     on_front[front(values)] = 1
-    return np.sort(np.lexsort((block.rows, values[:, 0], -on_front))[:keep])
+    count = keep if is_whole else keep + min(int(on_front.sum()), OF_FRONT)
+    return np.sort(np.lexsort((block.rows, values[:, 0], -on_front))[:count])
 
 
 def _code(error: Exception) -> str:
@@ -231,18 +237,35 @@ def slow_columns(
     return {name: float(x[0]) for name, x in found.items()}, plan.columns.condition(shape)
 
 
+def rounding(plan: Plan, row: int, options: Sequence[Option], shape_of: ShapeOf) -> dict[str, float]:
+    """How far the columns of a row move where its numbers do by some units of rounding, at random."""
+    sample, draw = row % plan.sampler.size, np.random.default_rng(row)
+    shape = replace(shape_of(options), way=INTERPRETER)
+    samples = {name: x[0] for name, x in plan.sampler.rows(sample, sample + 1).items()}
+    numbers = {**_values(plan, shape, [options]), **samples}
+    moved = {name: x * (1 + EPS * draw.integers(-UNITS, UNITS + 1, TRIES)) for name, x in numbers.items()}
+    found = plan.columns.of(shape, moved, {name: moved[name] for name in samples}, TRIES)
+    return {name: float(np.ptp(x)) for name, x in found.items()}
+
+
 def disagreement(
-    fast: Mapping[str, float], slow: Mapping[str, float], condition: float, without: Collection[str] = ()
+    fast: Mapping[str, float],
+    slow: Mapping[str, float],
+    condition: float,
+    without: Collection[str] = (),
+    moved: Callable[[], Mapping[str, float]] = dict,
 ) -> str:
     """What to say where a row differs from the slow way by more than rounding can; empty where it does not.
 
-    ``without``: columns of motions, which are judged by their own conditions.
+    ``without``: columns of motions, which are judged by their own conditions; ``moved``: :func:`rounding`, which is
+    asked for where terms may cancel.
     """
     for name, x in fast.items():
         if name in without:
             continue
         y = slow[name]
-        if abs(x - y) > AGREE * max(1.0, condition) * max(abs(x), abs(y)):
+        apart = abs(x - y) > AGREE * max(1.0, condition) * max(abs(x), abs(y))
+        if apart and not abs(x - y) <= AGREE / (UNITS * EPS) * moved().get(name, 0.0):
             return f"'{name}' is {x!r}, and {y!r} by the tree of this row"
     return ""
 

@@ -15,7 +15,7 @@ from substructures.expr.syntax import RESERVED
 from substructures.late import Table
 from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
-from substructures.quantities.numbers.states import longest, read_states
+from substructures.quantities.numbers.states import given_values, longest, read_states, read_times
 from substructures.quantities.quantity import TABLE
 from substructures.sweeps.conditions import Condition, Expression, read_condition, read_expression
 from substructures.sweeps.document import (
@@ -110,7 +110,7 @@ class Columns:
     def condition(self, shape: Shape) -> float:
         """The largest condition number of the mass matrix at the states of the columns, with the defaults of a tree."""
         overs = [c.over for c in self.quantities.values()] + [getattr(c, "at", {}) for c in self.analyses.values()]
-        states = [over["q"] for over in overs if "q" in over]
+        states = [over["q"] for over in overs if over.get("q") is not None]
         found = [evaluate(shape.sources, "condition", q)["condition"] for q in states]
         return max((float(np.max(x)) for x in found), default=1.0)
 
@@ -136,6 +136,8 @@ def columns_of(columns: Mapping[str, Column], samples: Sequence[str], where: str
         pointer = f"/columns/{name}"
         if name in RESERVED:
             raise InvalidDocument.at(pointer, "reserved-name", f"'{name}' has a fixed meaning in expressions")
+        if name in samples:
+            raise InvalidDocument.at(pointer, "duplicate-name", f"'{name}' is a parameter that varies, too")
         if isinstance(column, str):
             if column in STATIC and column not in known:
                 statics[name] = column
@@ -173,19 +175,24 @@ def _quantities(
         if given["q"] is None:
             given["q"] = resting_state(model.positions, model.balls)  # of what does not depend on it
         states = read_states(model, given, None)
+        if not states.count:
+            raise InvalidArgument.at("/q", "missing", "a state is needed")
         steps = max(states.count, longest({**over, "q": given["q"]}))
         arguments: dict[str, Any] = {"q": _tiled(states.q, rows, steps), "qd": _tiled(states.qd, rows, steps)}
         if states.qdd is not None:
             arguments["qdd"] = _tiled(states.qdd, rows, steps)
-        if "inputs" in over:
-            arguments["inputs"] = {name: _along(x, rows) for name, x in over["inputs"].items()}
-        arguments["t"] = _along(over.get("t", 0.0), rows)
+        inputs = given_values(over.get("inputs"), "inputs", "/inputs", steps, model.input_names, model.units)
+        arguments["inputs"] = {name: _along(x, rows, steps) for name, x in inputs.items()}
+        arguments["t"] = _along(read_times(over.get("t"), steps), rows, steps)
         repeated = {name: np.repeat(x, steps) if np.ndim(x) else x for name, x in parameters.items()}
         options = EvaluationOptions(evaluator=shape.evaluate)
         answer = evaluate(shape.sources, asked, parameters=repeated, options=options, **arguments)
     found = {}
     for name, column in columns.items():
         numbers = numbers_of(column, answer, model, f"/columns/{name}").reshape(rows, -1)
+        if not numbers.shape[1]:
+            message = f"'{column.quantity}' has no numbers in this tree"
+            raise InvalidArgument.at(f"/columns/{name}/quantity", "no-numbers", message)
         take = column.take or ("value" if numbers.shape[1] == 1 else None)
         if take is None or (take == "value" and numbers.shape[1] > 1):
             message = f"{numbers.shape[1]} numbers a row: say which ('of'), and what to 'take' of them"
@@ -198,6 +205,6 @@ def _tiled(states: Array, rows: int, steps: int) -> Array:
     return np.tile(np.broadcast_to(states, (steps, states.shape[1])), (rows, 1))
 
 
-def _along(given: Any, rows: int) -> Any:
-    """Numbers over the states of a row, for all rows."""
-    return np.tile(np.asarray(given, dtype=np.float64), rows) if isinstance(given, (list, tuple)) else given
+def _along(numbers: Array, rows: int, steps: int) -> Array:
+    """One number, or numbers over the states of a row, for all rows."""
+    return np.tile(np.broadcast_to(numbers, (steps,)), rows) if np.ndim(numbers) else numbers

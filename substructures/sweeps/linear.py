@@ -36,9 +36,11 @@ def linear_columns(
 
 def _about(rest: AtRest, how: LinearColumn, takes: Collection[str]) -> dict[str, Array]:
     q = rest.settled() if how.settle else rest.start
+    settled = np.asarray(np.isfinite(q).all(axis=1))
+    q = np.where(settled[:, None], q, rest.start)
     qdd = rest.still if how.held else rest.accelerations(q)
     M, D, K = rest.matrices(q, qdd)
-    good = rest.is_rest(q, qdd, M, K) & np.isfinite(D).all(axis=(1, 2))
+    good = settled & rest.is_rest(q, qdd, M, K) & np.isfinite(D).all(axis=(1, 2))
     eigenvalues = np.full((rest.rows, 2 * M.shape[1]), np.nan, dtype=np.complex128)
     if good.any():
         eigenvalues[good] = _eigenvalues(M[good], D[good], K[good])

@@ -41,8 +41,7 @@ def _moved(
     first, how = next(iter(columns.items()))
     with inside(f"/columns/{first}/at"):
         check_fields(how.at, STATE)
-        if "q" in how.at:
-            read_states(shape.model, {name: how.at[name] for name in ("q", "qd") if name in how.at}, 1)
+        read_states(shape.model, how.at, 1)
     wanted = {
         name: MotionColumn(expression=c.expression, quantity=c.quantity, of=c.of, take=c.take)
         for name, c in columns.items()
@@ -54,7 +53,7 @@ def _moved(
             how.at.get("q"),
             how.span,
             qd=how.at.get("qd"),
-            inputs=how.at.get("inputs", {}),
+            inputs=how.at.get("inputs") or {},
             parameters=parameters,
             columns=wanted,
             grid=OutputGrid(count=how.count),

@@ -14,6 +14,9 @@ from substructures.quantities.quantity import COORDINATES, array_of
 from substructures.sweeps.document import WORLD, AnalysisColumn, EquilibriumColumn, ReachColumn
 from substructures.sweeps.plan import Plan
 
+#: the column of a table that has the numbers of rows
+ROW = "row"
+
 
 def check_names(plan: Plan, definitions: Sequence[Sequence[Definition]]) -> None:
     """Raise InvalidDocument for columns that cannot be read, and for samples, coordinates and frames that no
@@ -21,12 +24,21 @@ def check_names(plan: Plan, definitions: Sequence[Sequence[Definition]]) -> None
     """
     columns, own = plan.columns, dict(zip(plan.instances, definitions, strict=True))
     units = {f"{n}.{p}": x.unit for n, some in own.items() for each in some for p, x in each.parameters.items()}
-    units |= {n: str(x.get("unit", "")) for n, x in plan.document.template.get("parameters", {}).items()}
+    units |= plan.own_units
     coordinates = {f"{n}.{q}" for n, some in own.items() for each in some for q in topology(each).coordinates}
     frames = {f"{n}.{x}" for n, some in own.items() for each in some for x in _frames(each)} | {WORLD}
-    faults = [*_of_samples(plan, units), *_of_columns(columns.quantities, coordinates)]
+    faults = [*_of_tables(plan), *_of_samples(plan, units), *_of_columns(columns.quantities, coordinates)]
     if faults := [*faults, *_of_analyses(columns.analyses, coordinates, frames)]:
         raise InvalidDocument(faults)
+
+
+def _of_tables(plan: Plan) -> Iterator[Fault]:
+    """Columns and samples that are called as other columns of the table are."""
+    taken = {ROW, *(name for name, each in zip(plan.instances, plan.options, strict=True) if len(each) > 1)}
+    for place, names in (("/columns", plan.document.columns), ("/samples/of", plan.sampler.names)):
+        for name in names:
+            if name in taken:
+                yield Fault(f"{place}/{name}", "duplicate-name", f"the table has another column '{name}'")
 
 
 def _of_samples(plan: Plan, units: Mapping[str, str]) -> Iterator[Fault]:

@@ -240,14 +240,15 @@ class _Search:
         worst = float(np.maximum(-room, 0).max(initial=0))
         about: About = ("conditions", "zero", "the conditions hold, relative to their sides", "1")
         checks = [Check.at(about, worst, 0.0, 1.0, FEASIBLE)]
-        draw, gains = np.random.default_rng(self.aim.seed + 1), [0.0]
+        draw, gains, sizes = np.random.default_rng(self.aim.seed + 1), [0.0], [abs(cost), 1e-12]
         for distance in (*LOOKS, *NEARER):
             costs, rooms = self.values(np.clip(x + distance * self._around(draw), 0.0, 1.0))
             better = costs[(rooms >= 0).all(axis=1)]
             gains.append(cost - float(better.min(initial=cost)))
+            sizes.append(float(np.abs(costs[costs < WORST] - cost).max(initial=0)))  # the least cost may be 0
         reason = f"of {len((*LOOKS, *NEARER)) * (POINTS + 2 * len(x))} points around, at five distances, none is better"
         limit = 100 * self.better
-        checks.append(Check.at(("neighbours", "zero", reason, ""), max(gains), 0.0, max(abs(cost), 1e-12), limit))
+        checks.append(Check.at(("neighbours", "zero", reason, ""), max(gains), 0.0, max(sizes), limit))
         return checks
 
 

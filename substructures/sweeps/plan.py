@@ -15,6 +15,7 @@ from typing import Any
 
 from substructures.ensembles.samples import MOST_ROWS, Sampler
 from substructures.errors import InvalidDocument, InvalidInput, among
+from substructures.part.definition import Parameter
 from substructures.sweeps.columns import Columns, read_columns
 from substructures.sweeps.document import MOST_KEPT, Choice, SweepDocument
 from substructures.tree.document import TreeSpec
@@ -45,6 +46,12 @@ class Plan:
     def instances(self) -> tuple[str, ...]:
         """The names of the instances."""
         return tuple(each[0]["name"] for each in self.options)
+
+    @cached_property
+    def own_units(self) -> dict[str, str]:
+        """The SI units of the parameters of the tree itself, as far as they are declared."""
+        declared = self.document.template.get("parameters") or {}
+        return {name: Parameter.model_validate(each).unit for name, each in declared.items()}
 
     @property
     def combinations(self) -> int:
@@ -81,8 +88,8 @@ class Plan:
             if own:
                 instance["parameters"] = {**instance.get("parameters", {}), **own}
         for name, number in numbers.items():
-            if name in tree.get("parameters", {}):
-                tree["parameters"][name] = {**tree["parameters"][name], "value": number}
+            if name in self.own_units:
+                tree["parameters"][name] |= {"value": number, "unit": self.own_units[name]}
         return {**tree, "name": f"{tree['name']}-{row}"[-64:].lstrip("-")}
 
     def shown(self, row: int) -> dict[str, str]:

@@ -84,21 +84,28 @@ class _Search:
         self.high[list(within)] = 1
         draw = np.random.default_rng(0)
         self.starts = [np.full(m, 0.5), *draw.uniform(0.05, 0.95, (STARTS - 1, m))]
+        for a, kind in self.kinds.items():
+            if (name := model.positions[a]) in limits:
+                self.low[a], self.high[a] = limits[name][:2]
+            else:
+                self.low[a], self.high[a] = (-np.pi, np.pi) if kind == "R" else (0, 1)
         self._require_steady()
         for a, kind in self.kinds.items():
-            name = model.positions[a]
-            self._look(a, np.tile(self.starts[-1], (self.rows, 1)))
-            if name in limits:
-                self.low[a], self.high[a] = limits[name][:2]
-            elif kind == "R":
-                self.low[a], self.high[a] = -np.pi, np.pi
-            elif self.matters[a].any():
+            self._look(a, self._at(self.starts[-1]))
+            if (name := model.positions[a]) in limits or kind == "R":
+                continue
+            if self.matters[a].any():
                 message = f"'{name}' slides and has no limits: what it carries gets anywhere"
                 raise InvalidArgument.at("/of", "no-limits", message)
+            self.high[a] = 0
+
+    def _at(self, start: Array) -> Array:
+        """States (rows, m) so far from the lower limits, beside the ranges."""
+        return np.ascontiguousarray((self.low + start[:, None] * (self.high - self.low)).T)
 
     def _require_steady(self) -> None:
         """Raises InvalidArgument (``not-steady``) where given motions change the distance."""
-        q = np.tile(self.starts[-1], (self.rows, 1))
+        q = self._at(self.starts[-1])
         here = self.square(q)
         for t in TIMES if self.shape.model.driven else ():
             self.t = t
@@ -110,14 +117,14 @@ class _Search:
 
     def _look(self, a: int, q: Array) -> None:
         """Whether a coordinate changes the distance, and whether as one joint does; row by row."""
-        here, x = self.square(q), q[:, a]
-        near = self._with(q, a, x + 0.5)
+        here, x, step = self.square(q), q[:, a], (self.high[a] - self.low[a]) / 4
+        near = self._with(q, a, x + step)
         size = np.fmax(here, near)
         self.matters[a] = np.abs(near - here) > SAME * size
         if self.kinds[a] == "R":
-            off = near - self._sinusoid(q, here, a)(x + 0.5)
+            off = near - self._sinusoid(q, here, a)(x + step)
         else:  # the third difference of a parabola is 0
-            off = self._with(q, a, x + 1) - 3 * near + 3 * here - self._with(q, a, x - 0.5)
+            off = self._with(q, a, x + 2 * step) - 3 * near + 3 * here - self._with(q, a, x - step)
         self.is_simple[a] = np.abs(off) <= SAME * size
 
     def square(self, q: Array) -> Array:
@@ -143,7 +150,7 @@ class _Search:
         """The largest distance (rows,) from any of the starts."""
         best = np.full(self.rows, -np.inf)
         for start in self.starts:
-            best = np.fmax(best, self._climbed((self.low + start[:, None] * (self.high - self.low)).T.copy()))
+            best = np.fmax(best, self._climbed(self._at(start)))
         with np.errstate(invalid="ignore"):
             return np.sqrt(best)
 

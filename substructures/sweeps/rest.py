@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.equations.formulas import unsteady
+from substructures.analysis.equations.formulas import require_moving, unsteady
 from substructures.analysis.equations.perturbation import perturbation, require_smooth
 from substructures.analysis.stability.operating_point import AT_REST
 from substructures.array import Array
@@ -21,7 +21,6 @@ from substructures.sweeps.document import EquilibriumColumn
 from substructures.sweeps.grouped import alike, check_fields, inside
 from substructures.sweeps.shapes import Shape
 from substructures.tree.closures import require_open
-from substructures.tree.given.ties import require_untied
 
 STATE = ("q", "qd", "inputs", "t")
 MATRICES = ("metric", "damping", "stiffness")
@@ -44,7 +43,7 @@ class AtRest:
         """The state (rows, m) of ``at``. Raises InvalidInput."""
         model = self.shape.model
         require_open(model.closures, "sweep other columns")
-        require_untied(model, "columns of equilibria and linearisations")
+        require_moving(model, "columns of equilibria and linearisations")
         require_smooth(model)
         check_fields(self.at, STATE)
         if why := unsteady(model, self.at.get("inputs") or {}):
@@ -83,7 +82,7 @@ class AtRest:
         good: NDArray[np.bool_] = np.asarray(np.isfinite(q).all(axis=1) & np.isfinite(qdd).all(axis=1))
         for matrix in (M, K):
             good = good & np.isfinite(matrix).all(axis=(1, 2))
-        good = good & (np.abs(np.linalg.det(np.where(good[:, None, None], M, 1.0))) > 0)
+        good = good & (np.linalg.slogdet(np.where(good[:, None, None], M, 1.0))[0] != 0)  # a determinant may underflow
         if good.any():
             unit = np.abs(np.linalg.solve(M[good], K[good])).max(axis=2, initial=0)
             good[good] = (np.abs(qdd[good]) <= AT_REST * np.fmax(1.0, unit)).all(axis=1)

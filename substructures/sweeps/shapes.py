@@ -1,8 +1,8 @@
 """Shapes of trees: one program for all trees that differ in the numbers of their parameters alone.
 
 What may stand in the place of an instance is an Option: a part, where it is mounted, and the numbers of its parameters.
-Two options have one key where all but these numbers and words are equal; trees of options with equal keys have one
-program, in which all parameters are symbols (notation.md, section 6).
+Two options have one key where all but these numbers and words are equal, and the same parameters have numbers; trees of
+options with equal keys have one program, in which all parameters are symbols (notation.md, section 6).
 """
 
 from __future__ import annotations
@@ -60,7 +60,8 @@ def option_of(part: Part, instance: Mapping[str, Any]) -> Option:
     fields = {**instance, "parameters": bound}
     placement, places = places_of(read)
     values |= {name: default_number(each.value) for name, each in places.items()}
-    text = write_json([part.shape, read.at, placement.model_dump(), bound])
+    free = sorted(part.parameters.keys() - values.keys() - bound.keys())
+    text = write_json([part.shape, read.at, placement.model_dump(), bound, free])
     return Option(part, fields, values, hashlib.sha256(text).hexdigest())
 
 

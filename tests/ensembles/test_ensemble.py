@@ -112,6 +112,11 @@ def test_integrals_are_as_exact_as_the_motion(oscillator: Model) -> None:
     assert list(found.columns) == ["square", "end", "work"]
     np.testing.assert_allclose(found.columns["square"], 0.045 * w**2 * (1 - np.sin(2 * w) / (2 * w)), rtol=1e-9)
     assert not found.columns["work"].any()
+    # up to the end, whatever the times that results are wanted at
+    short = simulate_ensemble(oscillator, [[0.3]], (0, 1), **{**given, "grid": OutputGrid(times=[0.5])}, states=True)
+    assert (short.t.tolist(), short.q.shape) == ([0, 0.5], (2, 2, 1))  # type: ignore[union-attr]
+    np.testing.assert_allclose(short.columns["square"], found.columns["square"], rtol=1e-9)
+    np.testing.assert_allclose(short.columns["end"], 0.3 * np.cos(0.5 * w), rtol=1e-9)
     # what an input does is what the energy grows by
     moved = simulate_ensemble(oscillator, [[0.3]], (0, 1), inputs=driven, states=True, **given)
     assert moved.q is not None
@@ -144,13 +149,19 @@ def test_nobody_changes_another_one(acrobot: Model) -> None:
 
 def test_what_fails_is_told_and_the_others_stay(oscillator: Model) -> None:
     wall = {"tau.o.x": "1/(1 - o.x)"}  # pulls towards 1, and there is no end to it
-    columns = {"end": MotionColumn(expression="o.x")}
+    columns = {
+        "end": MotionColumn(expression="o.x"),
+        "mass": MotionColumn(expression="o.m"),
+        "energy": MotionColumn(quantity="kinetic_energy", take="mean"),
+        "moved": MotionColumn(quantity="inverse_dynamics", of="o.x", take="mean"),
+    }
     found = simulate_ensemble(oscillator, [[-0.1], [0.9], [0.05]], (0, 3), inputs=wall, columns=columns)
     assert (found.failed, found.failures[0].member, found.is_right) == (1, 1, None)
     assert 0 < found.failures[0].t < 3
     assert "too small" in found.failures[0].message
-    assert np.isnan(found.columns["end"]).tolist() == [False, True, False]
-    assert found.statistics["end"]["count"] == 2
+    for name, column in found.columns.items():
+        assert np.isnan(column).tolist() == [False, True, False]
+        assert found.statistics[name]["count"] == 2
     few = simulate_ensemble(oscillator, [[1.0]], (0, 3), integrator=Integrator(max_steps=3))
     assert "more than 3 steps" in few.failures[0].message
 
@@ -188,8 +199,9 @@ def test_energy_may_rise_between_the_times(acrobot: Model) -> None:
     assert simulate_ensemble(acrobot, [[0.2, 0.1]], (0, 4), inputs={"tau.arm.q2": "sin(t)"}, grid=grid).is_right
 
 
-def test_progress_ends_it(acrobot: Model, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("substructures.ensembles.ensemble.STATES", 1)
+@pytest.mark.parametrize("states", [1, 400_000])
+def test_progress_ends_it(acrobot: Model, monkeypatch: pytest.MonkeyPatch, states: int) -> None:
+    monkeypatch.setattr("substructures.ensembles.ensemble.STATES", states)
     told: list[float] = []
 
     def report(share: float) -> bool:

@@ -76,6 +76,8 @@ def test_grids_lists_and_units() -> None:
         {"of": {"x": {"values": [1], "unit": "furlongs/fish"}}},
         {"method": "list", "of": {"x": {"values": [1]}, "y": {"values": [1, 2]}}},
         {"of": {}},
+        {"of": {"x": {"values": [True, "3"]}}},
+        {"of": {"x": {"uniform": [-1e308, 1e308], "count": 3}}},
     ],
 )
 def test_samples_that_cannot_be_made(bad: dict[str, Any]) -> None:

@@ -17,7 +17,9 @@ from substructures import Definition, InvalidDocument, TreeSpec, couple, derive,
 from substructures.errors import InvalidInput
 from substructures.expr.interpret import interpret
 from substructures.quantities.centroidal import centroidal
+from substructures.quantities.derivative_directions import Direction
 from substructures.quantities.from_parts import NumericTree
+from substructures.quantities.numbers.evaluation import EvaluationOptions
 from substructures.quantities.reactions import reactions
 from substructures.quantities.regressor import regressor
 
@@ -213,6 +215,11 @@ def test_what_does_not_go_with_them() -> None:
     part = derive({**TOP, "loads": [{"type": "joint", "coordinate": "wx", "force": "-2*wx'"}]})
     found = evaluate(couple(tree, {"x": part}), "forces", [1, 0, 0, 0], [3, 0, 0])
     np.testing.assert_allclose(found["forces"], [-6, 0, 0])
+    for along in ([1, 0, 0], [1, 0, 0, 0]):
+        options = EvaluationOptions(along=Direction(q=along))
+        with pytest.raises(InvalidDocument, match="rates of ball") as caught:
+            evaluate(couple(tree, {"x": part}), "forward_dynamics_derivative", [1, 0, 0, 0], options=options)
+        assert caught.value.faults[0].code == "has-balls"
 
 
 def test_quaternions_have_the_norm_1() -> None:

@@ -13,7 +13,7 @@ from service.settings import Limits
 from substructures.formats.arrays import read_npz
 from substructures.formats.arrow import read_tables
 
-from .job_outcomes import evaluated, joined, known_library, outcomes
+from .job_outcomes import evaluated, faults, joined, known_library, outcomes
 from .jobs_library import MemoryLibrary
 
 
@@ -39,6 +39,25 @@ def test_listed_states_are_split_and_nothing_else_changes(library: MemoryLibrary
     by_name = {**request, "q": {"arm.q": [0.1 * k for k in range(7)]}}
     made = outcomes(library, "evaluate", {"items": [{"tree": "cell", "request": by_name}]}, Limits(job_states=3))
     assert np.array_equal(joined(made, "forces"), expected["forces"])
+    # of one coordinate numbers are states, as many as there are, or one for all times
+    for flat in ({"q": [0.1 * k for k in range(7)]}, {"q": 0.3, "t": list(range(7))}):
+        item = {"tree": "cell", "request": {**request, **flat}}
+        made = outcomes(library, "evaluate", {"items": [item]}, Limits(job_states=3))
+        assert np.array_equal(joined(made, "forces"), evaluated(library, "cell", {**request, **flat})["forces"])
+
+
+def test_grids_of_trees_with_ball_joints() -> None:
+    """What a grid does not name turns nothing; samples are of coordinates."""
+    body = {"name": "b", "parent": "base", "mass": "m", "joint": {"type": "floating"}}
+    part = {"name": "free", "parameters": {"m": {}}, "bodies": [body]}
+    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "x", "substructure": "free"}]}
+    library, item = MemoryLibrary([part], [tree]), {"tree": "t", "request": {"quantities": ["forces", "kinematics"]}}
+    grid = {"x.m": [1, 2], "x.r_b_x": [0, 3], "x.v_b_y'": [5]}
+    made = outcomes(library, "evaluate", {"items": [{**item, "grid": grid}]})
+    assert joined(made, "forces")[:, 2] == pytest.approx(-9.81 * np.array([1, 1, 2, 2]))
+    assert joined(made, "kinematics.position")[:, -1, 0].tolist() == [0, 3, 0, 3]
+    refused = faults(library, "evaluate", {"items": [{**item, "sample": {"count": 2}}]})
+    assert refused == {("/items/0/sample", "has-balls")}
 
 
 def test_arrow_says_what_npz_says(library: MemoryLibrary) -> None:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from service.operations.jobs.tables import Table, chosen
+from service.operations.jobs.tables import Table, chosen, distribution
 from service.views.tables import rows_view
 
 ROWS = 200_000
@@ -40,3 +40,15 @@ def test_a_page_is_no_copy_of_the_table(table: Table) -> None:
     _, most = tracemalloc.get_traced_memory()
     tracemalloc.stop()
     assert most < table.weight / 2
+
+
+@pytest.mark.parametrize(
+    "values", [[1.0, np.nextafter(1, 2)], [0, 5e-324], [1e17, 1e17], [-1, 2], [3.0], [-1e16, 2 - 1e16]]
+)
+def test_columns_that_are_alike_but_for_rounding_have_histograms(values: list[float]) -> None:
+    unused: Any = None
+    found = distribution(Table(unused, {"a": np.array(values)}, {}), "a", 1000)
+    edges, counts = found["histogram"]["edges"], found["histogram"]["counts"]
+    assert sum(counts) == len(values)
+    assert edges[0] <= min(values) <= max(values) <= edges[-1]
+    assert np.all(np.diff(edges) > 0)

@@ -199,6 +199,8 @@ CHANGES: tuple[tuple[dict[str, Any], str, str], ...] = (
         "unknown-coordinate",
     ),
     ({"columns": {"x": "mass/weight"}}, "/columns/x", "unknown-column"),
+    ({"columns": {"row": "mass"}, **ALONE}, "/columns/row", "duplicate-name"),
+    ({"columns": {"hand": "mass"}, **ALONE}, "/columns/hand", "duplicate-name"),
     ({"columns": {"x": {"analysis": "orbit"}}}, "/columns/x", "unknown-column"),
     ({"columns": {"x": {"analysis": "reach", "of": "hand.tap"}}, **ALONE}, "/columns/x/of", "unknown-name"),
     ({"columns": {"x": {"analysis": "equilibrium", "of": "hand.y"}}, **ALONE}, "/columns/x/of", "unknown-coordinate"),

@@ -405,6 +405,10 @@ def test_the_factor_of_a_unit_may_be_beyond_the_range_of_doubles() -> None:
     small = [Decimal(0), 1e-300]
     assert si_values(measured(small, "km^99/mm^99"), "", "/q") == [0.0, 1e294]
     assert read_unit("km^99/mm^99").scale == float("inf")
+    tiny = si_values(measured([1e300, 2e300], "mm^60/km^60"), "", "/q")
+    assert tiny == [pytest.approx(1e-60, rel=1e-15), pytest.approx(2e-60, rel=1e-15)]
+    with pytest.raises(ValidationError, match="below the range"):
+        Distribution.model_validate({"values": [1e300], "unit": "mm^60/km^60"})
     with pytest.raises(ValidationError, match="in SI a number is not finite"):
         Distribution.model_validate({"values": [1.0], "unit": "km^99/mm^99"})
 

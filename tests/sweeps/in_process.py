@@ -10,7 +10,7 @@ from catalogue_entries import shipped_part
 from substructures import derive
 from substructures.documents import read_model
 from substructures.part.part import Part
-from substructures.sweeps.block import Block, Refusals, compute, shape_maker, slow_columns
+from substructures.sweeps.block import Block, Refusals, compute, rounding, shape_maker, slow_columns
 from substructures.sweeps.document import SweepDocument
 from substructures.sweeps.plan import Plan, given_options
 from substructures.sweeps.shapes import Option, Shape, option_of
@@ -35,6 +35,11 @@ class Sweep:
     def rows(self, start: int = 0, stop: int | None = None) -> Block:
         shape_of = shape_maker(self.plan, self.made)
         return compute(self.plan, start, stop or self.plan.rows, self.option, shape_of, self.refusals, [])
+
+    def moved(self, row: int) -> dict[str, float]:
+        chosen = self.plan.chosen(row // self.plan.sampler.size)
+        options = [self.option(i, k) for i, k in enumerate(chosen)]
+        return rounding(self.plan, row, options, shape_maker(self.plan, self.made))
 
     def slow(self, row: int) -> tuple[dict[str, float], float]:
         chosen = self.plan.chosen(row // self.plan.sampler.size)

@@ -85,6 +85,36 @@ def test_rows_without_equilibrium_have_no_number() -> None:
     assert sweep.refusals.by_code["not-finite"]["rows"] == 6
 
 
+def test_rows_that_do_not_settle_leave_the_others() -> None:
+    """A mass of 2 kg on a spring, or on none; micromechanics, where the determinant of M underflows."""
+    joint = {"type": "prismatic", "coordinate": "q", "stiffness": "c"}
+    slide = {**ROD, "bodies": [{**ROD["bodies"][0], "joint": joint}]}
+    template = {**SPRUNG["template"], "gravity": [0, 0, -9.81]}
+    columns = {"w": {"analysis": "linearisation", "at": {"q": [0]}, "settle": True}}
+    samples = {"method": "list", "of": {"a.c": {"values": [0, 8]}}}
+    found = Sweep({"template": template, "samples": samples, "columns": columns}, {"rod": slide}).rows()
+    assert (found.rows.tolist(), found.columns["w"]) == ([1], pytest.approx([2]))
+    tiny = planar(40, **{f"q{k}": {"stiffness": 1e-9} for k in range(40)})
+    for body in tiny["bodies"]:
+        body["inertia"] = dict.fromkeys(("xx", "yy", "zz"), 1e-9)
+        body["mass"] = 0
+    template = {"name": "t", "instances": [{"name": "a", "substructure": "planar"}]}
+    columns["w"] = {"analysis": "linearisation", "at": {"q": [0] * 40}, "take": "largest_real_part"}
+    assert Sweep({"template": template, "columns": columns}, {"planar": tiny}).rows().columns["w"] == pytest.approx([0])
+
+
+def test_what_does_not_move_is_told() -> None:
+    still = {"name": "rod", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
+    template = {"name": "t", "instances": [{"name": "a", "substructure": "rod"}]}
+    for column, code in (
+        ({"analysis": "linearisation"}, "no-coordinates"),
+        ({"quantity": "metric", "take": "largest"}, "no-numbers"),
+    ):
+        sweep = Sweep({"template": template, "columns": {"x": column}}, {"rod": still})
+        assert not len(sweep.rows().rows)
+        assert list(sweep.refusals.by_code) == [code]
+
+
 def test_the_reach_of_rods_is_their_length() -> None:
     assert reach(planar(1)) == pytest.approx(1, rel=1e-12)
     assert reach(planar(4)) == pytest.approx(1 + 1 / 2 + 1 / 3 + 1 / 4, rel=1e-10)
@@ -103,6 +133,10 @@ def test_reach_of_sliding_joints() -> None:
     out = planar(2, q1={"type": "prismatic", "limits": [-3, 1]})
     # the tip is 1/2 beside the second origin, which moves along z
     assert reach(out) == pytest.approx(np.hypot(1.5, 3), rel=1e-12)
+    for size in (1e-7, 1e6):  # whatever the size: two rods on a carriage that moves across
+        large = planar(3, q0={"type": "prismatic", "limits": [0, size]}, q1={"d": 0}, q2={"d": size})
+        large["ports"][0]["position"] = [size, 0, 0]
+        assert reach(large) == pytest.approx(np.sqrt(5) * size, rel=1e-12)
     free = planar(2, q1={"type": "prismatic"})
     sweep = Sweep(
         {
@@ -220,6 +254,19 @@ def test_motions_with_inputs_are_those_of_one_tree() -> None:
             "/columns/x/at/q",
             "too-many-states",
         ),
+        (  # as many as there are rows, which they are not of
+            {
+                "analysis": "simulation",
+                "at": {**AT, "inputs": {"tau.a.q": [0, 1, 2, 3, 4, 5]}},
+                "span": [0, 1],
+                "expression": "a.q",
+            },
+            "/columns/x/at/q",
+            "too-many-states",
+        ),
+        ({"quantity": "forces", "over": {"q": []}}, "/columns/x/over/q", "missing"),
+        ({"quantity": "forces", "over": {**AT, "inputs": [1]}}, "/columns/x/over/inputs", "object-expected"),
+        ({"quantity": "forces", "over": {**AT, "t": ["1 s"]}}, "/columns/x/over/t/0", "number-expected"),
         ({"analysis": "reach", "of": "a.top"}, "/columns/x/of", "unknown-name"),
         (
             {"analysis": "simulation", "at": {"p": 1}, "span": [0, 1], "expression": "a.q"},

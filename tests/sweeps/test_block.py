@@ -10,9 +10,11 @@ import pytest
 from catalogue_entries import shipped_part
 
 from substructures import couple, linearise
+from substructures.errors import InvalidInput
 from substructures.sweeps import block as blocks
 from substructures.sweeps.block import disagreement, joined
 from tests.sweeps.in_process import Sweep
+from tests.sweeps.test_analyses import ROD, SPRUNG
 
 STATE = {"q": [0.2, 0.4, -0.3], "qd": [0.1, 0.2, 0.3], "qdd": [1, 0, 2]}
 REST = {"q": [0, 0, 0]}
@@ -125,12 +127,63 @@ def test_a_planted_fault_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     assert "by the tree of this row" in disagreement(wrong, slow, condition)
 
 
+def test_what_cancels_is_rounding() -> None:
+    """A balance with 0.3 kg at 0.7 m and 2.1 kg at 0.1 m, whose moments are 0 in exact numbers alone."""
+    other = {"name": "other", "parent": "rod", "joint": {"type": "fixed"}, "mass": "M", "com": ["-L", 0, 0]}
+    numbers = {"m": 0.3, "l": 0.7, "M": 2.1, "L": 0.1}
+    beam = {**ROD, "parameters": {name: {} for name in (*numbers, "c", "d")}, "bodies": [*ROD["bodies"], other]}
+    samples = {
+        "method": "list",
+        "of": {f"a.{name}": {"values": [x]} for name, x in (numbers | {"c": 0, "d": 0}).items()},
+    }
+    columns = {"moment": {"quantity": "forces", "of": "a.q", "over": {"q": [0.3]}}}
+    sweep = Sweep({"template": SPRUNG["template"], "samples": samples, "columns": columns}, {"rod": beam})
+    (moment,), (slow, condition) = sweep.rows().columns["moment"].tolist(), sweep.slow(0)
+    assert 0 < abs(moment) < 1e-15
+    assert slow == {"moment": 0}
+    assert not disagreement({"moment": moment}, slow, condition, (), lambda: sweep.moved(0))
+    assert disagreement({"moment": moment + 1e-10}, slow, condition, (), lambda: sweep.moved(0))
+
+
 def test_the_front_is_kept_first() -> None:
     sweep = Sweep(CRANE, pareto={"minimise": ["mass"], "maximise": ["x"]}, keep=9, choices={})
-    kept, every = sweep.rows(), Sweep(CRANE, choices={}).rows()
+    kept, every = joined(sweep.plan, [sweep.rows()], 40), Sweep(CRANE, choices={}).rows()
     assert len(kept.rows) == 9
     assert every.columns["mass"].argmin() in kept.rows
     assert every.columns["x"].argmax() in kept.rows
+
+
+@pytest.mark.parametrize("keep", [1, 2, 3, 5])
+def test_ranges_do_not_matter_for_what_is_kept(keep: int) -> None:
+    """What is first on the front of a range may be beaten by other ranges."""
+    values = {"rail.m": [1, 1.1, 2, 0.5, 0.6, 3], "g": [5, 4.9, 1, 4, 4.5, 3]}
+    samples = {"method": "list", "of": {name: {"values": x} for name, x in values.items()}}
+    goals = {"pareto": {"minimise": ["m", "a"]}, "columns": {"m": "rail.m + 0", "a": "g + 0"}, "where": ""}
+    sweep = Sweep(CRANE, samples=samples, choices={}, keep=keep, **goals)
+    for size in (1, 2, 3, 6):
+        parts = joined(sweep.plan, [sweep.rows(k, k + size) for k in range(0, 6, size)], 6)
+        assert parts.rows.tolist() == sorted([3, 2, 4, 0, 1, 5][:keep])
+
+
+def test_an_option_without_a_number_leaves_the_others() -> None:
+    own = {"rod": {**ROD, "parameters": {**ROD["parameters"], "m": {}}}}
+    choices = {"a": ["rod", {"substructure": "rod", "parameters": {"m": 3}}]}
+    columns = {"f": {"quantity": "forces", "of": "a.q", "over": {"q": [0]}}}
+    sweep = Sweep({"template": SPRUNG["template"], "choices": choices, "columns": columns}, own)
+    found = sweep.rows()
+    assert (found.rows.tolist(), found.columns["f"]) == ([1], pytest.approx([-3 * 9.81]))
+    assert list(sweep.refusals.by_code) == ["missing-value"]
+
+
+def test_numbers_over_states_have_units() -> None:
+    over = {"q": [[0, 0, 0], [0, 1, 0]], "inputs": {"tau.rail.x": {"value": [1, 2], "unit": "kN"}}, "t": [3]}
+    column = {"quantity": "forces", "of": "rail.x", "over": over, "take": "largest"}
+    assert Sweep(CRANE, columns={"f": column}, where="", choices={}).rows().columns["f"] == pytest.approx([2000] * 40)
+
+
+def test_columns_are_not_called_as_samples() -> None:
+    with pytest.raises(InvalidInput, match="a parameter that varies"):
+        Sweep(CRANE, columns={"g": "mass"}, where="").rows()
 
 
 def test_rows_without_finite_numbers_are_told() -> None:
@@ -147,5 +200,8 @@ def test_trees_of_rows_have_their_numbers_bound() -> None:
     sample = {name: float(x[0]) for name, x in plan.sampler.rows(1, 2).items()}
     assert tree["instances"][0]["parameters"] == {"m": sample["rail.m"]}
     assert tree["instances"][1]["parameters"] == {"m1": 3}
-    assert tree["parameters"]["g"]["value"] == sample["g"]
+    assert tree["parameters"]["g"] == {"value": sample["g"], "unit": "m/s^2"}
+    for given in ({"value": 981, "unit": "cm/s^2"}, {"value": {"value": 981, "unit": "cm/s^2"}}):
+        template = {**CRANE["template"], "parameters": {"g": given}}
+        assert Sweep(CRANE, template=template).plan.tree(41)["parameters"] == tree["parameters"]
     assert replace(plan).shown(41) == {"load": "acrobot"}

@@ -86,6 +86,13 @@ def test_the_largest_of_several_has_a_corner(rod: Sources) -> None:
     assert found.parameters["a.m"] == pytest.approx(30 / 10.81, rel=1e-6)
 
 
+def test_a_corner_at_zero_is_right(rod: Sources) -> None:
+    """Nothing is small beside a least cost of 0, which rounding misses."""
+    found = optimal_parameters(rod, aim("abs(mass - 1.7)*abs(mass - 2.9)", {"a.m": (1, 5)}, {"mass": "mass"}, starts=1))
+    assert 0 < found.value < 1e-8
+    assert found.is_right
+
+
 def test_conditions_hold_and_are_told(rod: Sources) -> None:
     columns = {"mass": "mass", "reach": {"analysis": "reach", "of": "a.tip"}}
     found = optimal_parameters(

@@ -9,7 +9,7 @@ has its chunk: ``states`` is the digest of the npz file with the columns.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from io import BytesIO
@@ -39,6 +39,7 @@ from substructures.errors import Fault, InvalidDocument
 from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
+from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import (
     EvaluationOptions,
     evaluate,
@@ -46,6 +47,7 @@ from substructures.quantities.numbers.evaluation import (
     read_quantities,
 )
 from substructures.quantities.quantity import LABELS, needs_parts
+from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 
 #: what an answer says beside quantities and states
@@ -81,7 +83,7 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     }
     if count is None:
         return [common]
-    given = request.given()
+    given = _in_rows(request.given(), summary["coordinates"])
     ranges = [[start, min(start + chunk, count)] for start in range(0, count, chunk)]
     return [{**common, **described, "request": _sliced(given, count, *each), "range": each} for each in ranges]
 
@@ -109,6 +111,7 @@ def _described(
         _check_once(request, "/grid", [name for name, _ in grid])
         return {"grid": grid}
     if item.sample is not None:
+        require_chains(model.balls, "give 'q' in lists, or a grid", "/sample")
         sample = read_sample(item.sample, known, joint_limits(tree, library))
         _check_once(request, "/sample/ranges", sample["ranges"])
         return {"sample": sample}
@@ -136,6 +139,19 @@ def _count(summary: Mapping[str, Any], request: EvaluationRequest, described: It
     count = grid_size(described["grid"]) if "grid" in described else int(described["sample"]["count"])
     check_described(summary, request, count)
     return count
+
+
+def _in_rows(request: Mapping[str, Any], coordinates: Sequence[str]) -> dict[str, Any]:
+    """The request with a row for each state where one coordinate has numbers, which are states of it."""
+
+    def rows(value: Any) -> Any:
+        """A number, or so many, in rows."""
+        flat = value if isinstance(value, list) else [value]
+        is_plain = len(coordinates) == 1 and not any(x is None or isinstance(x, list | Mapping) for x in flat)
+        return [[x] for x in flat] if is_plain else value
+
+    states = {name: rows(x) for name, x in request.items() if name in ("q", "qd", "qdd")}
+    return {**request, **states, **({"along": _in_rows(x, coordinates)} if (x := request.get("along")) else {})}
 
 
 def _sliced(request: Mapping[str, Any], count: int, start: int, stop: int) -> dict[str, Any]:
@@ -225,11 +241,13 @@ def _with_columns(model: Model, request: Mapping[str, Any], columns: Mapping[str
     if not columns:
         return dict(request)
     zeros = np.zeros(len(next(iter(columns.values()))))
-    rest = {name: x for name, x in columns.items() if name.removesuffix("'") not in model.coordinates}
+    resting = zip(model.positions, resting_state(model.positions, model.balls), strict=True)
+    places = {*model.positions, *(f"{name}'" for name in model.coordinates)}
+    rest = {name: x for name, x in columns.items() if name not in places}
     inputs = {name: x for name, x in rest.items() if name in model.input_names}
     return {
         **request,
-        "q": {name: columns.get(name, zeros) for name in model.coordinates},
+        "q": {name: columns.get(name, zeros + x) for name, x in resting},
         "qd": {name: columns.get(f"{name}'", zeros) for name in model.coordinates},
         "inputs": {**(request.get("inputs") or {}), **inputs},
         "parameters": {**(request.get("parameters") or {}), **{n: x for n, x in rest.items() if n not in inputs}},

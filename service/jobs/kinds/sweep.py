@@ -9,6 +9,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from io import BytesIO
 from math import prod
 from random import SystemRandom
@@ -32,15 +33,18 @@ from substructures.part.definition import Definition
 from substructures.sweeps.block import (
     AT_ONCE,
     Block,
+    OptionOf,
     Refusals,
+    ShapeOf,
     compute,
     disagreement,
     joined,
+    rounding,
     shape_maker,
     slow_columns,
 )
 from substructures.sweeps.document import Query, SweepDocument
-from substructures.sweeps.names import check_names
+from substructures.sweeps.names import ROW, check_names
 from substructures.sweeps.plan import Plan, check_size, check_template, given_options
 from substructures.sweeps.shapes import Option, Shape, option_of
 
@@ -209,8 +213,8 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
     for first in range(start, stop, AT_ONCE):
         blocks.append(compute(plan, first, min(first + AT_ONCE, stop), option, shape_of, refusals, finite))
         progress(0.95 * (min(first + AT_ONCE, stop) - start) / (stop - start))
-    found = joined(plan, blocks, stop - start)
-    wrong, proven = _proven(plan, found, item, option)
+    found = joined(plan, blocks, stop - start, is_whole=False)
+    wrong, proven = _proven(plan, found, item, option, shape_of)
     summary = {
         "rows": [start, stop],
         "kept": len(found.rows),
@@ -220,26 +224,29 @@ def _run(item: ItemDocument, blobs: Blobs, progress: ItemProgress) -> Outcome:
         "ways": refusals.ways,
         "media_type": "application/x-npz",
     }
-    files = {"rows": b"".join(write_npz({"row": found.rows, **found.columns}).pieces)}
+    files = {"rows": b"".join(write_npz({ROW: found.rows, **found.columns}).pieces)}
     if wrong:
         detail = f"row {wrong[0]}: {wrong[1]}; nothing of these rows is to be believed"
         return Outcome(summary, files, problem(Refused(500, "proof-failed", detail)))
     return Outcome(summary, files)
 
 
-def _proven(plan: Plan, found: Block, item: ItemDocument, option: Any) -> tuple[tuple[int, str] | None, int]:
+def _proven(
+    plan: Plan, found: Block, item: ItemDocument, option: OptionOf, shape_of: ShapeOf
+) -> tuple[tuple[int, str] | None, int]:
     """A row that differs from the slow way, if there is one, and how many were compared."""
     done = 0
     places = {int(row): k for k, row in enumerate(found.rows)}
     for row in (each for each in item["proof"] if each in places):
         chosen = plan.chosen(row // plan.sampler.size)
-        parts = [option(i, k).part for i, k in enumerate(chosen)]
+        options = [option(i, k) for i, k in enumerate(chosen)]
         try:
-            slow, condition = slow_columns(plan, row, parts, item["nodes"])
+            slow, condition = slow_columns(plan, row, [each.part for each in options], item["nodes"])
         except InvalidInput as error:
             return (row, f"its tree is refused: {error}"), done
         fast = {name: float(found.columns[name][places[row]]) for name in slow}
-        if told := disagreement(fast, slow, condition, plan.columns.of_motions):
+        moved = partial(rounding, plan, row, options, shape_of)
+        if told := disagreement(fast, slow, condition, plan.columns.of_motions, moved):
             return (row, told), done
         done += 1
     return None, done

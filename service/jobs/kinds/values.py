@@ -11,6 +11,7 @@ from service.models.requests import arguments
 from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
+from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import read_quantities
 from substructures.quantities.numbers.states import States, given_values, read_states
 from substructures.quantities.quantity import REGRESSOR, TABLE
@@ -54,8 +55,9 @@ def check_analysis(summary: Mapping[str, Any], read: BaseModel, is_motion: bool,
 
 def check_described(summary: Mapping[str, Any], request: EvaluationRequest, count: int) -> None:
     """What a request gives for so many states that a grid or sample describes. Raises InvalidInput."""
-    start = [0] * len(summary["coordinates"])
-    given = read_states(without_formulas(summary), {"q": start, "qdd": request.qdd}, None).qdd
+    model = without_formulas(summary)
+    start = resting_state(model.positions, model.balls)
+    given = read_states(model, {"q": start, "qdd": request.qdd}, None).qdd
     if given is not None and len(given) not in (1, count):
         raise InvalidDocument.at("/qdd", "wrong-length", f"{len(given)} accelerations where there are {count} states")
     _check_values(summary, request, count, given is not None)

@@ -22,10 +22,10 @@ from substructures.errors import InvalidDocument, among
 from substructures.sweeps.block import Block, joined, objectives
 from substructures.sweeps.conditions import read_condition
 from substructures.sweeps.front import front
+from substructures.sweeps.names import ROW
 from substructures.sweeps.plan import Plan
 
 KIND = "sweep"
-ROW = "row"
 #: bytes of tables that are kept put together
 CAPACITY = 2**28
 ITEMS = 500

@@ -217,7 +217,7 @@ def known_values(
             rows = columns if len(columns) == count else columns[0]  # numbers that are the same for all states
             names = model.coordinates if primes else model.positions
             values |= {f"{name}{primes}": rows[..., a] for a, name in enumerate(names)}
-    values["t"] = _times(given.get("t"), count)
+    values["t"] = read_times(given.get("t"), count)
     if not model.coordinates:
         # nothing else says how many states there are
         values["t"] = np.broadcast_to(values["t"], (count,))
@@ -274,7 +274,7 @@ def given_values(
     return result
 
 
-def _times(given: Any, count: int) -> Array:
+def read_times(given: Any, count: int) -> Array:
     """t [s], one or one for every state; 0 where nothing is given."""
     return _per_state(numeric(si_values(0 if given is None else given, "s", "/t"), "/t"), count, "/t")
 
