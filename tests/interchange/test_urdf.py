@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 
 import numpy as np
 import pytest
 
 from substructures import Definition, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
+from substructures.export.robots.urdf import rpy_of
 from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
+from substructures.interchange.rotations import from_rpy, to_rpy
 
 LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 
@@ -76,6 +79,15 @@ def test_fixed_links_are_merged_and_their_frames_stay() -> None:
     assert numbers(merged, "metric", [0.3]) == pytest.approx(4)
     assert numbers(kept, "metric", [0.3]) == pytest.approx(4)
     assert "ports" not in import_file(file, Options(fixed="dropped")).definition
+
+
+@pytest.mark.parametrize("pitch", ["1.5707963", "1.57079633", "1.570796325", "1.5707963267949"])
+def test_frames_turned_by_nearly_a_right_angle_are_exact(pitch: str) -> None:
+    """Roll and yaw alone are known to 1e-16 / cos(pitch)."""
+    first = from_rpy((Decimal("0.7"), Decimal("0.2"), Decimal("-1.1")))
+    turned = first.T @ (first @ from_rpy((Decimal("0.3"), Decimal(pitch), Decimal("2.9"))))
+    for roll, about, yaw in (to_rpy(turned), map(Decimal, rpy_of(turned).tolist())):
+        np.testing.assert_allclose(from_rpy((roll, about, yaw)), turned, rtol=0, atol=1e-14)
 
 
 @pytest.mark.parametrize(("axis", "weights"), [("0 0 1", [2, 2, 1]), ("1 0 0", [2, 2, 1]), ("1 2 -2", [2, 2, 1])])
