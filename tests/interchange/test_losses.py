@@ -21,6 +21,7 @@ ARM = f"""<robot name="r"><link name="a"/><link name="b">{BODY}</link><link name
 <joint name="k" type="continuous"><parent link="b"/><child link="c"/><axis xyz="0 1 0"/>MORE</joint>
 </robot>"""
 ROLLING = ARM.replace("continuous", "TYPE", 1).replace("</joint>", '<dynamics damping="1" friction="2"/></joint>', 1)
+BOUNDED = ROLLING.replace("<dynamics", '<limit lower="-1" upper="1"/><dynamics')
 POLE = """<mujoco><worldbody><body name="b"><joint name="j" axis="0 1 0"/>
 <inertial pos="0 0 0" mass="1" diaginertia=".7 .7 .7"/></body></worldbody>MORE</mujoco>"""
 BOX = """<sdf version="VERSION"><model name="m"><link name="a"><pose>0 0 0 0 0 0.5</pose><inertial><mass>1</mass>
@@ -145,6 +146,7 @@ def test_rotors_behind_gears_are_armatures_in_every_format() -> None:
         (ROLLING.replace("TYPE", "planar"), "damping of a planar joint is not read"),
         (ROLLING.replace("TYPE", "floating"), "damping of a floating joint is not read"),
         (ROLLING.replace("TYPE", "floating"), "dry friction is not read"),
+        (BOUNDED.replace("TYPE", "planar"), "limits of a planar joint are not read"),
         (POLE.replace('axis="0 1 0"', 'type="ball" range="0 60"'), "range of a ball joint is not read"),
         (ARM.replace("</robot>", "<gazebo><springStiffness>3</springStiffness></gazebo></robot>"), "<springStiffness>"),
         (ARM.replace("</robot>", '<mujoco><compiler balanceinertia="true"/></mujoco></robot>'), "<compiler>"),

@@ -118,6 +118,16 @@ def test_limits_damping_and_remarks() -> None:
     assert found.checks["topology"] == {"passed": True, "warnings": 0}
 
 
+@pytest.mark.parametrize("limits", [[0, 0], [1, 1], [None, None]])
+def test_limits_that_leave_a_joint_one_place_are_told(limits: list[int | None]) -> None:
+    """0, 0 is what is written where none are meant; nothing is none."""
+    given = "".join(f' {end}="{x}"' for end, x in zip(("lower", "upper"), limits, strict=True) if x is not None)
+    found = import_file(urdf(joint("j", "a", "b", more=f'<limit{given} effort="1" velocity="1"/>'), "ab"))
+    assert found.definition["bodies"][1]["joint"].get("limits") == (limits if limits[0] else None)
+    told = [f"both limits are {limits[0]}, and limits do not hold a joint"] if limits[0] is not None else []
+    assert [remark["message"].partition(" here")[0] for remark in found.report] == told
+
+
 def test_provenance() -> None:
     found = import_file(urdf(joint("j", "a", "b"), "ab"), file="arm.urdf", license_of_file="BSD-3-Clause")
     assert re.fullmatch(r"URDF file arm\.urdf, sha256:[0-9a-f]{64}", found.definition["source"])

@@ -132,6 +132,17 @@ def test_the_arm_is_that_of_its_urdf_file() -> None:
     assert at == [[-np.pi / 2, pytest.approx(2 * np.pi / 3)], [], [0, 0.25]]
 
 
+def test_limits_are_two_in_order_or_told() -> None:
+    for low, high, message in (
+        ("-inf", "0.25", "one limit alone"),
+        ("0.5", "0.25", "the lower limit 0.5 is above"),
+        ("0.25", "0.25", "both limits are 0.25"),
+    ):
+        text = USD.replace("Limit = 0\n", f"Limit = {low}\n").replace("Limit = 0.25", f"Limit = {high}")
+        (said,) = (remark["message"] for remark in read(text).report)
+        assert said.startswith(message)
+
+
 WRONG = [
     ("(0, 0, 0.3)", "(0, 0.3, 0)"), ("(0, 0.3, 0)", "(0, 0, 0.3)"), ("(0.8, 0, 0, 0.6)", "(0.8, 0, 0.6, 0)"),
     ('physics:axis = "X"', 'physics:axis = "Z"'), ("(0.70710677, 0.70710677, 0, 0)", "(1, 0, 0, 0)"),
