@@ -354,8 +354,48 @@ def test_missing_masses_are_told() -> None:
     said = [lost["message"] for lost in read(text).definition["left_out"]]
     assert [message.partition(": ")[2] for message in said] == [
         "no diagonalInertia: the body is a point mass",
+        "masses of shapes by a density are not computed: give the body physics:mass",
+        "centerOfMass and diagonalInertia of a body without mass are left out: give it physics:mass",
         "the link moves and no mass is given for it: it is taken as massless",
     ]
+
+
+def test_shapes_beside_one_with_a_mass_are_told() -> None:
+    """They have the density of the format, but where their mass is that of what they are on."""
+    mass, shape = (
+        "float physics:mass = 2\n",
+        'def Cube "shape" (prepend apiSchemas = ["PhysicsCollisionAPI"])\n        {\n',
+    )
+    assert USD.count(shape) == 1
+    on = f'def Xform "on" (prepend apiSchemas = ["PhysicsMassAPI"])\n{{\n{mass}'
+    text = USD.replace(mass, "")
+    message = "</arm/lower>: masses of shapes by a density are not computed: give the body physics:mass"
+    for made, is_told in ((f"{on}}}\n{shape}", True), (f"{on}{shape}}}\n", False)):
+        said = [lost["message"] for lost in read(text.replace(shape, made)).definition["left_out"]]
+        assert (message in said) == is_told
+
+
+OTHERS = {
+    "PhysxPhysicsGearJoint": 'def PhysxPhysicsGearJoint "gear"\n{\nrel physics:hinge0 = </arm/shoulder>\n}\n',
+    "PointInstancer": 'def PointInstancer "p"\n{\ndef "a" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n{\n}\n}\n',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", OTHERS)
+def test_prims_of_other_programs_that_act_are_told(kind: str) -> None:
+    (lost,) = read(USD + OTHERS[kind]).definition["left_out"]
+    assert f"{kind} is not read: what it says of the mechanics is left out" in lost["message"]
+
+
+def test_drives_of_axes_that_a_joint_has_not_are_told() -> None:
+    spring = "        float drive:rotX:physics:stiffness = 3"
+    for head, said in (
+        (ELBOW, "the drives other than 'angular' of a joint about one axis are left out"),
+        ('PhysicsSphericalJoint "elbow"\n    {', "the drives of a joint that turns about all axes are left out"),
+    ):
+        driven = head.replace('"elbow"', '"elbow" (prepend apiSchemas = ["PhysicsDriveAPI:rotX"])') + f"\n{spring}"
+        (lost,) = read(USD.replace(ELBOW, driven)).definition["left_out"]
+        assert said in lost["message"]
 
 
 def four_bar(kind: str, at: str) -> str:
