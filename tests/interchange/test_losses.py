@@ -22,6 +22,7 @@ ARM = f"""<robot name="r"><link name="a"/><link name="b">{BODY}</link><link name
 </robot>"""
 ROLLING = ARM.replace("continuous", "TYPE", 1).replace("</joint>", '<dynamics damping="1" friction="2"/></joint>', 1)
 BOUNDED = ROLLING.replace("<dynamics", '<limit lower="-1" upper="1"/><dynamics')
+GENERAL = '<actuator><general joint="j"/></actuator>'
 POLE = """<mujoco><worldbody><body name="b"><joint name="j" axis="0 1 0"/>
 <inertial pos="0 0 0" mass="1" diaginertia=".7 .7 .7"/></body></worldbody>MORE</mujoco>"""
 BOX = """<sdf version="VERSION"><model name="m"><link name="a"><pose>0 0 0 0 0 0.5</pose><inertial><mass>1</mass>
@@ -152,6 +153,7 @@ def test_rotors_behind_gears_are_armatures_in_every_format() -> None:
         (ARM.replace("</robot>", '<mujoco><compiler balanceinertia="true"/></mujoco></robot>'), "<compiler>"),
         (ARM.replace("MORE", '<mimic joint="jj"/>'), "no joint 'jj'; did you mean 'j'?"),
         (POLE.replace("MORE", '<actuator><position joint="j" kp="3"/></actuator>'), "actuator <position>"),
+        (POLE.replace("MORE", f'<default><position kp="3"/></default>{GENERAL}'), "actuator <general>"),
         (POLE.replace("MORE", '<option><flag spring="disable"/></option>'), "springs and dampers"),
         (POLE.replace("MORE", '<actuator><motor site="s" armature="1"/></actuator>'), "the armature of an actuator"),
         (POLE.replace('axis="0 1 0"', 'axis="0 1 0" springyield="1"'), "springyield"),
