@@ -121,6 +121,19 @@ def bodies_of(text: str) -> list[dict[str, Any]]:
     return bodies
 
 
+def test_numbers_stand_on_lines_of_their_own() -> None:
+    lines = SDF.replace("0.1 0 0.3 0.1 0.2 0.3</pose>", "\n0.1 0 0.3\n0.1 0.2\n\n0.3\n</pose>")
+    assert bodies_of(lines) == bodies_of(SDF)
+
+
+def test_joints_are_frames_of_their_children() -> None:
+    """What is attached to one, or hangs on one, is on its child link."""
+    elbow = "<parent>upper</parent><child>lower"
+    assert bodies_of(SDF.replace(elbow, "<parent>shoulder</parent><child>lower")) == bodies_of(SDF)
+    on_joint = SDF.replace('"pivot" attached_to="upper"', '"pivot" attached_to="shoulder"')
+    assert bodies_of(on_joint.replace(elbow, "<parent>pivot</parent><child>lower")) == bodies_of(SDF)
+
+
 def test_universal_and_ball_joints() -> None:
     """axis2 is carried by axis: the same as two joints of one body."""
     both = (

@@ -79,7 +79,7 @@ class _Reader:
         self.links: dict[str, Node] = {}
         self.joints: list[tuple[str, Node]] = []
         self.attached: dict[str, str] = {}  #: of frames what they are attached to
-        self.canonical: dict[str, str] = {}  #: of models their canonical links
+        self.canonical: dict[str, str] = {}  #: of models their canonical links, of joints their children
         self._resolved: dict[str, str | None] = {}
         for node in () if world is None else world.all("frame"):
             at = full_name(_IN_WORLD, node.attributes.get("attached_to") or WORLD)
@@ -152,8 +152,8 @@ class _Reader:
             self.frames.add(name, framed(node.one("pose"), prefix, node.place, base))
         elif node.tag == "joint":
             self.joints.append((prefix, node))
-            end = _text(node, "child")
-            self.frames.add(name, framed(node.one("pose"), prefix, node.place, prefix + end))
+            self.canonical[name] = prefix + _text(node, "child")
+            self.frames.add(name, framed(node.one("pose"), prefix, node.place, self.canonical[name]))
         elif node.tag == "frame":
             attached = node.attributes.get("attached_to")
             at = prefix + attached if attached else base
