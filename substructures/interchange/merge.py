@@ -110,3 +110,14 @@ def judge(place: Place, mass: Number, com: Triple, six: tuple[Number, ...], repo
     distance = float(np.linalg.norm([value(x) for x in com]))
     if m > 0 and distance > 10 and distance**2 * m > 100 * largest:
         report.warning(place, f"the mass centre is {distance:.3g} m away: are these millimetres?", "physics")
+
+
+def ordered_limits(place: Place, low: Number, high: Number, report: Report) -> tuple[Number, Number] | None:
+    """The limits of a coordinate; none, told, where they are reversed, and told where they leave it one place."""
+    if value(low) > value(high):
+        report.warning(place, f"the lower limit {low} is above the upper one {high}: limits are left out")
+        return None
+    if value(low) == value(high):
+        message = f"both limits are {low}, and limits do not hold a joint here: make it fixed if it is to stand still"
+        report.warning(place, message, "topology")
+    return low, high

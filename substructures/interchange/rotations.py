@@ -11,10 +11,10 @@ from collections.abc import Sequence
 import numpy as np
 
 from substructures.array import Array
-from substructures.interchange.numbers import Number, Triple, angle, cleaned, decimal_of, value
+from substructures.interchange.numbers import ANGLE_TOLERANCE, Number, Triple, angle, cleaned, decimal_of, value
 
 #: below this |cos(pitch)| only the sum or difference of yaw and roll is known
-_GIMBAL = 1e-9
+_GIMBAL = ANGLE_TOLERANCE
 
 
 def turn(axis: int, by: float) -> Array:
@@ -39,7 +39,10 @@ def to_rpy(R: Array) -> Triple:
     if across < _GIMBAL:  # yaw is taken as 0
         roll, yaw = math.atan2(-R[1, 2], R[1, 1]), 0.0
     else:
-        roll, yaw = math.atan2(R[2, 1], R[2, 2]), math.atan2(R[1, 0], R[0, 0])
+        roll = math.atan2(R[2, 1], R[2, 2])
+        # of R Rx(-roll) = Rz(yaw) Ry(pitch): what rounding does to roll where |cos(pitch)| is small, yaw takes back
+        y = math.cos(roll) * R[:, 1] - math.sin(roll) * R[:, 2]
+        yaw = math.atan2(-y[0], y[1])
     return angle(decimal_of(roll)), angle(decimal_of(pitch)), angle(decimal_of(yaw))
 
 

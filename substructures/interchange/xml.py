@@ -129,8 +129,9 @@ class _Builder(ContentHandler):
         self.stack.pop()
 
     def characters(self, content: str) -> None:
-        if self.stack and not content.isspace():
-            self.stack[-1].text += content
+        """Lines come one by one, and their ends alone."""
+        if self.stack and (self.stack[-1].text or not content.isspace()):
+            self.stack[-1].text += " " if content.isspace() else content
 
 
 def _local(name: str) -> str:

@@ -21,6 +21,8 @@ ARM = f"""<robot name="r"><link name="a"/><link name="b">{BODY}</link><link name
 <joint name="k" type="continuous"><parent link="b"/><child link="c"/><axis xyz="0 1 0"/>MORE</joint>
 </robot>"""
 ROLLING = ARM.replace("continuous", "TYPE", 1).replace("</joint>", '<dynamics damping="1" friction="2"/></joint>', 1)
+BOUNDED = ROLLING.replace("<dynamics", '<limit lower="-1" upper="1"/><dynamics')
+GENERAL = '<actuator><general joint="j"/></actuator>'
 POLE = """<mujoco><worldbody><body name="b"><joint name="j" axis="0 1 0"/>
 <inertial pos="0 0 0" mass="1" diaginertia=".7 .7 .7"/></body></worldbody>MORE</mujoco>"""
 BOX = """<sdf version="VERSION"><model name="m"><link name="a"><pose>0 0 0 0 0 0.5</pose><inertial><mass>1</mass>
@@ -145,11 +147,13 @@ def test_rotors_behind_gears_are_armatures_in_every_format() -> None:
         (ROLLING.replace("TYPE", "planar"), "damping of a planar joint is not read"),
         (ROLLING.replace("TYPE", "floating"), "damping of a floating joint is not read"),
         (ROLLING.replace("TYPE", "floating"), "dry friction is not read"),
+        (BOUNDED.replace("TYPE", "planar"), "limits of a planar joint are not read"),
         (POLE.replace('axis="0 1 0"', 'type="ball" range="0 60"'), "range of a ball joint is not read"),
         (ARM.replace("</robot>", "<gazebo><springStiffness>3</springStiffness></gazebo></robot>"), "<springStiffness>"),
         (ARM.replace("</robot>", '<mujoco><compiler balanceinertia="true"/></mujoco></robot>'), "<compiler>"),
         (ARM.replace("MORE", '<mimic joint="jj"/>'), "no joint 'jj'; did you mean 'j'?"),
         (POLE.replace("MORE", '<actuator><position joint="j" kp="3"/></actuator>'), "actuator <position>"),
+        (POLE.replace("MORE", f'<default><position kp="3"/></default>{GENERAL}'), "actuator <general>"),
         (POLE.replace("MORE", '<option><flag spring="disable"/></option>'), "springs and dampers"),
         (POLE.replace("MORE", '<actuator><motor site="s" armature="1"/></actuator>'), "the armature of an actuator"),
         (POLE.replace('axis="0 1 0"', 'axis="0 1 0" springyield="1"'), "springyield"),

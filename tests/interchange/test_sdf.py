@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from decimal import Decimal
 from time import process_time
 from typing import Any
 
@@ -68,6 +69,71 @@ def test_nested_models_have_names_with_two_colons() -> None:
     assert equivalence(side(URDF), side(nested), names).equal
 
 
+def test_the_model_stands_where_its_pose_says() -> None:
+    """In the world, on a frame beside it, or with a frame of its own at its pose; gravity is that of the world."""
+    pose = "<pose>1 2 3 1.5707963267948966 0 0</pose>"
+    placed = SDF.replace("<pose>0 0 0 0 0 0</pose>", pose, 1)
+    table = '<world name="w"><frame name="upper"><pose>0 0 1 0 0 0</pose></frame>'
+    on_table = placed.replace("<model", f"{table}<model", 1).replace("</model>", "</model></world>")
+    on_table = on_table.replace("<pose>1 2 3", '<pose relative_to="upper">1 2 3', 1)
+    held = placed.replace('name="arm"', 'name="arm" placement_frame="upper"')
+    for text, at in ((placed, [1, Decimal("1.6"), 3]), (on_table, [1, Decimal("1.6"), 4]), (held, [1, 2, 3])):
+        found = import_file(text.encode())
+        placement = found.definition["bodies"][0]["joint"]["placement"]
+        assert placement == {"position": at, "rpy": ["pi/2", 0, 0]}
+        assert found.gravity == (None if text is not on_table else [0, 0, Decimal("-9.8")])
+
+
+LIMITS = {
+    "<lower>-inf</lower><upper>inf</upper><effort>inf</effort>": (None, ""),
+    "<lower>-1e16</lower><upper>1e16</upper>": (None, ""),
+    "<lower>-1</lower><upper>+inf</upper>": (None, "one limit alone is left out: give both, lower and upper"),
+    "<upper>2</upper>": (None, "one limit alone is left out: give both, lower and upper"),
+    "<lower>2</lower><upper>-1</upper>": (None, "the lower limit 2 is above the upper one -1: limits are left out"),
+    "<lower>0</lower><upper>0</upper>": (
+        [0, 0], "both limits are 0, and limits do not hold a joint here: make it fixed if it is to stand still",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("limit", LIMITS)
+def test_limits_are_two_or_told(limit: str) -> None:
+    wanted, message = LIMITS[limit]
+    found = import_file(SDF.replace("<lower>-1</lower><upper>2</upper>", limit).encode())
+    assert found.definition["bodies"][0]["joint"].get("limits") == wanted
+    assert [remark["message"] for remark in found.report] == [message] * bool(message)
+
+
+def test_defaults_of_the_format() -> None:
+    """Of an <inertia>, told; bools in capitals; frames that are attached to nothing are to the model."""
+    inertia = SDF[SDF.index(" <inertia>") : SDF.index("</inertia>") + 10]
+    found = import_file(SDF.replace(inertia, "").encode())
+    assert [found.definition["parameters"][f"I{e}_upper"]["value"] for e in ("xx", "yy", "zz")] == [1, 1, 1]
+    assert [remark["element"] for remark in found.report if "no <inertia>" in remark["message"]] == [
+        '<link name="upper">'
+    ]
+    assert bodies_of(SDF.replace('degrees="true"', 'degrees="True"')) == bodies_of(SDF)
+    assert ports('<frame name="f" attached_to=""/>')["f"]["body"] == "a"
+
+
+def bodies_of(text: str) -> list[dict[str, Any]]:
+    bodies: list[dict[str, Any]] = import_file(text.encode()).definition["bodies"]
+    return bodies
+
+
+def test_numbers_stand_on_lines_of_their_own() -> None:
+    lines = SDF.replace("0.1 0 0.3 0.1 0.2 0.3</pose>", "\n0.1 0 0.3\n0.1 0.2\n\n0.3\n</pose>")
+    assert bodies_of(lines) == bodies_of(SDF)
+
+
+def test_joints_are_frames_of_their_children() -> None:
+    """What is attached to one, or hangs on one, is on its child link."""
+    elbow = "<parent>upper</parent><child>lower"
+    assert bodies_of(SDF.replace(elbow, "<parent>shoulder</parent><child>lower")) == bodies_of(SDF)
+    on_joint = SDF.replace('"pivot" attached_to="upper"', '"pivot" attached_to="shoulder"')
+    assert bodies_of(on_joint.replace(elbow, "<parent>pivot</parent><child>lower")) == bodies_of(SDF)
+
+
 def test_universal_and_ball_joints() -> None:
     """axis2 is carried by axis: the same as two joints of one body."""
     both = (
@@ -83,6 +149,9 @@ def test_universal_and_ball_joints() -> None:
     assert equivalence(side(both), side(twin)).equal
     ball = import_file(both.replace('type="universal"', 'type="ball"').encode()).definition
     assert ball["bodies"][0]["joint"]["coordinate"] == ["u_yaw", "u_pitch", "u_roll"]
+    damped = both.replace("</xyz></axis>", "</xyz><dynamics><damping>3</damping></dynamics></axis>", 1)
+    (lost,) = import_file(damped.replace('type="universal"', 'type="ball"').encode()).definition["left_out"]
+    assert "damping, springs and friction of a ball joint are not read" in lost["message"]
 
 
 BAD = {

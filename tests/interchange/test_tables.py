@@ -120,6 +120,20 @@ def test_symoro_files_keep_their_symbols() -> None:
     assert found_same.equal, (found_same.first_difference, found_same.culprits)
 
 
+def test_zero_is_zero_with_a_point() -> None:
+    """A link of SYMORO without mass, as 0.0: its mass centre is nowhere."""
+    light = SYMORO.replace("M = {3,2,1}", "M = {3,0.0,1}").replace("MX = {0.03,0.2,0}", "MX = {0.03,0.0,0.0}")
+    assert import_file(light.encode()).definition["bodies"][1]["com"] == ["0", "0", "0"]
+    with pytest.raises(InvalidDocument, match="a first moment without a mass"):
+        import_file(light.replace("MX = {0.03,0.0", "MX = {0.03,0.1").encode())
+
+
+def test_one_limit_alone_is_told() -> None:
+    found = import_file(MODIFIED.replace("-90,90", ",90").encode())
+    assert "limits" not in found.definition["bodies"][0]["joint"]
+    assert [remark["message"] for remark in found.report] == ["one limit alone is left out: give both, min and max"]
+
+
 def test_the_shipped_table_is_the_arm_of_the_catalogue() -> None:
     table = (Path(catalogue.__file__).parent.parent / "interchange" / "examples" / "puma560.csv").read_text()
     known = Side.of_part(shipped_part("puma560"))

@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 import re
+from decimal import Decimal
 
 import numpy as np
 import pytest
 
 from substructures import Definition, TreeSpec, couple, derive, evaluate
 from substructures.errors import InvalidDocument
+from substructures.export.robots.urdf import rpy_of
 from substructures.interchange.files.wanted import Options
 from substructures.interchange.importing import Imported, import_file
+from substructures.interchange.rotations import from_rpy, to_rpy
 
 LINK = '<inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>'
 
@@ -78,6 +81,15 @@ def test_fixed_links_are_merged_and_their_frames_stay() -> None:
     assert "ports" not in import_file(file, Options(fixed="dropped")).definition
 
 
+@pytest.mark.parametrize("pitch", ["1.5707963", "1.57079633", "1.570796325", "1.5707963267949"])
+def test_frames_turned_by_nearly_a_right_angle_are_exact(pitch: str) -> None:
+    """Roll and yaw alone are known to 1e-16 / cos(pitch)."""
+    first = from_rpy((Decimal("0.7"), Decimal("0.2"), Decimal("-1.1")))
+    turned = first.T @ (first @ from_rpy((Decimal("0.3"), Decimal(pitch), Decimal("2.9"))))
+    for roll, about, yaw in (to_rpy(turned), map(Decimal, rpy_of(turned).tolist())):
+        np.testing.assert_allclose(from_rpy((roll, about, yaw)), turned, rtol=0, atol=1e-14)
+
+
 @pytest.mark.parametrize(("axis", "weights"), [("0 0 1", [2, 2, 1]), ("1 0 0", [2, 2, 1]), ("1 2 -2", [2, 2, 1])])
 def test_planar_joints_move_across_their_axis(axis: str, weights: list[float]) -> None:
     found = import_file(urdf(joint("p", "a", "b", "planar", f'<axis xyz="{axis}"/>'), "ab"))
@@ -104,6 +116,16 @@ def test_limits_damping_and_remarks() -> None:
     assert found.bindings == []
     assert [(r["line"], r["level"]) for r in found.report] == [(5, "warning"), (5, "merged")]
     assert found.checks["topology"] == {"passed": True, "warnings": 0}
+
+
+@pytest.mark.parametrize("limits", [[0, 0], [1, 1], [None, None]])
+def test_limits_that_leave_a_joint_one_place_are_told(limits: list[int | None]) -> None:
+    """0, 0 is what is written where none are meant; nothing is none."""
+    given = "".join(f' {end}="{x}"' for end, x in zip(("lower", "upper"), limits, strict=True) if x is not None)
+    found = import_file(urdf(joint("j", "a", "b", more=f'<limit{given} effort="1" velocity="1"/>'), "ab"))
+    assert found.definition["bodies"][1]["joint"].get("limits") == (limits if limits[0] else None)
+    told = [f"both limits are {limits[0]}, and limits do not hold a joint"] if limits[0] is not None else []
+    assert [remark["message"].partition(" here")[0] for remark in found.report] == told
 
 
 def test_provenance() -> None:

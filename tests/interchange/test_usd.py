@@ -132,6 +132,17 @@ def test_the_arm_is_that_of_its_urdf_file() -> None:
     assert at == [[-np.pi / 2, pytest.approx(2 * np.pi / 3)], [], [0, 0.25]]
 
 
+def test_limits_are_two_in_order_or_told() -> None:
+    for low, high, message in (
+        ("-inf", "0.25", "one limit alone"),
+        ("0.5", "0.25", "the lower limit 0.5 is above"),
+        ("0.25", "0.25", "both limits are 0.25"),
+    ):
+        text = USD.replace("Limit = 0\n", f"Limit = {low}\n").replace("Limit = 0.25", f"Limit = {high}")
+        (said,) = (remark["message"] for remark in read(text).report)
+        assert said.startswith(message)
+
+
 WRONG = [
     ("(0, 0, 0.3)", "(0, 0.3, 0)"), ("(0, 0.3, 0)", "(0, 0, 0.3)"), ("(0.8, 0, 0, 0.6)", "(0.8, 0, 0.6, 0)"),
     ('physics:axis = "X"', 'physics:axis = "Z"'), ("(0.70710677, 0.70710677, 0, 0)", "(1, 0, 0, 0)"),
@@ -343,8 +354,48 @@ def test_missing_masses_are_told() -> None:
     said = [lost["message"] for lost in read(text).definition["left_out"]]
     assert [message.partition(": ")[2] for message in said] == [
         "no diagonalInertia: the body is a point mass",
+        "masses of shapes by a density are not computed: give the body physics:mass",
+        "centerOfMass and diagonalInertia of a body without mass are left out: give it physics:mass",
         "the link moves and no mass is given for it: it is taken as massless",
     ]
+
+
+def test_shapes_beside_one_with_a_mass_are_told() -> None:
+    """They have the density of the format, but where their mass is that of what they are on."""
+    mass, shape = (
+        "float physics:mass = 2\n",
+        'def Cube "shape" (prepend apiSchemas = ["PhysicsCollisionAPI"])\n        {\n',
+    )
+    assert USD.count(shape) == 1
+    on = f'def Xform "on" (prepend apiSchemas = ["PhysicsMassAPI"])\n{{\n{mass}'
+    text = USD.replace(mass, "")
+    message = "</arm/lower>: masses of shapes by a density are not computed: give the body physics:mass"
+    for made, is_told in ((f"{on}}}\n{shape}", True), (f"{on}{shape}}}\n", False)):
+        said = [lost["message"] for lost in read(text.replace(shape, made)).definition["left_out"]]
+        assert (message in said) == is_told
+
+
+OTHERS = {
+    "PhysxPhysicsGearJoint": 'def PhysxPhysicsGearJoint "gear"\n{\nrel physics:hinge0 = </arm/shoulder>\n}\n',
+    "PointInstancer": 'def PointInstancer "p"\n{\ndef "a" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n{\n}\n}\n',
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("kind", OTHERS)
+def test_prims_of_other_programs_that_act_are_told(kind: str) -> None:
+    (lost,) = read(USD + OTHERS[kind]).definition["left_out"]
+    assert f"{kind} is not read: what it says of the mechanics is left out" in lost["message"]
+
+
+def test_drives_of_axes_that_a_joint_has_not_are_told() -> None:
+    spring = "        float drive:rotX:physics:stiffness = 3"
+    for head, said in (
+        (ELBOW, "the drives other than 'angular' of a joint about one axis are left out"),
+        ('PhysicsSphericalJoint "elbow"\n    {', "the drives of a joint that turns about all axes are left out"),
+    ):
+        driven = head.replace('"elbow"', '"elbow" (prepend apiSchemas = ["PhysicsDriveAPI:rotX"])') + f"\n{spring}"
+        (lost,) = read(USD.replace(ELBOW, driven)).definition["left_out"]
+        assert said in lost["message"]
 
 
 def four_bar(kind: str, at: str) -> str:

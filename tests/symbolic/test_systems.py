@@ -185,9 +185,31 @@ def _alone() -> System:
     return system
 
 
+def _tied() -> System:
+    system = cart_pole()
+    system.velocity_constraints = [system.u[0] - l * system.u[1]]
+    return system
+
+
+def _half_heavy() -> System:
+    """The ground has a weight, the pole has none."""
+    system = cart_pole()
+    system.loads = [load for load in system.loads if load.point != system.bodies[2].masscenter]
+    return system
+
+
+def _loose() -> System:
+    system = System()
+    system.add_joints(PinJoint("pin", RigidBody("a"), RigidBody("b")))
+    return system
+
+
 @pytest.mark.parametrize(
     ("make", "message"),
     [
+        (_tied, "velocity constraints are not taken over"),
+        (_half_heavy, "are not the gravity of all bodies"),
+        (_loose, "body 'a' is on no joint, and not at the fixed point"),
         (_with_ball, "joint 'ball' is a SphericalJoint"),
         (_in_a_loop, "make no tree with one root|is in a loop"),
         (_pushed, "are not the gravity of all bodies"),
@@ -198,3 +220,11 @@ def _alone() -> System:
 def test_what_has_no_counterpart_is_named(make: Any, message: str) -> None:
     with pytest.raises(InvalidArgument, match=message):
         tree_of_system(make())
+
+
+def test_bodies_without_mass_have_no_weight() -> None:
+    ground, hub, arm = RigidBody("ground"), RigidBody("hub", mass=0), RigidBody("arm")
+    system = System.from_newtonian(ground)
+    system.add_joints(PinJoint("pan", ground, hub, joint_axis=ground.z), PinJoint("tilt", hub, arm))
+    system.apply_uniform_gravity(-g * ground.z)
+    assert tree_of_system(system)["gravity"] == [0, 0, "-g"]

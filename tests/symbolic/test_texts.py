@@ -60,6 +60,7 @@ def test_names_that_documents_do_not_take_are_given() -> None:
         (sympy.sinh(k), "'sinh' is none of the functions"),
         (sympy.I * k, "'I' has no counterpart"),
         (sympy.oo, "'oo' has no counterpart"),
+        (k * sympy.Float("1e400"), "is beyond the range of doubles"),
         (sympy.nan, "'nan' has no counterpart"),
         (sympy.Symbol("theta_{1}"), "is no name of a document"),
         (sympy.Symbol("pi"), "has a meaning of its own"),

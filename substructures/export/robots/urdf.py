@@ -107,4 +107,7 @@ def rpy_of(R: Array) -> Array:
     pitch = math.atan2(-R[2, 0], across)
     if across < 1e-12:
         return np.array([math.atan2(-R[1, 2], R[1, 1]), pitch, 0.0])
-    return np.array([math.atan2(R[2, 1], R[2, 2]), pitch, math.atan2(R[1, 0], R[0, 0])])
+    roll = math.atan2(R[2, 1], R[2, 2])
+    # of R Rx(-roll): what rounding does to roll where |cos(pitch)| is small, yaw takes back
+    y = math.cos(roll) * R[:, 1] - math.sin(roll) * R[:, 2]
+    return np.array([roll, pitch, math.atan2(-y[0], y[1])])

@@ -24,6 +24,11 @@ _ACTUATORS = (
     "general", "motor", "position", "velocity", "intvelocity", "orientation", "pid", "damper", "cylinder", "muscle",
     "adhesion", "dcmotor",
 )  # fmt: skip
+#: what defaults of a kind make of all actuators: forces of feedback, or those of an input alone
+_FORCES: dict[str, dict[str, str]] = {
+    **{x: {"biastype": "affine"} for x in ("position", "velocity", "intvelocity", "cylinder", "muscle", "dcmotor")},
+    "damper": {"gaintype": "affine"}, "motor": {"biastype": "none", "gaintype": "fixed", "dyntype": "none"},
+}  # fmt: skip
 _ORIENTATIONS = ("quat", "axisangle", "xyaxes", "zaxis", "euler")
 _YES = {"true": True, "false": False}
 
@@ -153,7 +158,7 @@ class Defaults:
         for child in node.children:
             if child.tag != "default":
                 tag = ACTUATOR if child.tag in _ACTUATORS else child.tag
-                own[tag] = own.get(tag, {}) | child.attributes
+                own[tag] = own.get(tag, {}) | _FORCES.get(child.tag, {}) | child.attributes
         self._classes[name] = own
         for child in node.all("default"):
             self._read(child, own, child.text_of("class"))

@@ -215,9 +215,9 @@ class _Reader:
         mass = self.number("M", k)
         body: dict[str, Any] = {"name": f"link{k + 1}", "parent": self._parent(k, k), "joint": joint, "mass": mass}
         moments = [self.number(name, k) for name in ("MX", "MY", "MZ")]
-        if mass == "0" and any(x != "0" for x in moments):
+        if _value(mass) == 0 and any(_value(x) != 0 for x in moments):
             raise refuse(self.place("M", k), "no-mass", "a first moment without a mass")
-        body["com"] = [f"({x})/({mass})" if x != "0" else "0" for x in moments]
+        body["com"] = [f"({x})/({mass})" if _value(x) != 0 else "0" for x in moments]
         inertia = {name.lower(): self.number(name, k) for name in _MOMENTS}
         return body | {"inertia": inertia | {"about": "origin"}}
 

@@ -208,6 +208,8 @@ def _joint(place: Place, row: Mapping[str, str], cell: _Cells) -> dict[str, Any]
     if "min" in row and "max" in row:
         unit = "angle" if kind == "revolute" else "length"
         joint["limits"] = [cell("min", unit), cell("max", unit)]
+    elif "min" in row or "max" in row:
+        cell.reading.report.warning(place, "one limit alone is left out: give both, min and max")
     return joint
 
 

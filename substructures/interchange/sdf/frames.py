@@ -90,6 +90,11 @@ def full_name(prefix: str, name: str) -> str:
     return f"{prefix}__model__" if name == "__model__" else prefix + name
 
 
+def is_true(text: str) -> bool:
+    """Of a bool of the format."""
+    return text.strip().lower() in ("1", "true")
+
+
 def by_placement(own: Framed, node: Node, prefix: str) -> Framed:
     """A model's pose as that of its frame ``placement_frame``, where it has this attribute."""
     name = node.attributes.get("placement_frame", "")
@@ -109,7 +114,7 @@ def framed(pose: Node | None, prefix: str, place: Place, default: str = "") -> F
             if not any((x, y, z, w)):
                 raise refuse(pose.place, "zero-axis", "the quaternion is zero")
             R = from_quaternion((w, x, y, z))
-        elif pose.attributes.get("degrees", "false") in ("true", "1"):
+        elif is_true(pose.attributes.get("degrees", "")):
             roll, pitch, yaw = np.radians([value(n) for n in numbers[3:]])
             R = turn(2, yaw) @ turn(1, pitch) @ turn(0, roll)
         else:

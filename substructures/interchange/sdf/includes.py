@@ -16,11 +16,11 @@ from dataclasses import replace
 from substructures.interchange.files.archive import models_at
 from substructures.interchange.known.sdf import SDF
 from substructures.interchange.report import Report, refuse
+from substructures.interchange.sdf.frames import is_true
 from substructures.interchange.sdf.merging import FLAG, merged
 from substructures.interchange.xml import MAX_DEPTH, MAX_ELEMENTS, SHOWN, Node, read_xml
 
 MANIFEST, MODEL = "model.config", "model.sdf"
-_TRUE = ("1", "true")
 #: what goes before the same of the model
 _OVER = ("pose", "static")
 _HOLDERS = ("sdf", "world", "model")
@@ -82,7 +82,7 @@ class _Writer:
 
     def _model(self, include: Node, holder: Node, path: str | None, above: tuple[str, ...], depth: int) -> list[Node]:
         """The model of a file as it is included, or what it has; of a file without any what it has (a light)."""
-        is_merged = include.attributes.get("merge", "false") in _TRUE
+        is_merged = is_true(include.attributes.get("merge", ""))
         if is_merged and holder.tag != "model":
             message = f"merge in a <{holder.tag}> is not read: leave it out, the model has its links and joints"
             raise refuse(include.place, "not-read", message)

@@ -10,11 +10,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from substructures.interchange.report import refuse
+from substructures.interchange.sdf.frames import is_true
 from substructures.interchange.xml import Node
 
 MODEL = "__model__"
 FLAG = "use_parent_model_frame"
-_TRUE = ("1", "true")
 _POSED = ("link", "model")
 _REFERRING = {"pose": ("relative_to", "frame"), "xyz": ("expressed_in",), "frame": ("attached_to",)}
 _ENDS = ("parent", "child")
@@ -75,7 +75,7 @@ def _child(node: Node, proxy: str, in_model_frame: bool) -> Node:
 def _axis(axis: Node, proxy: str, in_model_frame: bool) -> Node:
     """An axis that is given in the frame of the model says so."""
     flag = axis.one(FLAG) if axis.tag in ("axis", "axis2") else None
-    is_in_model = in_model_frame if flag is None else flag.text.strip() in _TRUE
+    is_in_model = in_model_frame if flag is None else is_true(flag.text)
     if axis.tag not in ("axis", "axis2") or not is_in_model:
         return axis
     children = [

@@ -1,9 +1,9 @@
 """An SDF document as a robot: links and joints of a model and of those nested in it.
 
-A pose is given relative to the model, of a joint to its child link, of a frame to what it is attached to, or to
-``relative_to``. An axis is given in the frame of its joint, or in that of ``expressed_in``; it goes through the origin
-of the joint's frame, which need not be that of the child link. Until SDF 1.4, and where ``use_parent_model_frame`` says
-so until 1.6, it is given in the frame of the model.
+The model stands in the world, where its pose says. A pose is given relative to the model, of a joint to its child link,
+of a frame to what it is attached to, or to ``relative_to``. An axis is given in the frame of its joint, or in that of
+``expressed_in``; it goes through the origin of the joint's frame, which need not be that of the child link. Until SDF
+1.4, and where ``use_parent_model_frame`` says so until 1.6, it is given in the frame of the model.
 """
 
 from __future__ import annotations
@@ -22,19 +22,19 @@ from substructures.interchange.known.check import acting
 from substructures.interchange.known.sdf import SDF
 from substructures.interchange.merge import judge, vector
 from substructures.interchange.numbers import (
+    ONE,
     ZERO,
     Number,
     Triple,
-    decimal_of,
     direction,
-    number_of,
     triple,
     value,
 )
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
 from substructures.interchange.rotations import to_rpy, turned_inertia
-from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, by_placement, framed, full_name
+from substructures.interchange.sdf.axes import laws_of, limits_of, number, tell_of_laws
+from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, by_placement, framed, full_name, is_true
 from substructures.interchange.sdf.includes import with_included
 from substructures.interchange.sdf.merging import FLAG, canonical_link
 from substructures.interchange.xml import Node, numbers_in
@@ -42,12 +42,13 @@ from substructures.interchange.xml import Node, numbers_in
 _IN_MODEL_FRAME = "1.4"  #: and where use_parent_model_frame says so
 _VERSIONS = (_IN_MODEL_FRAME, "1.5", "1.6", "1.7", "1.8", "1.9", "1.10", "1.11", "1.12")
 _TYPES = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
-_TRUE = ("1", "true")
+_IN_WORLD = "world::"  #: before the names of frames beside the model
+_GRAVITY = (ZERO, ZERO, Decimal("-9.8"))  #: of a world that does not say it
 #: elements that are mechanics and are not read, and the values with which they are none
 _ACTING: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("static", "kinematic", "must_be_base_link", "enable_wind"), ("0", "false")),
     **dict.fromkeys(("linear", "angular"), ("0", "0.0")),
-    "gravity": _TRUE, "linear_bushing_rpy": (), "ball_constraint": (),
+    "gravity": ("1", "true"), "linear_bushing_rpy": (), "ball_constraint": (),
 }  # fmt: skip
 
 
@@ -66,23 +67,26 @@ def read_sdf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
         raise refuse(root.place, "several-models", f"{len(models)} models: one is needed, put them into one file each")
     for joint in (each for world in worlds for each in world.all("joint")):
         report.lost(joint.place, "a joint beside the model is left out: put it into the model", "topology")
-    return _Reader(models[0], report, version == _IN_MODEL_FRAME).robot(worlds[0] if worlds else None)
+    return _Reader(models[0], worlds[0] if worlds else None, report, version == _IN_MODEL_FRAME).robot()
 
 
 class _Reader:
     """Reads a model with those nested in it."""
 
-    def __init__(self, model: Node, report: Report, in_model_frame: bool) -> None:
-        self.model, self.report, self.in_model_frame = model, report, in_model_frame
+    def __init__(self, model: Node, world: Node | None, report: Report, in_model_frame: bool) -> None:
+        self.model, self.world, self.report, self.in_model_frame = model, world, report, in_model_frame
         self.frames = Frames()
         self.links: dict[str, Node] = {}
         self.joints: list[tuple[str, Node]] = []
         self.attached: dict[str, str] = {}  #: of frames what they are attached to
-        self.canonical: dict[str, str] = {}  #: of models their canonical links
+        self.canonical: dict[str, str] = {}  #: of models their canonical links, of joints their children
         self._resolved: dict[str, str | None] = {}
-        self._enter(model, "", framed(None, "", model.place))
+        for node in () if world is None else world.all("frame"):
+            at = full_name(_IN_WORLD, node.attributes.get("attached_to") or WORLD)
+            self.frames.add(_IN_WORLD + node.text_of("name"), framed(node.one("pose"), _IN_WORLD, node.place, at))
+        self._enter(model, "", framed(model.one("pose"), _IN_WORLD, model.place))
 
-    def robot(self, world: Node | None) -> Robot:
+    def robot(self) -> Robot:
         """Links with the joints that carry them; roots are fixed to the interface."""
         if not self.links:
             raise refuse(self.model.place, "no-links", "the model has no <link>")
@@ -98,10 +102,12 @@ class _Reader:
         name = self.model.attributes.get("name", "")
         known = joints_of(links)
         mimics = tuple(mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known))
-        gravity = None if world is None else world.one("gravity")
         robot = Robot(name, links, self.report, frames=frames, mimics=mimics)
-        if gravity is None:
+        if self.world is None:
             return robot
+        gravity = self.world.one("gravity")
+        if gravity is None:
+            return replace(robot, gravity=_GRAVITY)
         numbers = triple(numbers_in(gravity.text, 3, gravity.place, "gravity"))
         return replace(robot, gravity=numbers, gravity_place=gravity.place)
 
@@ -112,12 +118,10 @@ class _Reader:
             axis = joint.one(tag)
             for node in () if axis is None else axis.all("mimic"):
                 factors = (("multiplier", "1"), ("reference", "0"), ("offset", "0"))
-                k, reference, offset = (_number(node, each, node.attributes.get(each, x)) for each, x in factors)
-                exact = isinstance(k, Decimal) and isinstance(reference, Decimal) and isinstance(offset, Decimal)
-                shift = offset - k * reference if exact else ZERO  # type: ignore[operator] # decimals, as read
+                k, reference, offset = (number(node, each, node.attributes.get(each, x)) for each, x in factors)
                 leader = prefix + node.text_of("joint") + ("_2" if node.attributes.get("axis") == "axis2" else "")
                 own = name + ("_2" if tag == "axis2" else "")
-                yield from mimic_of(own, leader, (k, shift), node.place, known, self.report)
+                yield from mimic_of(own, leader, (k, offset - k * reference), node.place, known, self.report)
 
     def _enter(self, model: Node, prefix: str, placed: Framed) -> None:
         """All frames of a model: its own, and those of links, joints, frames and models in it."""
@@ -148,11 +152,11 @@ class _Reader:
             self.frames.add(name, framed(node.one("pose"), prefix, node.place, base))
         elif node.tag == "joint":
             self.joints.append((prefix, node))
-            end = _text(node, "child")
-            self.frames.add(name, framed(node.one("pose"), prefix, node.place, prefix + end))
+            self.canonical[name] = prefix + _text(node, "child")
+            self.frames.add(name, framed(node.one("pose"), prefix, node.place, self.canonical[name]))
         elif node.tag == "frame":
             attached = node.attributes.get("attached_to")
-            at = base if attached is None else prefix + attached
+            at = prefix + attached if attached else base
             self.attached[name] = at
             placed = framed(node.one("pose"), prefix, node.place, at)
             self.frames.add(name, by_placement(placed, node, prefix))
@@ -189,6 +193,7 @@ class _Reader:
         R, r = self.frames.pose(name, node.place)
         anchor = vector(link[0].T @ (r - link[1]))
         if kind == "ball":
+            tell_of_laws(node, self.report)
             return (Motion(name, "spherical", node.place, anchor=anchor),)
         first = self._axis(prefix, node, "axis", name, (R, link[0]), anchor, kind)
         if kind not in ("universal", "revolute2"):
@@ -207,32 +212,14 @@ class _Reader:
         if not any(numbers):
             raise refuse(xyz.place, "zero-axis", "the axis has no direction: give a vector that is not zero")
         flag = node.one(FLAG)
-        in_model = self.in_model_frame if flag is None else flag.text.strip() in _TRUE
+        in_model = self.in_model_frame if flag is None else is_true(flag.text)
         expressed = xyz.attributes.get("expressed_in") or ("__model__" if in_model else "")
         R = axes[0] if not expressed else self.frames.pose(full_name(prefix, expressed), xyz.place)[0]
         along = direction((axes[1].T @ R @ numbers).tolist())
-        laws, motion = self._laws(node), _kind(kind)
-        laws["armature"] = self._armature(node, joint)
+        motion: MotionType = "prismatic" if kind == "prismatic" else "revolute"
         where = anchor if motion == "revolute" else vector(np.zeros(3))
-        return Motion(name, motion, node.place, along, where, limits=_limits(node, kind), **laws)
-
-    def _armature(self, axis: Node, joint: Node) -> Number:
-        """Of a rotor behind gears, n^2 I, as Drake has it."""
-        holder = axis if axis.one("rotor_inertia") is not None else joint
-        inertia, ratio = (value(_number(holder, tag, x)) for tag, x in (("rotor_inertia", "0"), ("gear_ratio", "1")))
-        if inertia:
-            self.report.merged(holder.place, f"the rotor inertia {inertia:g} by {ratio:g} squared is an armature")
-        return decimal_of(ratio**2 * inertia)
-
-    def _laws(self, axis: Node) -> dict[str, Number]:
-        dynamics = axis.one("dynamics")
-        if dynamics is None:
-            return {}
-        if value(_number(dynamics, "friction")):
-            message = "dry friction is not read: add a load of the type 'friction', with a velocity, for it"
-            self.report.lost(dynamics.place, message)
-        names = {"damping": "damping", "rest": "spring_reference", "stiffness": "spring_stiffness"}
-        return {ours: _number(dynamics, theirs) for ours, theirs in names.items()}
+        laws = laws_of(node, joint, self.report)
+        return Motion(name, motion, node.place, along, where, limits=limits_of(node, kind, self.report), **laws)
 
     def _root(self, name: str, node: Node) -> Link:
         """A link that no joint carries."""
@@ -261,39 +248,29 @@ class _Reader:
     def _inertial(self, node: Node) -> Inertial:
         """Mass, mass centre and R I R^T."""
         own = node.one("inertial")
+        if own is None or own.one("inertia") is None:
+            message = (
+                "no <inertia>: the default of the format, 1 kg m^2 about each axis (and 1 kg where no mass is given)"
+            )
+            self.report.warning(node.place, message, "physics")
         if own is None:
-            # the default of the format
-            return Inertial(decimal_of(1.0), inertia=(decimal_of(1.0),) * 3 + (ZERO,) * 3)
+            return Inertial(ONE, inertia=(ONE,) * 3 + (ZERO,) * 3)
         if own.one("fluid_added_mass") is not None:
             self.report.lost(own.place, "the mass added by a fluid is left out: it differs from axis to axis")
-        if own.attributes.get("auto", "false") in _TRUE:
+        if is_true(own.attributes.get("auto", "")):
             message = "auto: the mass of shapes is not read; give mass and inertia (gz sdf -p prints them)"
             raise refuse(own.place, "not-read", message)
         pose = framed(own.one("pose"), "", own.place)
         if pose.relative_to:
             raise refuse(own.place, "not-read", "the pose of an <inertial> has no relative_to")
-        mass = _number(own, "mass", "1")
-        inertia = own.one("inertia")
+        mass = number(own, "mass", "1")
+        inertia = own.one("inertia") or Node("inertia", {}, own.line)
         defaults = {"ixx": "1", "iyy": "1", "izz": "1"}
         names = ("ixx", "iyy", "izz", "ixy", "ixz", "iyz")
-        if inertia is None:
-            raise refuse(own.place, "missing-element", "<inertia> is needed")
-        six: tuple[Number, ...] = tuple(_number(inertia, n, defaults.get(n, "0")) for n in names)
+        six: tuple[Number, ...] = tuple(number(inertia, n, defaults.get(n, "0")) for n in names)
         six = turned_inertia(six, pose.R)
         judge(own.place, mass, vector(pose.r), six, self.report)
         return Inertial(mass, vector(pose.r), six)
-
-
-def _kind(kind: str) -> MotionType:
-    return "prismatic" if kind == "prismatic" else "revolute"
-
-
-def _limits(axis: Node, kind: str) -> tuple[Number, Number] | None:
-    limit = axis.one("limit")
-    if limit is None or kind == "continuous":
-        return None
-    low, high = _number(limit, "lower", "-1e16"), _number(limit, "upper", "1e16")
-    return None if abs(value(low)) >= 1e16 or abs(value(high)) >= 1e16 else (low, high)
 
 
 def _text(node: Node, tag: str) -> str:
@@ -302,8 +279,3 @@ def _text(node: Node, tag: str) -> str:
     if not name:
         raise refuse(node.place, "missing-element", f"<{tag}> is needed")
     return name
-
-
-def _number(node: Node, tag: str, default: str = "0") -> Number:
-    found = node.one(tag)
-    return number_of(default if found is None else found.text, node.place if found is None else found.place, tag)

@@ -8,7 +8,7 @@ from typing import Any
 
 import sympy
 from sympy.physics.mechanics import Force, Particle, PinJoint, PrismaticJoint, RigidBody, System, WeldJoint
-from sympy.physics.vector import ReferenceFrame, dynamicsymbols
+from sympy.physics.vector import ReferenceFrame, Vector, dynamicsymbols
 
 from substructures.errors import InvalidArgument
 from substructures.interchange.symbolic.texts import expression_of, from_sympy
@@ -70,7 +70,7 @@ def tree_of_system(system: Any, name: str = "system", names: Mapping[Any, str] |
     if not isinstance(system, System):
         raise _refused(f"a {type(system).__name__}", "does not know its joints: give the System that it comes from")
     reader, world, joints = _Reader(names or {}), _Reader(names or {}), list(system.joints)
-    for kind in ("holonomic_constraints", "nonholonomic_constraints", "actuators"):
+    for kind in ("holonomic_constraints", "nonholonomic_constraints", "velocity_constraints", "actuators"):
         if more := list(getattr(system, kind)):
             raise _refused(kind.replace("_", " "), f"are not taken over: {more[0]}")
     seats = {_root(system, joints): _Seat("base", system.frame, system.fixed_point)}
@@ -95,6 +95,12 @@ def _root(system: Any, joints: list[Any]) -> Any:
         names = ", ".join(sorted(str(each.name) for each in roots)) or "none"
         raise _refused("the joints", f"make no tree with one root (roots: {names}; a body has one parent)")
     (root,) = roots
+    try:
+        root.masscenter.pos_from(system.fixed_point)
+    except ValueError:
+        raise _refused(
+            f"body '{root.name}'", "is on no joint, and not at the fixed point: System.from_newtonian"
+        ) from None
     for body in system.bodies:
         if body is not root and body not in children:
             raise _refused(f"body '{body.name}'", "is on no joint")
@@ -145,18 +151,15 @@ def _inertia(reader: _Reader, body: Any, seat: _Seat) -> Plain:
 
 
 def _gravity(reader: _Reader, system: Any, seats: Mapping[Any, _Seat]) -> list[str | int]:
-    """In axes of the root; every body has to have the same."""
+    """In axes of the root; every body has to have the same, but for the root, which stands still."""
     forces: dict[Any, Any] = {}
     for load in system.loads:
         if not isinstance(load, Force):
             raise _refused(f"the load {load}", "is no force of gravity")
-        forces[load.point] = forces.get(load.point, 0) + load.force
+        forces[load.point] = forces.get(load.point, Vector(0)) + load.force
     frame: ReferenceFrame = system.frame
-    found = [
-        (forces.pop(body.masscenter).to_matrix(frame) / body.mass).applyfunc(sympy.simplify)
-        for body in seats
-        if body.masscenter in forces
-    ]
-    if forces or any(each != found[0] for each in found) or (found and len(found) < len(seats) - 1):
+    weights = [(body.mass, forces.pop(body.masscenter, Vector(0)).to_matrix(frame)) for body in seats][1:]  # no root's
+    g = next((force / mass for mass, force in weights if mass != 0), sympy.zeros(3, 1)).applyfunc(sympy.simplify)
+    if forces or any(sympy.simplify(force - mass * g) != sympy.zeros(3, 1) for mass, force in weights):
         raise _refused("the loads", "are not the gravity of all bodies; give others as loads of the tree")
-    return [reader.text(x, "gravity") for x in found[0]] if found else [0, 0, 0]
+    return [reader.text(x, "gravity") for x in g]

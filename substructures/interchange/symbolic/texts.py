@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Mapping
 from typing import Any
@@ -131,4 +132,6 @@ class _Printer(StrPrinter):  # type: ignore[misc]
         return "exp(1)"
 
     def _print_Float(self, node: Any) -> str:
+        if math.isinf(float(node)):
+            raise _refused(node, "is beyond the range of doubles")
         return repr(float(node))

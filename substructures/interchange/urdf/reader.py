@@ -14,7 +14,7 @@ from substructures.errors import among, meant
 from substructures.interchange.bindings import mimic_of
 from substructures.interchange.known.check import acting
 from substructures.interchange.known.urdf import URDF
-from substructures.interchange.merge import judge
+from substructures.interchange.merge import judge, ordered_limits
 from substructures.interchange.numbers import (
     ONE,
     ORIGIN,
@@ -157,9 +157,13 @@ def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Repor
         motions = _planar(joint)
     elif joint.type != "fixed":
         motions = (_motion(joint, rotors.get(joint.name, ZERO), report),)
-    if motions and joint.type not in _MOTION and not is_zero(_damping(joint.node, report)):
-        message = f"damping of a {joint.type} joint is not read: add loads for it"
-        report.lost(joint.node.place, message)
+    if motions and joint.type not in _MOTION:
+        if not is_zero(_damping(joint.node, report)):
+            message = f"damping of a {joint.type} joint is not read: add loads for it"
+            report.lost(joint.node.place, message)
+        for limit in joint.node.all("limit"):
+            if {"lower", "upper"} & limit.attributes.keys():
+                report.lost(limit.place, f"limits of a {joint.type} joint are not read: it moves anywhere here")
     is_shown = any(node.all("visual", "collision"))
     inertial = _inertial(node, report)
     return Link(joint.child, joint.parent, node.place, position, rpy, motions, inertial, joint.name, is_shown)
@@ -211,13 +215,11 @@ def _limits(joint: _Joint, report: Report) -> tuple[Number, Number] | None:
     limit = joint.node.one("limit")
     if limit is None:
         return None
+    if joint.type == "continuous" or not {"lower", "upper"} & limit.attributes.keys():
+        return None
     low, high = limit.number("lower", ZERO), limit.number("upper", ZERO)
-    if joint.type == "continuous" or (is_zero(low) and is_zero(high)):
-        return None
-    if value(low) > value(high):
-        report.warning(limit.place, f"the lower limit {low} is above the upper one {high}: limits are left out")
-        return None
-    return low, high
+    found = ordered_limits(limit.place, low, high, report)
+    return None if is_zero(low) and is_zero(high) else found
 
 
 def _mimic(joint: _Joint, single: Mapping[str, bool], report: Report) -> list[Mimic]:

@@ -46,12 +46,15 @@ def degrees_of(prim: Prim, report: Report) -> tuple[Kind, tuple[Degree, ...]]:
     """
     name = str(prim.GetTypeName())
     if name in _NONE:
+        if _NONE[name] == "spherical":
+            _tell_of_ranges(prim, report)
         return _NONE[name], ()
     if name in _ONE:
         axis = given(prim, "physics:axis", "str")
         if axis not in tuple(_AXES):
             raise refuse(place_of(prim), "bad-value", f"physics:axis is '{axis[:20]}', and none of {', '.join(_AXES)}")
         drive = "angular" if _ONE[name] == "revolute" else "linear"
+        _tell_of_ranges(prim, report, drive)
         limits = ("physics:lowerLimit", "physics:upperLimit")
         return "chain", (Degree(_ONE[name], _AXES.index(axis), limits, drive),)
     slides, turns = ([x for x in _AXES if not _is_locked(prim, f"{way}{x}")] for way in ("trans", "rot"))
@@ -90,10 +93,9 @@ def _is_locked(prim: Prim, name: str) -> bool:
     return bool(low >= high)
 
 
-def _tell_of_ranges(prim: Prim, report: Report) -> None:
-    """Of what turns freely."""
-    physics = package("UsdPhysics")
-    for what, api in (("ranges", physics.LimitAPI), ("drives", physics.DriveAPI)):
-        if api.GetAll(prim):
-            message = f"the {what} of a joint that turns about all axes are left out: add loads that act as they do"
-            report.lost(place_of(prim), message)
+def _tell_of_ranges(prim: Prim, report: Report, own: str = "") -> None:
+    """Of what turns freely, or of axes beside its ``own``."""
+    which = f"other than '{own}' of a joint about one axis" if own else "of a joint that turns about all axes"
+    for what, api in (("ranges", "PhysicsLimitAPI:"), ("drives", "PhysicsDriveAPI:")):
+        if any(each.startswith(api) and each != f"{api}{own}" for each in prim.GetAppliedSchemas()):
+            report.lost(place_of(prim), f"the {what} {which} are left out: add loads that act as they do")

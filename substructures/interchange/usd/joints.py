@@ -16,7 +16,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import among
-from substructures.interchange.merge import vector
+from substructures.interchange.merge import ordered_limits, vector
 from substructures.interchange.numbers import ZERO, Number, angle, decimal_of, direction
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Loop, Motion
@@ -91,13 +91,14 @@ class Joint:
         if all(map(math.isinf, ends)):
             return None
         place = place_of(self.prim)
-        if any(map(math.isinf, ends)) or ends[0] > ends[1]:
-            report.warning(place, f"the limits {ends[0]:g}, {ends[1]:g} are not two in order: they are left out")
+        if any(map(math.isinf, ends)):
+            report.warning(place, "one limit alone is left out: give both, lower and upper")
             return None
         low, high = (written(x, place) for x in ends)
         if degree.type == "prismatic":
-            return low * scene.units.length, high * scene.units.length
-        return angle(decimal_of(float(low) / _DEGREES)), angle(decimal_of(float(high) / _DEGREES))
+            return ordered_limits(place, low * scene.units.length, high * scene.units.length, report)
+        low, high = (decimal_of(float(x) / _DEGREES) for x in (low, high))
+        return ordered_limits(place, angle(low), angle(high), report)
 
     def _drive(self, degree: Degree, scene: Scene, report: Report) -> dict[str, Any]:
         """k (target - q) - d q' of the drive, as spring and damper."""

@@ -106,17 +106,24 @@ class _Reader:
         self.links.append(link)
 
     def _inertial(self, path: str, shown: bool) -> Inertial:
-        """Of the body, or the sum of what hangs on it."""
-        prim = self.scene.bodies[path]
-        found = [each for each in self.scene.below(path) if self._mass(each)]
-        own = found[:1] if found and str(found[0].GetPath()) == path else found
-        return together([self._weighed(each, shown) for each in own]) if own else self._unweighed(prim)
-
-    def _unweighed(self, prim: Prim) -> Inertial:
-        if any(each.GetAttribute("physics:density").Get() for each in self.scene.below(str(prim.GetPath()))):
+        """Of the body, or the sum of what hangs on it; told where the format computes more of the shapes."""
+        prim, below = self.scene.bodies[path], list(self.scene.below(path))
+        found = [each for each in below if self._mass(each)]
+        if prim in found:
+            return self._weighed(prim, shown)
+        if any(self._has_density(each) and not _is_on(each, found) for each in below):
             message = "masses of shapes by a density are not computed: give the body physics:mass"
             self.report.lost(place_of(prim), message, "physics")
-        return Inertial()
+        if prim.HasAPI(package("UsdPhysics").MassAPI) and any(x and math.isfinite(x) for x in _distribution(prim)):
+            message = "centerOfMass and diagonalInertia of a body without mass are left out: give it physics:mass"
+            self.report.lost(place_of(prim), message, "physics")
+        return together([self._weighed(each, shown) for each in found])
+
+    def _has_density(self, prim: Prim) -> bool:
+        """Whether it has a mass by a density: its own, or that of the format, which every shape in contacts has."""
+        physics = package("UsdPhysics")
+        collides = prim.HasAPI(physics.CollisionAPI) and given(prim, "physics:collisionEnabled", "bool")
+        return bool(collides or prim.GetAttribute("physics:density").Get())
 
     def _mass(self, prim: Prim) -> Number:
         if not prim.HasAPI(package("UsdPhysics").MassAPI):
@@ -160,7 +167,12 @@ class _Reader:
 
     def _acting(self) -> Iterator[tuple[Prim, str]]:
         """What other programs say of the mechanics, and bodies that are moved by hand."""
+        joint, copies = package("UsdPhysics").Joint, package("UsdGeom").PointInstancer
         for prim in self.scene.prims:
+            kind = str(prim.GetTypeName())
+            is_other = any(word in kind for word in ("Joint", "Tendon", "Equality")) and not prim.IsA(joint)
+            if is_other or (prim.IsA(copies) and any(_is_on(body, [prim]) for body in self.scene.bodies.values())):
+                yield prim, kind
             for attribute in prim.GetAuthoredAttributes():
                 space, _, name = attribute.GetName().rpartition(":")
                 is_own = not space or space.split(":")[0] in _OWN
@@ -169,5 +181,13 @@ class _Reader:
                 ):
                     yield prim, attribute.GetName()
             for schema in prim.GetAppliedSchemas():
-                if "Mimic" in schema or "Tendon" in schema:
+                if any(word in schema for word in ("Mimic", "Tendon", "Equality")):
                     yield prim, schema
+
+
+def _distribution(prim: Prim) -> list[float]:
+    return [x for name in ("centerOfMass", "diagonalInertia") for x in given(prim, f"physics:{name}", "Vec3f")]
+
+
+def _is_on(prim: Prim, others: list[Prim]) -> bool:
+    return any(prim.GetPath().HasPrefix(other.GetPath()) for other in others)
