@@ -21,6 +21,7 @@ from substructures.analysis.equations.symmetries import Direction
 from substructures.analysis.simulate import Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.expr.calculus.corners import VanishingOnAllSides
+from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 
 NONE, FALL = (0, 0, 0), (0, 0, "-9.81")
@@ -62,6 +63,18 @@ def test_formulas_are_not_looked_through_where_the_metric_joins_all(monkeypatch:
     model = catalogue_model("double-pendulum", (0, "-9.8", 0))
     monkeypatch.setattr(subsystems, "reachable", None)
     assert "energy" in constants(model)
+
+
+def test_one_slope_shows_that_a_coordinate_varies(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked, vanishes = list[Expr](), VanishingOnAllSides.__call__
+
+    def noted(test: VanishingOnAllSides, x: Expr) -> bool:
+        looked.append(x)
+        return vanishes(test, x)
+
+    monkeypatch.setattr(VanishingOnAllSides, "__call__", noted)
+    constants(catalogue_model("puma560", (0, "-9.8", 0)))
+    assert len(looked) < 60
 
 
 def test_what_falls_does_not_hide_what_is_constant() -> None:

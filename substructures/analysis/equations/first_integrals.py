@@ -152,11 +152,10 @@ class _Search:
         """p_c for every coordinate c that neither metric nor forces depend on."""
         f = self.f
         forces, slopes = f.vector("forces"), f.metric_slopes
-        varied = {c for (_, _, c), x in slopes.items() if not self.vanishes(x)}
-        # dphi_k/dq^c = G_kc, or B_kc
-        varied |= {c for (_, c), x in f.constraint_rows.items() if not self.vanishes(x)}
-        rows = gradient(f.drives, f.model.coordinates)
-        varied |= {c for row in rows for c, x in enumerate(row) if not self.vanishes(x)}
+        # d_c g_ab, dphi_k/dq^c = G_kc or B_kc, and derivatives of what motions are given: one that is not 0 is enough
+        by = [(index[-1], x) for some in (slopes, f.constraint_rows) for index, x in some.items()]
+        by += [pair for row in gradient(f.drives, f.model.coordinates) for pair in enumerate(row)]
+        varied = {c for c in range(f.n) if any(e == c and not self.vanishes(x) for e, x in by)}
         for c, name in enumerate(f.model.coordinates):
             if c not in varied and self.vanishes(forces[c]):
                 self.cyclic_names.append(name)
