@@ -179,7 +179,7 @@ class Graph:
         Python's collector would have to find."""
         for known in (self.nodes, self.table, self.others, self.numbers, self.symbols):
             known.clear()
-        del self.zero, self.one
+        del self.zero, self.one, self.stand_ins
 
     def number(self, value: ExactNumber) -> Expr:
         """An exact constant; a Decimal is taken as its decimal text. Floats are refused.

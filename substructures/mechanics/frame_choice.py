@@ -39,7 +39,7 @@ Moment = Callable[[Vector], Vector]
 Shape = tuple[int, int, tuple[tuple[int, ...], ...], tuple[int, int, int]]
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True, unsafe_hash=True)  # a frozen one takes twice the time to make
 class Count:
     """A scalar of which the kind is known, and what it was made of in how many operations per state.
 
@@ -51,16 +51,16 @@ class Count:
     tally: Tally = field(repr=False, compare=False)
 
     def __add__(self, other: Scalar) -> Count:
-        x, y = self, self.tally.of(other)
-        return y if x.kind == ZERO_ else x if y.kind == ZERO_ else self.tally.joined(x, y)
+        y = other if type(other) is Count else self.tally.of(other)
+        return y if self.kind == ZERO_ else self if y.kind == ZERO_ else self.tally.joined(self, y)
 
     __radd__ = __sub__ = __rsub__ = __add__
 
     def __mul__(self, other: Scalar) -> Count:
-        x, y = self, self.tally.of(other)
-        if ZERO_ in (x.kind, y.kind):
-            return self.tally.scalars[ZERO_]
-        return y if x.kind == ONE else x if y.kind == ONE else self.tally.joined(x, y)
+        y = other if type(other) is Count else self.tally.of(other)
+        if self.kind <= ONE or y.kind == ZERO_:
+            return y if self.kind == ONE else self.tally.scalars[ZERO_]
+        return self if y.kind == ONE else self.tally.joined(self, y)
 
     __rmul__ = __mul__
 
@@ -83,7 +83,7 @@ class Tally:
 
     def joined(self, x: Count, y: Count) -> Count:
         """The result of an operation that does not fold away: of constants it is one, and costs nothing per state."""
-        if max(x.kind, y.kind) < STATE:
+        if x.kind < STATE and y.kind < STATE:
             return self.scalars[CONSTANT]
         self.operations.append((x.index, y.index))
         return Count(len(self.operations) - 1, STATE, self)
@@ -101,9 +101,11 @@ class Tally:
                 wanted[x.index - first] = True
         for i in reversed(range(len(wanted))):
             if wanted[i]:
-                for operand in self.operations[first + i]:
-                    if operand >= first:
-                        wanted[operand - first] = True
+                a, b = self.operations[first + i]
+                if a >= first:
+                    wanted[a - first] = True
+                if b >= first:
+                    wanted[b - first] = True
         return sum(wanted[: end - first])
 
 

@@ -188,9 +188,12 @@ class Part:
 
     def labels(self, axis: str) -> tuple[str, ...]:
         """What the indices along an axis of :meth:`axes_of` mean: bodies that joints carry, ports, coordinates."""
+        return self._labels.get(axis, ())
+
+    @cached_property
+    def _labels(self) -> dict[str, tuple[str, ...]]:
         movers = tuple(self._joint_bodies[a] for a in self.topology.movers)
-        known = {"joint": self._joint_bodies, "mover": movers, "port": self.ports, "coordinate": self.coordinates}
-        return known.get(axis, ())
+        return {"joint": self._joint_bodies, "mover": movers, "port": self.ports, "coordinate": self.coordinates}
 
     def axes_of(self, name: str) -> tuple[str, ...]:
         """What the leading axes of an output are; ``mover``: joints that have a coordinate, where others move along."""

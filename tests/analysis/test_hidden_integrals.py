@@ -15,12 +15,13 @@ from random_trees import Plain, model_of, random_states
 
 from benchmarks.chains import chain, general_rows, row_of
 from substructures import InvalidArgument, Model, couple, derive
-from substructures.analysis.equations import integral_search
+from substructures.analysis.equations import integral_search, subsystems
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.symmetries import Direction
 from substructures.analysis.simulate import Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.expr.calculus.corners import VanishingOnAllSides
+from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 
 NONE, FALL = (0, 0, 0), (0, 0, "-9.81")
@@ -56,6 +57,24 @@ def test_two_pendulums_have_two_energies() -> None:
     model = pendulums()
     assert constants(model) == {"energy": "energy", "energy.x.a": "subsystem", "energy.x.b": "subsystem"}
     assert_held(model)
+
+
+def test_formulas_are_not_looked_through_where_the_metric_joins_all(monkeypatch: pytest.MonkeyPatch) -> None:
+    model = catalogue_model("double-pendulum", (0, "-9.8", 0))
+    monkeypatch.setattr(subsystems, "reachable", None)
+    assert "energy" in constants(model)
+
+
+def test_one_slope_shows_that_a_coordinate_varies(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked, vanishes = list[Expr](), VanishingOnAllSides.__call__
+
+    def noted(test: VanishingOnAllSides, x: Expr) -> bool:
+        looked.append(x)
+        return vanishes(test, x)
+
+    monkeypatch.setattr(VanishingOnAllSides, "__call__", noted)
+    constants(catalogue_model("puma560", (0, "-9.8", 0)))
+    assert len(looked) < 60
 
 
 def test_what_falls_does_not_hide_what_is_constant() -> None:

@@ -9,9 +9,9 @@ from typing import Any
 
 import pytest
 
-from substructures import Definition, InvalidDocument, TreeSpec, catalogue, couple, derive
+from substructures import Definition, InvalidDocument, TreeSpec, catalogue, couple, derive, simulate
 from substructures.expr.garbage import without_collections
-from substructures.expr.graph import Graph
+from substructures.expr.graph import Expr, Graph
 
 ARM = Definition.read(catalogue.load("puma560"))
 TREE = TreeSpec.read({"name": "t", "instances": [{"name": "a", "substructure": "puma560"}]})
@@ -43,6 +43,25 @@ def test_nothing_is_collected_meanwhile(coupled: bool, collections: list[int]) -
     # at the end the nodes that were made are looked through, once
     assert len(collections) <= 2
     assert gc.isenabled()
+
+
+def test_first_motions_do_not_look_for_garbage(collections: list[int]) -> None:
+    model = couple(TREE, {"a": derive(ARM)})
+    gc.collect()
+    collections.clear()
+    assert simulate(model, [0.1] * 6, (0, 0.1)).is_right
+    assert len(collections) <= 4
+
+
+def test_formulas_of_motions_leave_no_nodes() -> None:
+    model = couple({"name": "t", "instances": [{"name": "a", "substructure": "ur5"}]}, {"a": derive("ur5")})
+    gc.collect()
+    gc.disable()
+    try:
+        assert simulate(model, [0.1] * model.dof, (0, 0.1)).is_right
+        assert sum(isinstance(x, Expr) for x in gc.get_objects()) < 250
+    finally:
+        gc.enable()
 
 
 def test_the_graph_is_found_at_once() -> None:

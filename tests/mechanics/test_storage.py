@@ -70,6 +70,7 @@ def test_the_index_of_stored_formulas() -> None:
         f = found[place]
         assert (f.quantity, f.body, f.coordinate, f.shape, f.symmetry) == expected, place
     assert found["subtree.m", (0,)].operations == 1
+    assert part.labels("mover") is part.labels("mover")  # found once for all formulas
     elements = {(name, i) for name, output in part.program.outputs.items() for i in output.index}
     lists = ("tilt", "turn", "full", "frame.", "load.")
     covered = {(f.output, i) for f in found.values() for _, i in elements if i[: len(f.index)] == f.index}

@@ -33,6 +33,7 @@ from substructures.certificate.derived.integrals import constant
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.calculus.corners import VanishingOnAllSides, corners
 from substructures.expr.differentiate import directional, gradient
+from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, array, program
 from substructures.expr.walk import transfer
@@ -44,7 +45,7 @@ from substructures.tree.model_outputs import KINEMATICS
 
 Names = frozenset[str]
 AXES = "xyz"
-UNITS = {"linear_momentum": "N s", "angular_momentum": "N m s"}
+UNITS: dict[IntegralKind, str] = {"linear_momentum": "N s", "angular_momentum": "N m s"}
 MOMENTA = [f"{name}{given}" for name in UNITS for given in ("", "_0")]
 
 
@@ -81,6 +82,7 @@ def acting_inputs(model: Model) -> list[str]:
 
 
 @lru_cache(maxsize=32)
+@without_collections
 def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegrals:
     model: Model = known.source
     tied = constraints_of(model)
@@ -88,17 +90,17 @@ def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegra
     f = formulas_of(model, tied, unused | zero)
     search = _Search(f)
     search.energy(given)
-    search.momenta()
+    freely = search.momenta()
     search.cyclic()
-    search.further(given)
+    search.further(given, freely)
     searched = search.beyond(degree)
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
     integrals = tuple(i for i, _ in search.found)
     result, rows = program(f.graph, outputs, f.symbols), f.multipliers
-    told = [vars(each) for each in integrals]
-    expectation = constant(result, told, rows, rows_expected(f, result), model.balls)
+    expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result), model.balls)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
+    f.graph.release()
     result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
     return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
 
@@ -118,15 +120,15 @@ class _Search:
         if judged is not None:
             self.found.append((Integral("energy", "energy", judged[0], "J", judged[1]), self.f.energy))
 
-    def further(self, given: frozenset[str]) -> None:
+    def further(self, given: frozenset[str], freely: FreeMotion | None) -> None:
         """Those beside the momenta that are no combinations of them and of their products; none at given motions."""
-        if self.f.model.given:
+        if freely is None:
             return
         for integral, value in self.found:
             if integral.rule == "constant" and integral.kind != "energy":
                 self.generators.add(value)
         blocks = subsystems(self.f, self.vanishes, given) if self.f.is_scleronomic else ()
-        for integral, value in chain(self.freely.spin(), blocks):
+        for integral, value in chain(freely.spin(), blocks):
             self._note_new(integral, value)
 
     def beyond(self, degree: int) -> tuple[int, str]:
@@ -150,11 +152,10 @@ class _Search:
         """p_c for every coordinate c that neither metric nor forces depend on."""
         f = self.f
         forces, slopes = f.vector("forces"), f.metric_slopes
-        varied = {c for (_, _, c), x in slopes.items() if not self.vanishes(x)}
-        # dphi_k/dq^c = G_kc, or B_kc
-        varied |= {c for (_, c), x in f.constraint_rows.items() if not self.vanishes(x)}
-        rows = gradient(f.drives, f.model.coordinates)
-        varied |= {c for row in rows for c, x in enumerate(row) if not self.vanishes(x)}
+        # d_c g_ab, dphi_k/dq^c = G_kc or B_kc, and derivatives of what motions are given: one that is not 0 is enough
+        by = [(index[-1], x) for some in (slopes, f.constraint_rows) for index, x in some.items()]
+        by += [pair for row in gradient(f.drives, f.model.coordinates) for pair in enumerate(row)]
+        varied = {c for c in range(f.n) if any(e == c and not self.vanishes(x) for e, x in by)}
         for c, name in enumerate(f.model.coordinates):
             if c not in varied and self.vanishes(forces[c]):
                 self.cyclic_names.append(name)
@@ -190,8 +191,8 @@ class _Search:
                 return
         self.found.append((integral, value))
 
-    def momenta(self) -> None:
-        """Of the whole system along, and about, the axes of the world and the direction of a constant force."""
+    def momenta(self) -> FreeMotion | None:
+        """Of the whole along, and about, axes of the world and a constant force; what moves freely, if it may."""
         # p = sum_a p_a q'^a, L = sum_a L_a q'^a and their derivatives along the equations of motion
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self.f.rate([*linear, *angular])
@@ -206,10 +207,11 @@ class _Search:
         if not all(self.vanishes(rate) for rate in rates):
             self._along_axes(linear, angular)
         if self.f.model.given:
-            return
-        self.freely = FreeMotion(self.f, linear, angular, constant, self._constant, self.vanishes)
-        for integral, value in self.freely.with_time():
+            return None
+        freely = FreeMotion(self.f, linear, angular, constant, self._constant, self.vanishes)
+        for integral, value in freely.with_time():
             self._note(integral, value)
+        return freely
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
@@ -233,10 +235,11 @@ class _Search:
     def _constant(self, expr: Expr) -> Expr | None:
         """The value of a formula that depends on parameters only, else None."""
         states = frozenset(s.name for s in self.f.symbols.values() if s.kind != "parameter")
-        if not depends_on([expr], states):
+        varied = self.vanishes.smooth.varies(expr, states)
+        if not varied and not depends_on([expr], states):
             return expr
         # a jump has no derivative that tells of it
-        if self.vanishes.smooth.varies(expr, states) or corners([expr]):
+        if varied or corners([expr]):
             return None
         # dx = 0 for all changes of the state
         seeds = {name: self.f.graph.symbol(f"d.{name}") for name in states}
@@ -270,11 +273,7 @@ class _Search:
     def _along_axes(self, linear: Sequence[Expr], angular: Sequence[Expr]) -> None:
         """Along and about the axes of joints that keep their direction, through the origin."""
         for name, axis in self._axes():
-            momenta: list[tuple[IntegralKind, Sequence[Expr]]] = [
-                ("linear_momentum", linear),
-                ("angular_momentum", angular),
-            ]
-            for kind, some in momenta:
+            for kind, some in zip(UNITS, (linear, angular), strict=True):
                 # p . e, L . e
                 value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))
                 if self.vanishes(self.f.rate([value])[0]):

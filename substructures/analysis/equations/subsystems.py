@@ -65,6 +65,8 @@ def _blocks(f: ModelFormulas) -> list[list[int]]:
             if block[other] is not block[first]:
                 joined = block[first] | block[other]
                 block |= dict.fromkeys(joined, joined)
+        if len(block[first]) == f.n:
+            break
     return [sorted(b) for a, b in block.items() if a == min(b)]
 
 
@@ -79,8 +81,9 @@ def _mixed(f: ModelFormulas) -> Iterator[list[int]]:
     def within(x: Expr) -> set[int]:
         return {place[str(n.value)] for n in reachable([x]) if n.op == "sym" and str(n.value) in place}
 
-    for (a, b), x in f.elements("metric").items():
-        yield [a, b, *within(x)]
+    yield from map(list, f.elements("metric"))  # where these join all, nothing else is looked at
+    for (a, _), x in f.elements("metric").items():
+        yield [a, *within(x)]
     for a, x in enumerate(f.vector("forces")):
         yield [a, *within(x)]
     rows: dict[int, set[int]] = {}

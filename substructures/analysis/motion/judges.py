@@ -96,7 +96,9 @@ def _in_one(integrals: Known, model: Known) -> Program:
     graph, source = Graph(), model.source.program
     outputs = replay(integrals.source, graph, {})
     outputs |= {_size(name): one for name, one in replay(source, graph, {}, SCALES).items()}
-    return program(graph, outputs, {s.name: s for s in (*source.symbols, *integrals.source.symbols)})
+    found = program(graph, outputs, {s.name: s for s in (*source.symbols, *integrals.source.symbols)})
+    graph.release()
+    return found
 
 
 def _size(name: str) -> str:

@@ -23,6 +23,7 @@ from substructures.certificate.derived.model_formulas import simulated
 from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
+from substructures.expr.garbage import without_collections
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
@@ -43,6 +44,7 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
         POWER: array((), lambda: power),
     }
     result = program(f.graph, outputs, f.symbols)
+    f.graph.release()
     return certified(result, model, simulated, "equations of motion", zero=f.zero)
 
 
@@ -52,6 +54,7 @@ def _forward_program(model: Known, zero: frozenset[str]) -> Program:
 
 
 @lru_cache(maxsize=32)
+@without_collections
 def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
     return compile_program(_forward_program(model, zero), (ACCELERATION, PIVOTS, POWER), folder)
 

@@ -17,8 +17,7 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable
-from fractions import Fraction
-from secrets import SystemRandom
+from random import Random
 from typing import Any
 
 import flint
@@ -55,8 +54,8 @@ class Vanishing:
     """The test for the formulas of one graph; values of nodes at its points are kept."""
 
     def __init__(self, graph: Graph) -> None:
-        self.graph, self.random = graph, SystemRandom()
-        self.symbols: list[dict[Expr, Fraction]] = [{} for _ in range(POINTS)]
+        self.graph, self.random = graph, Random()  # noqa: S311 -- seeded by the system; no point is told
+        self.symbols: list[dict[Expr, flint.fmpq]] = [{} for _ in range(POINTS)]
         self.values: dict[tuple[int, int], dict[Expr, Any]] = {}
         self.sizes: dict[tuple[int, int], dict[Expr, Any]] = {}
         self.moved: dict[frozenset[str], dict[Expr, Any]] = {}
@@ -65,7 +64,7 @@ class Vanishing:
         """True for the zero function, False for another one, None where neither is known."""
         if expr.is_zero:
             return True
-        seen: list[dict[Expr, Fraction]] = []
+        seen: list[dict[Expr, flint.fmpq]] = []
         looks = [PRECISION]
         for point in range(POINTS):
             verdict = self._at(expr, point, looks)
@@ -107,36 +106,36 @@ class Vanishing:
                 small = bool(value.rad() < size * flint.arb(2) ** (GUARD - precision))
         return True if small else None
 
-    def _value(self, expr: Expr, known: dict[Expr, Any], symbols: dict[Expr, Fraction]) -> Any:
+    def _value(self, expr: Expr, known: dict[Expr, Any], symbols: dict[Expr, flint.fmpq]) -> Any:
         """The value; what is ``known`` below it is not looked at."""
         for node in reachable([expr], known.__contains__):
             if node not in known:
                 known[node] = self._operation(node, known, symbols)
         return known[expr]
 
-    def _operation(self, node: Expr, known: dict[Expr, Any], symbols: dict[Expr, Fraction]) -> Any:
+    def _operation(self, node: Expr, known: dict[Expr, Any], symbols: dict[Expr, flint.fmpq]) -> Any:
         if node.is_number or node.op == "sym":
             if node.op == "sym" and node not in symbols:
                 for point, x in zip(self.symbols, self._drawn(), strict=True):
                     point[node] = x
-            x = Fraction(node.value) if node.is_number else symbols[node]
-            return flint.arb(flint.fmpq(x.numerator, x.denominator))
+            x = flint.fmpq(node.value.numerator, node.value.denominator) if node.is_number else symbols[node]
+            return flint.arb(x)
         args = [known[a] for a in node.args]
         function = _OPERATIONS.get(node.op)
         return function(*args) if function else getattr(args[0], node.op)()
 
-    def _drawn(self) -> list[Fraction]:
+    def _drawn(self) -> list[flint.fmpq]:
         """A random number for every point: of every two decades between 10^-6 and 10^6 one of either sign.
 
         Left to chance, one in thirty times no point would lie at x < -1, say, where sqrt((x + 1)^2) is not x + 1.
         """
         half = POINTS // 2
-        signs = [self.random.choice((-1, 1)) for _ in range(half)]
+        signs = self.random.choices((-1, 1), k=half)
         orders = [(k, sign * signs[k]) for sign in (1, -1) for k in self.random.sample(range(half), half)]
         return [sign * self._magnitude(2 * k - DECADES + self.random.randrange(2)) for k, sign in orders]
 
-    def _magnitude(self, power: int) -> Fraction:
-        return Fraction(self.random.randrange(10**9, 10**10), 10**9) * Fraction(10) ** power
+    def _magnitude(self, power: int) -> flint.fmpq:
+        return flint.fmpq(self.random.randrange(10**9, 10**10), 10**9) * flint.fmpq(10) ** power
 
 
 def _size(expr: Expr, sizes: dict[Expr, Any], known: dict[Expr, Any]) -> Any:
