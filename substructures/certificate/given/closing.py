@@ -31,7 +31,7 @@ PRIMES = ("", "'", "''")
 #: starts that are tried, and steps of Newton's method from each
 STARTS, MANY, STEPS = 5, 40, 12
 #: steps from the start to where independent coordinates are
-WAY = 24
+WAY = 12
 #: of what no closure depends on, beside masses
 LAWS = frozenset(("stiffness", "rest", "damping", "armature", "limits", "friction"))
 

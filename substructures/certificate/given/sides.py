@@ -40,12 +40,13 @@ def on_a_side(tree: Plain, definitions: Mapping[str, Plain], program: Stored, ma
     def expected(values: Mapping[str, Ball]) -> Outputs:
         """At one state."""
         stored, first = operations_in_balls(program, values), None
-        for sides in _sides(tree, definitions):
+        is_stated = _is_stated(tree, definitions, values)
+        for sides in _sides(tree, definitions) if is_stated or _is_finite(program, stored) else ():
             outputs = make({**tree, "sides": sides}, values)
             if _agrees(program, stored, outputs, outputs.keys()) or not _is_closed(outputs):
                 return outputs
             first = first or outputs
-        if not _is_stated(tree, definitions, values):
+        if not is_stated:
             return make({**tree, "sides": NOWHERE}, values)
         return first or Outputs()
 
@@ -61,6 +62,11 @@ def _sides(tree: Plain, definitions: Mapping[str, Plain]) -> Iterator[tuple[int,
 def _ways(tree: Plain, definitions: Mapping[str, Plain]) -> tuple[str, ...]:
     """Of what may be found by steps from the start."""
     return (WAY,) if any(definitions[name].get("ranges") for name in tree["reduced"]) else ()
+
+
+def _is_finite(program: Stored, stored: list[Ball]) -> bool:
+    """Whether all elements of a program have values, as they do where it has a position."""
+    return all(stored[entry].is_finite() for output in program.outputs.values() for entry in output.entries)
 
 
 def _is_stated(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> bool:
