@@ -72,15 +72,15 @@ def _is_finite(program: Stored, stored: list[Ball]) -> bool:
 def _is_stated(tree: Plain, definitions: Mapping[str, Plain], values: Mapping[str, Ball]) -> bool:
     """Whether the ranges of definitions hold, which are those of the default values of their parameters."""
     number = Numbers({}).read
+    bound = {f"{i['name']}.{p}" for i in tree.get("instances", ()) for p in i.get("parameters", {})}
     for name in tree["reduced"]:
         definition = definitions[name]
         for q, (low, high) in definition.get("ranges", {}).items():
             if not float(number(low)) <= float(values.get(f"{name}.{q}", number(low))) <= float(number(high)):
                 return False
         given = {f"{name}.{p}": x.get("value") for p, x in definition.get("parameters", {}).items()}
-        if definition.get("ranges") and not all(
-            x is None or number(x).overlaps(values[p]) for p, x in given.items() if p in values
-        ):
+        is_default = (p not in bound and (x is None or number(x).overlaps(values[p])) for p, x in given.items())
+        if definition.get("ranges") and not all(is_default):
             return False
     return True
 

@@ -123,9 +123,8 @@ class _Solver:
         ways, ends = self.chains.ways(closure.from_, closure.to, cut)
         A, B = (self.chains.pose(way, end) for way, end in zip(ways, ends, strict=True))
         rows = rows_of(self.graph, closure.type, cut, A, B).without_what_cancels(self.part.coordinates)
-        return Group(
-            (closure.name,), frozenset(symbols_in(rows.zero) - self.found.N.keys() & {*self.part.coordinates}), rows
-        )
+        unknown = {*self.part.coordinates} - self.found.N.keys()
+        return Group((closure.name,), frozenset(symbols_in(rows.zero) & unknown), rows)
 
     def _follow(self, group: Group) -> None:
         """Closures that are met together, by Newton's method. Raises NotReduced."""
