@@ -30,20 +30,30 @@ NAMED = 16  # characters
 @lru_cache(maxsize=1)
 def software() -> str:
     """The name of the software that derives here: a digest of its source, so that no two versions share it."""
-    found, root = hashlib.sha256(), files("substructures")
-    for package in SOURCES:
-        for name, text in _modules(root / package, package):
+    return _named({package: files("substructures") / package for package in SOURCES})
+
+
+@lru_cache(maxsize=1)
+def release() -> str:
+    """The name of the software that computes and writes results here, as :func:`software`."""
+    return _named({package: files(package) for package in ("substructures", "service")}, (".py", ".c", ".h", ".mjs"))
+
+
+def _named(packages: Mapping[str, Traversable], endings: tuple[str, ...] = (".py",)) -> str:
+    found = hashlib.sha256()
+    for package, folder in packages.items():
+        for name, text in _modules(folder, package, endings):
             found.update(f"{name}\n{len(text)}\n".encode() + text)
     return found.hexdigest()[:NAMED]
 
 
-def _modules(folder: Traversable, path: str) -> list[tuple[str, bytes]]:
+def _modules(folder: Traversable, path: str, endings: tuple[str, ...]) -> list[tuple[str, bytes]]:
     found: list[tuple[str, bytes]] = []
     for each in sorted(folder.iterdir(), key=lambda each: each.name):
         name = f"{path}/{each.name}"
         if each.is_dir():
-            found += _modules(each, name)
-        elif each.name.endswith(".py"):
+            found += _modules(each, name, endings)
+        elif each.name.endswith(endings):
             found.append((name, each.read_bytes()))
     return found
 

@@ -10,8 +10,8 @@
       |---< job_events
       '---< job_uploads >--- uploads                       (chunks of states that items refer to, by digest)
 
-The key of an item is the sha256 of its kind and of what is to be computed, with all references pinned: equal items
-have equal results, whoever asks.
+The key of an item is the sha256 of its kind, of the software and of what is to be computed, with all references
+pinned: equal items have equal results, whoever asks.
 """
 
 from __future__ import annotations

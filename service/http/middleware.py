@@ -42,7 +42,9 @@ class Conventions:
             return
         await self._serve(scope, receive, send)
 
-    async def _serve(self, scope: Scope, receive: Receive, send: Send) -> None:
+    async def _serve(self, given: Scope, receive: Receive, send: Send) -> None:
+        is_head = given["method"] == "HEAD"  # what GET would answer, without the body
+        scope = {**given, "method": "GET"} if is_head else given
         headers = Headers(scope=scope)
         identifier = begin_request(headers.get("x-request-id"))
         start = perf_counter()
@@ -51,14 +53,18 @@ class Conventions:
         async def send_with_id(message: Message) -> None:
             """Send, and note the status; the head of the answer gets the id."""
             nonlocal status
-            if message["type"] == "http.response.start":
+            is_start = message["type"] == "http.response.start"
+            if is_start:
                 status = message["status"]
-                given = [pair for pair in message.get("headers", ()) if pair[0] != _ID]
-                told = {name for name, _ in given}
-                is_page = any(name == _TYPE and value.startswith(_PAGE) for name, value in given)
+                pairs = [pair for pair in message.get("headers", ()) if pair[0] != _ID]
+                told = {name for name, _ in pairs}
+                is_page = any(name == _TYPE and value.startswith(_PAGE) for name, value in pairs)
                 guards = [pair for pair in (_GUARDS_OF_PAGE if is_page else _GUARDS) if pair[0] not in told]
-                message["headers"] = [*given, (_ID, identifier.encode()), *guards]
-            await send(message)
+                message["headers"] = [*pairs, (_ID, identifier.encode()), *guards]
+            if is_start or not is_head:
+                await send(message)
+            if is_start and is_head:  # whatever is still to come of a stream
+                await send({"type": "http.response.body"})
 
         try:
             self._require_accepted(host_of(scope["headers"]))
@@ -70,14 +76,14 @@ class Conventions:
                 raise
             await problems.response(error, scope["path"])(scope, receive, send_with_id)
         finally:
-            self._record(scope, status, perf_counter() - start)
+            self._record(given["method"], scope, status, perf_counter() - start)
 
     def _require_accepted(self, host: str) -> None:
         if "*" not in self.allowed_hosts and host not in self.allowed_hosts:
             detail = f"the Host header names '{host[:80]}', which is not served here"
             raise Refused(400, "host-not-allowed", f"{detail}; SUBSTRUCTURES_ALLOWED_HOSTS adds hosts")
 
-    def _record(self, scope: Scope, status: int, seconds: float) -> None:
+    def _record(self, method: str, scope: Scope, status: int, seconds: float) -> None:
         route = getattr(scope.get("route"), "path", "(none)")
-        self.metrics.observe(scope["method"], route, status, seconds)
-        _log.info("%s %r %d %.1f ms", scope["method"], scope["path"], status, 1000 * seconds)
+        self.metrics.observe(method, route, status, seconds)
+        _log.info("%s %r %d %.1f ms", method, scope["path"], status, 1000 * seconds)

@@ -56,6 +56,24 @@ def test_problems(client: TestClient) -> None:
         assert message in problem(client.post("/v1/trees", json=body), 422, "invalid-document")["detail"]
 
 
+def test_heads_are_those_of_get(filled: TestClient) -> None:
+    """Of streams, too, whose end nobody waits for."""
+    job = filled.post("/v1/jobs", json={"kind": "verify", "items": [{"tree": "cell"}]}).json()["id"]
+    for path in (
+        "/livez",
+        "/",
+        "/v1/trees/cell",
+        "/v1/trees/cell/metric",
+        "/v1/trees/nothing",
+        f"/v1/jobs/{job}/archive",
+    ):
+        head, get = filled.head(path), filled.get(path)
+        assert (head.status_code, head.content) == (get.status_code, b"")
+        assert {**head.headers, "x-request-id": ""} == {**get.headers, "x-request-id": ""}
+    events = filled.head(f"/v1/jobs/{job}/events")
+    assert (events.status_code, events.headers["content-type"]) == (200, "text/event-stream; charset=utf-8")
+
+
 def test_defects_are_500_without_details(
     client: TestClient, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:

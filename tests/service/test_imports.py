@@ -9,6 +9,8 @@ import pytest
 from fastapi.testclient import TestClient
 
 from service.cli.main import main
+from service.server import background
+from service.settings import Limits, Settings
 from service.store.store import Store
 from tests.interchange.test_meshes import ROBOT as ROBOT_WITH_MESHES
 from tests.interchange.test_meshes import zipped
@@ -233,6 +235,21 @@ def test_import_prints_the_definition_and_tells_of_the_file(tmp_path: Path, caps
     assert [i["name"] for i in json.loads(out.read_text())["instances"]] == ["robot", "hand"]
     assert main(["import", str(path), "--cut", "hnad"]) == 1
     assert "there is no link 'hnad' to be cut at; did you mean 'hand'" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("cut", ["", "hand"])
+def test_a_robot_that_is_submitted_may_become_a_job(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], cut: str
+) -> None:
+    """The command waits for it."""
+    path = tmp_path / "long.urdf"
+    path.write_text(LONG)
+    settings = Settings(database=f"sqlite:///{tmp_path / 's.db'}", catalogue=False, limits=Limits(sync_seconds=1e-6))
+    with background(settings) as address:
+        assert main(["import", str(path), "--cut", cut, "--submit", "--server", address]) == 0
+    told = capsys.readouterr()
+    assert "became the job" in told.out
+    assert f"{'assemble' if cut else 'derive'}: 1 succeeded of 1" in told.err
 
 
 def test_like_remarks_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -7,9 +7,11 @@ import json
 import zipfile
 from typing import Any, get_args
 
+import pytest
 from fastapi.testclient import TestClient
 
 from service.jobs.kinds import KINDS
+from service.operations.jobs import jobs as operations
 from service.schemas.jobs import JobKind
 from service.store.store import Store
 from substructures.expr.program import read_program
@@ -129,7 +131,8 @@ def test_inline_definitions_and_derived_parts(client: TestClient, store: Store) 
     assert client.post("/v1/substructures", json=SLIDER).status_code == 200
 
 
-def test_equal_items_are_computed_once(filled: TestClient, store: Store) -> None:
+def test_equal_items_are_computed_once(filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
+    """By software that is the same: what was wrong before is computed again."""
     with running(store, FakeEngine(slots=4, is_open=False)) as engine:
         jobs = [submitted(filled, export("cell", "metric", "metric", "gravity")) for _ in range(3)]
         eventually(filled, jobs[0], lambda _: len(engine.started) == 2)
@@ -138,6 +141,8 @@ def test_equal_items_are_computed_once(filled: TestClient, store: Store) -> None
         assert len(engine.started) == 2
         again = filled.post("/v1/jobs", json=export("cell@1", "gravity")).json()
         assert (again["state"], again["attempts"]) == ("succeeded", 0)
+        monkeypatch.setattr(operations, "release", lambda: "a later one")
+        assert finished(filled, submitted(filled, export("cell@1", "gravity")))["attempts"] == 1
 
 
 def test_a_tree_that_was_removed_is_assembled_again(filled: TestClient, store: Store) -> None:

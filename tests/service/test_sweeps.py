@@ -14,6 +14,7 @@ from service.jobs.kinds import sweep as kind
 from service.operations.jobs import tables
 from service.operations.jobs.tables import Table
 from service.store.store import Store
+from service.views import tables as views
 from substructures.formats.arrays import read_npz
 from substructures.sweeps import block
 
@@ -100,6 +101,16 @@ def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
     for label in ("study:night", "arm:long", "study:night arm:long"):
         assert [each["id"] for each in filled.get("/v1/jobs", params={"label": label}).json()["items"]] == [job]
     assert filled.get("/v1/jobs?label=study").json()["items"] == []
+
+
+def test_rows_become_text_some_at_a_time(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(views, "AT_A_TIME", 2)
+    for count in range(6):
+        columns = {"row": np.arange(count), "x": np.arange(count) / 2}
+        pieces = list(views.as_csv(Table(cast("Any", None), columns, {})))
+        assert len(pieces) == max(1, (count + 1) // 2)
+        text = "".join(f"{k},{k / 2}\r\n" for k in range(count))
+        assert b"".join(pieces).decode() == f"row,x\r\n{text}"
 
 
 @pytest.mark.parametrize("bins", [1, 20, 1000])

@@ -13,8 +13,8 @@ import typer
 
 from service.cli.choices import one_of
 from service.cli.documents import named
-from service.cli.options import Json, Server, with_server
-from service.cli.output import print_json
+from service.cli.options import Json, Server, Wait, with_server
+from service.cli.output import print_json, waiting
 from service.cli.tree_files import part_or_tree
 from substructures.documents import write_json
 from substructures.errors import InvalidDocument
@@ -103,6 +103,7 @@ def read(
         Path | None, typer.Option(metavar="FILE", help="Write the definition (or tree) to this JSON file.")
     ] = None,
     submit: Annotated[bool, typer.Option("--submit", help="Derive and store it on the server.")] = False,
+    wait: Wait = True,
     json: Annotated[bool, typer.Option("--json", help="Print JSON: also the report, and what was stored.")] = False,
 ) -> int:
     """Read a robot file as a definition, with a report of what became of everything in it."""
@@ -115,20 +116,29 @@ def read(
     if out:
         size = out.write_bytes(write_json(document) + b"\n")
         print(f"{out}: {size} bytes", file=sys.stderr)
-    answer = _submitted(server, found.tree is None, document) if submit else None
-    if json:
-        print(write_json({**found.plain(), "stored": answer}).decode())
-    elif answer:
-        print(f"{answer['name']} {answer.get('digest', answer.get('id'))}")
-    elif not out:
-        print(write_json(document).decode())
-    return 0
+    if not submit:
+        if json:
+            print(write_json({**found.plain(), "stored": None}).decode())
+        elif not out:
+            print(write_json(document).decode())
+        return 0
+    return _submitted(server, found, document, wait, json)
 
 
-def _submitted(server: Server, is_part: bool, document: Any) -> dict[str, Any]:
+def _submitted(server: Server, found: Imported, document: Any, wait: bool, json: bool) -> int:
     with server.client() as client:
-        found: dict[str, Any] = client.request("POST", "/v1/substructures" if is_part else "/v1/trees", document).json()
-    return found
+        with waiting("deriving"):
+            answer = client.request("POST", "/v1/substructures" if found.tree is None else "/v1/trees", document)
+        stored = answer.json()
+        if answer.status_code == 202:
+            from service.cli.progress import became_job  # noqa: PLC0415 -- with the client, of a server alone
+
+            return became_job(client, stored, wait, json)
+    if json:
+        print(write_json({**found.plain(), "stored": stored}).decode())
+    else:
+        print(f"{stored['name']} {stored['digest']}")
+    return 0
 
 
 def _told(found: Imported) -> Iterator[str]:

@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 from time import sleep
 from typing import Any
 
+from service.content.derivation import release
 from service.database.connections import Connection
 from service.jobs import kinds
 from service.jobs.files import document_of
@@ -192,7 +193,7 @@ def _resolved(
 def _new_item(kind: str, item: Mapping[str, Any], blobs: Sequence[str]) -> NewItem:
     content = write_json(item)
     family = "analyse" if "analysis" in item else kind  # items of simulate and optimise say what they are
-    key = "sha256:" + hashlib.sha256(f"{family}\n".encode() + content).hexdigest()
+    key = "sha256:" + hashlib.sha256(f"{family}\n{release()}\n".encode() + content).hexdigest()
     return NewItem(key, content.decode(), write_json(list(blobs)).decode())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Annotated, Any
 
 from fastapi import Query, Request, Response
@@ -9,7 +10,7 @@ from fastapi import Query, Request, Response
 from service.http.acting import ActOf, timed
 from service.http.requests import OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
-from service.messages.answers import json_answer
+from service.messages.answers import JSON, json_answer, streamed
 from service.messages.paging import limited, read_token, write_token
 from service.messages.viewer import Viewer
 from service.operations import trees
@@ -23,7 +24,7 @@ from service.schemas.resources import TreeView
 from service.schemas.sweeps import ColumnView, RowTree, TablePage
 from service.store.store import Store
 from service.views.resources import dump
-from service.views.tables import FILES, as_file, chosen_media, rows_view
+from service.views.tables import CSV, FILES, as_csv, as_file, chosen_media, rows_view
 from substructures.documents import read_model
 
 router = APIRouter(prefix="/v1/jobs/{job}", tags=["jobs"])
@@ -44,7 +45,10 @@ def _answered(
     request: Request, store: Store, table: Table, search: tuple[Any, ...], size: int, token: str | None
 ) -> Response:
     media = chosen_media(request.headers.get("accept", "*/*"))
-    if media != "application/json":
+    if media == CSV:
+        found = streamed(as_csv(table), f"{CSV}; charset=utf-8")
+        return response_of(replace(found, headers={**found.headers, **FRESH}))
+    if media != JSON:
         return Response(as_file(table, media), media_type=media, headers=FRESH)
     size = limited(size, store.settings.limits)
     after = read_token(search, token, int)
