@@ -104,6 +104,16 @@ def test_rows_that_do_not_settle_leave_the_others() -> None:
     assert Sweep({"template": template, "columns": columns}, {"planar": tiny}).rows().columns["w"] == pytest.approx([0])
 
 
+def test_masses_that_overflow_leave_the_others() -> None:
+    for damping in (0, 1):
+        joint = {"type": "prismatic", "coordinate": "q", "stiffness": "c", "damping": damping}
+        slide = {**ROD, "bodies": [{**ROD["bodies"][0], "joint": joint}]}
+        samples = {"method": "list", "of": {"a.m": {"values": [1e-310, 30]}}}
+        columns = {"w": {"analysis": "linearisation", "at": {"q": [0.1]}, "held": True}}
+        found = Sweep(SPRUNG, {"rod": slide}, samples=samples, columns=columns).rows()
+        assert (found.rows.tolist(), found.columns["w"]) == ([1], pytest.approx([1]))
+
+
 def test_what_does_not_move_is_told() -> None:
     still = {"name": "rod", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     template = {"name": "t", "instances": [{"name": "a", "substructure": "rod"}]}
