@@ -105,7 +105,8 @@ def _summary(told: Mapping[str, Any]) -> None:
         kind = f", {event['kind']}" if "kind" in event else ""
         print(f"{event['name']}{kind} at t = {event['t']:.9g} s{act}")
     if told.get("t") and "q" in told:
-        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
+        names = told.get("positions") or told["coordinates"]
+        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(names, told["q"][-1], strict=True))
         print(f"t = {told['t'][-1]:.9g} s: {last}")
 
 

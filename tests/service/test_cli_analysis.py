@@ -56,6 +56,21 @@ def test_a_motion_beyond_its_limits_is_warned_of(tmp_path: Path, capsys: pytest.
     assert "'a.x' leaves its limits [-1, 1] m: it goes down to -4.905 m" in capsys.readouterr().err
 
 
+def test_states_of_ball_joints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A top at rest, turned by the quaternion (0.6, 0.8, 0, 0), and in motion."""
+    body = {"name": "b", "parent": "base", "mass": 2, "com": [0, 0, 0.5], "joint": {"type": "ball"}}
+    part = {"name": "a", "bodies": [body | {"inertia": {"xx": 1, "yy": 1, "zz": 1}}]}
+    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "a", "definition": part}]}
+    (tmp_path / "t.json").write_text(json.dumps(tree))
+    (tmp_path / "turn.json").write_text('{"q": [1, 0, 0, 0], "qd": [0, 0, 3], "span": [0, 1]}')
+    assert main(["evaluate", str(tmp_path / "t.json"), "gravity"]) == 0
+    assert capsys.readouterr().out.split()[1:] == ["a.w_b_x", "0", "a.w_b_y", "0", "a.w_b_z", "0"]
+    assert main(["evaluate", str(tmp_path / "t.json"), "gravity", "--q", "0.6,0.8,0,0"]) == 0
+    assert capsys.readouterr().out.split()[1:3] == ["a.w_b_x", "9.4176"]  # m g sin(phi)/2, sin(phi) = 2 0.6 0.8
+    assert main(["simulate", str(tmp_path / "t.json"), str(tmp_path / "turn.json")]) == 0
+    assert "a.q_b_w = 0.0707372" in capsys.readouterr().out.splitlines()[-1]  # cos 1.5
+
+
 def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     tree = str(folder / "cell.yaml")
     assert main(["analyse", tree, "first_integrals", "--bind", "defaults"]) == 0
