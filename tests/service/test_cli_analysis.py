@@ -38,6 +38,19 @@ def test_simulate_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert ".npz, .csv" in capsys.readouterr().err
 
 
+def test_members_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    columns = "columns: {top: {expression: arm.q, take: largest}}\n"
+    (folder / "many.yaml").write_text(f"q: [[0.1], [0.2]]\nspan: [0, 1]\n{columns}")
+    command = ["analyse", str(folder / "cell.yaml"), "ensembles", str(folder / "many.yaml")]
+    for more in ([], ["--out", str(folder / "many.json")]):
+        assert main([*command, *more]) == 0
+        shown = capsys.readouterr().out
+        assert "2 members: 2 right, 0 failed\nenergy: constant, violated by 0, at most " in shown
+        assert "\ntop: count 2, mean 0.15, deviation 0.0707107, least 0.1, largest 0.2" in shown
+    assert main([*command, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["columns"] == {"top": [0.1, 0.2]}
+
+
 def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "rough.yaml").write_text("q: [0.5]\nspan: [0, 2]\nfixed_step: {step: 0.2, method: semi-implicit-euler}\n")
     assert main(["simulate", str(folder / "cell.yaml"), str(folder / "rough.yaml")]) == 1
