@@ -95,6 +95,9 @@ def _tell(told: Mapping[str, Any], data: bytes, out: Path | None, as_json: bool)
 
 
 def _summary(told: Mapping[str, Any]) -> None:
+    if "violation" in told:
+        _members(told)
+        return
     words = [str(told[key]) for key in ("status", "message") if told.get(key)]
     print(*words, *([VERDICTS[told["is_right"]]] if told.get("is_right", True) is not True else []))
     for check in told.get("checks", []):
@@ -105,8 +108,22 @@ def _summary(told: Mapping[str, Any]) -> None:
         kind = f", {event['kind']}" if "kind" in event else ""
         print(f"{event['name']}{kind} at t = {event['t']:.9g} s{act}")
     if told.get("t") and "q" in told:
-        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(told["coordinates"], told["q"][-1], strict=True))
+        names = told.get("positions") or told["coordinates"]
+        last = ", ".join(f"{n} = {x:.9g}" for n, x in zip(names, told["q"][-1], strict=True))
         print(f"t = {told['t'][-1]:.9g} s: {last}")
+
+
+def _members(told: Mapping[str, Any]) -> None:
+    """What became of an ensemble."""
+    print(f"{told['count']:,} members: {told['right']:,} right, {told['failed']:,} failed")
+    for check in told["checks"]:
+        found = f"at most {_short(check['relative'])} (limit {_short(check['limit'])})"
+        print(f"{check['name']}: {check['rule']}, violated by {check['violated']:,}, {found}: {check['reason']}")
+    for each in told["failures"]:
+        print(f"member {each['member']} at t = {each['t']:.9g} s: {each['message']}")
+    tell_warnings(told)
+    for name, column in told["statistics"].items():
+        print(f"{name}: " + ", ".join(f"{key} {x:.6g}" for key, x in column.items() if key != "quantiles"))
 
 
 def _found(check: Mapping[str, Any]) -> str:

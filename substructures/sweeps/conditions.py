@@ -115,6 +115,9 @@ def read_condition(text: str, known: Collection[str], pointer: str) -> Condition
             if len(sides) < 3:
                 message = f"'{one.strip()[:80]}' is no truth value: compare, as in 'mass < 3', with < <= > >= == !="
                 raise InvalidDocument.at(pointer, "comparison-expected", message)
+            if any(side.count("(") != side.count(")") for side in sides):
+                message = "no parentheses around comparisons: 'and' binds before 'or'"
+                raise InvalidDocument.at(pointer, "bad-expression", message)
             read = [read_expression(side, known, pointer) for side in sides[::2]]
             group += list(zip(read, sides[1::2], read[1:], strict=False))
         groups.append(tuple(group))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from typing import Any
 
 import numpy as np
@@ -57,7 +57,7 @@ def _eigenvalues(M: Array, D: Array, K: Array) -> ComplexArray:
         L = np.linalg.cholesky(M[simple])
         half = np.linalg.solve(L, K[simple])
         C = np.linalg.solve(L, half.transpose(0, 2, 1))
-        squares = np.linalg.eigvalsh((C + C.transpose(0, 2, 1)) / 2)
+        squares = _where_finite(np.linalg.eigvalsh, (C + C.transpose(0, 2, 1)) / 2)
         # what rounding makes of no restoring force is none
         squares = np.where(np.abs(squares) <= 1e-13 * np.abs(squares).max(axis=1, keepdims=True), 0.0, squares)
         roots = 1j * np.sqrt(squares.astype(np.complex128))
@@ -69,8 +69,15 @@ def _eigenvalues(M: Array, D: Array, K: Array) -> ComplexArray:
         A[:, :n, n:] = np.eye(n)
         A[:, n:, :n] = -np.linalg.solve(M[rest], K[rest])
         A[:, n:, n:] = -np.linalg.solve(M[rest], D[rest])
-        found[rest] = np.linalg.eigvals(A)
+        found[rest] = _where_finite(np.linalg.eigvals, A)
     return found
+
+
+def _where_finite(eigenvalues: Callable[[Array], Any], matrices: Array) -> Any:
+    """(N, n) of (N, n, n), not a number where these overflow."""
+    good = np.asarray(np.isfinite(matrices).all(axis=(1, 2)))
+    found = eigenvalues(np.where(good[:, None, None], matrices, 0.0))
+    return np.where(good[:, None], found, np.nan)
 
 
 def _is_positive(M: Array) -> NDArray[np.bool_]:

@@ -80,6 +80,8 @@ class _Search:
         self.matters[[a for a in within if a not in self.turns]] = False
         judge = self.shape.sources.judge
         limits = {} if judge is None else judge.limits(self.parameters)
+        #: of what loops move, by its place
+        self.bounds = {k: limits[name][:2] for k, name in enumerate(model.dependent) if name in limits}
         self.low, self.high = np.zeros((2, m, self.rows))
         self.high[list(within)] = 1
         draw = np.random.default_rng(0)
@@ -120,15 +122,17 @@ class _Search:
         here, x, step = self.square(q), q[:, a], (self.high[a] - self.low[a]) / 4
         near = self._with(q, a, x + step)
         size = np.fmax(here, near)
-        self.matters[a] = np.abs(near - here) > SAME * size
+        self.matters[a] = ~(np.abs(near - here) <= SAME * size)  # also where a loop does not close
         if self.kinds[a] == "R":
             off = near - self._sinusoid(q, here, a)(x + step)
         else:  # the third difference of a parabola is 0
             off = self._with(q, a, x + 2 * step) - 3 * near + 3 * here - self._with(q, a, x - step)
-        self.is_simple[a] = np.abs(off) <= SAME * size
+        self.is_simple[a] = (np.abs(off) <= SAME * size) & (not self.bounds)
 
     def square(self, q: Array) -> Array:
-        """|r_of - r_about|^2 (rows,) [m^2] at states (rows, m), whose quaternions have any length that is not 0."""
+        """|r_of - r_about|^2 (rows,) [m^2] at states (rows, m), whose quaternions have any length that is not 0; not a
+        number where loops do not close, or leave the limits of what they move.
+        """
         model, q = self.shape.model, q.copy()
         for some in self.turns.values():
             q[:, some] /= np.linalg.norm(q[:, some], axis=1, keepdims=True)
@@ -136,9 +140,14 @@ class _Search:
         inputs = {f"{name}{primes}": self.t for name in model.driven for primes in PRIMES if name in model.inputs}
         given = {"parameters": self.parameters, "t": self.t, "inputs": inputs}
         values = known_values(model, given, states, model.parameters)
-        position = np.asarray(self.shape.evaluate(model.program, values, ["position"], self.rows)["position"])
-        of, about = (0.0 if k is None else position[:, k] for k in self.ends)
-        return np.broadcast_to(np.sum(np.square(np.zeros(3) + of - about), axis=-1), (self.rows,))
+        names = ["position", *(["dependent"] if self.bounds else [])]
+        found = self.shape.evaluate(model.program, values, names, self.rows)
+        of, about = (0.0 if k is None else np.asarray(found["position"])[:, k] for k in self.ends)
+        square = np.broadcast_to(np.sum(np.square(np.zeros(3) + of - about), axis=-1), (self.rows,))
+        for k, (low, high) in self.bounds.items():
+            x, slack = np.asarray(found["dependent"])[:, k], SAME * (1 + np.abs(low) + np.abs(high))
+            square = np.where((low - slack <= x) & (x <= high + slack), square, np.nan)
+        return square
 
     def _with(self, q: Array, a: int, x: Array) -> Array:
         """The square with one coordinate at ``x`` (rows,)."""
@@ -155,8 +164,8 @@ class _Search:
             return np.sqrt(best)
 
     def _climbed(self, q: Array) -> Array:
-        here = self.square(q)
-        runs = np.isfinite(here)
+        here = _or_nowhere(self.square(q))
+        runs = here < np.inf
         for _ in range(ROUNDS):
             before = here
             for a in np.flatnonzero(self.matters.any(axis=1)).tolist():
@@ -169,7 +178,7 @@ class _Search:
                 better = runs & self.matters[a] & (found > here)
                 q[better] = there[better]
                 here = np.where(better, found, here)
-            runs = runs & (here - before > LEAST * here)
+            runs = runs & (here > before * (1 + LEAST))
             if not runs.any():
                 break
         return here
@@ -223,8 +232,13 @@ class _Sinusoid:
 
 def _best(at: Callable[[Array], Array], candidates: Array) -> Array:
     """Of some values (k, rows) those with the largest of ``at``, (rows,)."""
-    values = np.stack([at(x) for x in candidates])
+    values = _or_nowhere(np.stack([at(x) for x in candidates]))
     return np.asarray(np.take_along_axis(candidates, values.argmax(axis=0)[None], axis=0)[0])
+
+
+def _or_nowhere(square: Array) -> Array:
+    """What is no number is less than all that are."""
+    return np.where(np.isnan(square), -np.inf, square)
 
 
 ANALYSES = {"reach": reach_columns}

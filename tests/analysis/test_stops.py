@@ -17,6 +17,7 @@ from substructures.analysis.motion.problems.outputs import SensitivityOutputs
 from substructures.analysis.simulate import ClosedMotion, Event, Integrator, Outputs, simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.limits import Limits
 
 
 def slide(stops: Plain, gravity: float = 0, **joint: Any) -> Model:
@@ -136,6 +137,8 @@ def test_limits_without_stops_are_warned_of() -> None:
     assert simulate(model, [0.0], (0, 2), qd=[10.0], parameters={"h": 5.5}, outputs=Outputs(count=2)).warnings == ()
     both = simulate(model, [0.0], (0, 2.5), qd=[10.0], outputs=Outputs(count=2)).warnings
     assert "down to -6.25 m and up to 5 m" in both[0]["message"]
+    still = Limits(("x.x",), "P", np.array([-1.0]), np.array([3.0])).warnings(np.array([4.0]), np.array([4.0]))
+    assert "goes up to 4 m" in still[0]["message"]
 
 
 def test_every_kind_of_motion_tells_of_its_limits() -> None:

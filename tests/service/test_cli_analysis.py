@@ -38,6 +38,19 @@ def test_simulate_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert ".npz, .csv" in capsys.readouterr().err
 
 
+def test_members_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    columns = "columns: {top: {expression: arm.q, take: largest}}\n"
+    (folder / "many.yaml").write_text(f"q: [[0.1], [0.2]]\nspan: [0, 1]\n{columns}")
+    command = ["analyse", str(folder / "cell.yaml"), "ensembles", str(folder / "many.yaml")]
+    for more in ([], ["--out", str(folder / "many.json")]):
+        assert main([*command, *more]) == 0
+        shown = capsys.readouterr().out
+        assert "2 members: 2 right, 0 failed\nenergy: constant, violated by 0, at most " in shown
+        assert "\ntop: count 2, mean 0.15, deviation 0.0707107, least 0.1, largest 0.2" in shown
+    assert main([*command, "--json"]) == 0
+    assert json.loads(capsys.readouterr().out)["columns"] == {"top": [0.1, 0.2]}
+
+
 def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "rough.yaml").write_text("q: [0.5]\nspan: [0, 2]\nfixed_step: {step: 0.2, method: semi-implicit-euler}\n")
     assert main(["simulate", str(folder / "cell.yaml"), str(folder / "rough.yaml")]) == 1
@@ -54,6 +67,21 @@ def test_a_motion_beyond_its_limits_is_warned_of(tmp_path: Path, capsys: pytest.
     (tmp_path / "drop.json").write_text('{"q": [0], "span": [0, 1]}')
     assert main(["simulate", str(tmp_path / "t.json"), str(tmp_path / "drop.json")]) == 0
     assert "'a.x' leaves its limits [-1, 1] m: it goes down to -4.905 m" in capsys.readouterr().err
+
+
+def test_states_of_ball_joints(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """A top at rest, turned by the quaternion (0.6, 0.8, 0, 0), and in motion."""
+    body = {"name": "b", "parent": "base", "mass": 2, "com": [0, 0, 0.5], "joint": {"type": "ball"}}
+    part = {"name": "a", "bodies": [body | {"inertia": {"xx": 1, "yy": 1, "zz": 1}}]}
+    tree = {"name": "t", "gravity": [0, 0, -9.81], "instances": [{"name": "a", "definition": part}]}
+    (tmp_path / "t.json").write_text(json.dumps(tree))
+    (tmp_path / "turn.json").write_text('{"q": [1, 0, 0, 0], "qd": [0, 0, 3], "span": [0, 1]}')
+    assert main(["evaluate", str(tmp_path / "t.json"), "gravity"]) == 0
+    assert capsys.readouterr().out.split()[1:] == ["a.w_b_x", "0", "a.w_b_y", "0", "a.w_b_z", "0"]
+    assert main(["evaluate", str(tmp_path / "t.json"), "gravity", "--q", "0.6,0.8,0,0"]) == 0
+    assert capsys.readouterr().out.split()[1:3] == ["a.w_b_x", "9.4176"]  # m g sin(phi)/2, sin(phi) = 2 0.6 0.8
+    assert main(["simulate", str(tmp_path / "t.json"), str(tmp_path / "turn.json")]) == 0
+    assert "a.q_b_w = 0.0707372" in capsys.readouterr().out.splitlines()[-1]  # cos 1.5
 
 
 def test_analyse_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

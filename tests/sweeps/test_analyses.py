@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pytest
 import scipy
+from catalogue_entries import shipped_part
 
 from substructures import couple, derive, evaluate, simulate
 from substructures.errors import InvalidInput
@@ -103,6 +104,16 @@ def test_rows_that_do_not_settle_leave_the_others() -> None:
     assert Sweep({"template": template, "columns": columns}, {"planar": tiny}).rows().columns["w"] == pytest.approx([0])
 
 
+def test_masses_that_overflow_leave_the_others() -> None:
+    for damping in (0, 1):
+        joint = {"type": "prismatic", "coordinate": "q", "stiffness": "c", "damping": damping}
+        slide = {**ROD, "bodies": [{**ROD["bodies"][0], "joint": joint}]}
+        samples = {"method": "list", "of": {"a.m": {"values": [1e-310, 30]}}}
+        columns = {"w": {"analysis": "linearisation", "at": {"q": [0.1]}, "held": True}}
+        found = Sweep(SPRUNG, {"rod": slide}, samples=samples, columns=columns).rows()
+        assert (found.rows.tolist(), found.columns["w"]) == ([1], pytest.approx([1]))
+
+
 def test_what_does_not_move_is_told() -> None:
     still = {"name": "rod", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     template = {"name": "t", "instances": [{"name": "a", "substructure": "rod"}]}
@@ -169,6 +180,25 @@ def test_no_pose_of_a_robot_is_further_than_its_reach() -> None:
         place = evaluate(model, "kinematics", q)["kinematics"]["position"][:, model.frames.index("arm.flange")]
         assert np.linalg.norm(place, axis=1).max() <= found[k] * (1 + 1e-12), a2
     assert 0.35 < found[1] - found[0] <= 0.4
+
+
+def test_reach_is_where_loops_close_within_their_limits() -> None:
+    """Of 13,824 poses of a gripper four in five are none, or beyond the limits of joints that loops move."""
+    template = {"name": "t", "instances": [{"name": "x", "substructure": "robotiq-2f85"}]}
+    found = Sweep({"template": template, "columns": {"r": {"analysis": "reach", "of": "x.left_tip"}}}).rows()
+    model = couple(template, {"x": shipped_part("robotiq-2f85")})
+    judge = model.plausibility
+    assert judge is not None
+    limits = {name: [float(x) for x in row[:2]] for name, row in judge.limits_at_defaults.items()}
+    axes = np.meshgrid(*(np.linspace(*limits[name], 24) for name in model.coordinates), indexing="ij")
+    asked = evaluate(model, ["kinematics", "dependent"], np.stack([x.ravel() for x in axes], axis=1))
+    inside = [  # not where a loop does not close
+        (asked["dependent"][:, k] >= limits[name][0]) & (asked["dependent"][:, k] <= limits[name][1])
+        for k, name in enumerate(model.dependent)
+    ]
+    place = asked["kinematics"]["position"][np.all(inside, axis=0), model.frames.index("x.left_tip")]
+    assert 0.1 < len(place) / 24**3 < 0.9
+    assert found.columns["r"] == pytest.approx(np.linalg.norm(place, axis=1).max(), rel=2e-3)
 
 
 def test_motions_of_an_oscillator() -> None:

@@ -58,3 +58,8 @@ def test_what_is_no_condition(text: str, code: str) -> None:
     with pytest.raises(InvalidDocument) as error:
         read_condition(text, ["m", "mass"], "/where")
     assert [(fault.pointer, fault.code) for fault in error.value.faults] == [("/where", code)]
+
+
+def test_comparisons_have_no_parentheses() -> None:
+    with pytest.raises(InvalidDocument, match="no parentheses around comparisons"):
+        read_condition("(m < 1) or (m > 2)", ["m"], "/where")

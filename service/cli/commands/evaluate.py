@@ -18,6 +18,7 @@ from service.cli.tree_files import local_source
 from service.cli.values import values
 from substructures.client.steps import step
 from substructures.documents.grouped import take
+from substructures.mechanics.state_names import BallRow, positions_of, resting_state
 from substructures.quantities.numbers.evaluation import EvaluationOptions
 from substructures.quantities.numbers.evaluation import evaluate as evaluated
 from substructures.quantities.numbers.states import STATE, wrong_length
@@ -74,9 +75,8 @@ def evaluate(
 
 
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
-    source = local_source(path)
-    _check_lengths(request, source.model.coordinates)
-    given = {"q": np.zeros(source.model.dof), **request}
+    model = (source := local_source(path)).model
+    given = {"q": _resting(request, model.coordinates, model.balls), **request}
     quantities, options = given.pop("quantities"), take(EvaluationOptions, given)
     result = evaluated(source.sources, quantities, **given, options=options)
     plain: dict[str, Any] = orjson.loads(orjson.dumps(result.plain(), option=orjson.OPT_SERIALIZE_NUMPY))
@@ -86,15 +86,20 @@ def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:
 def _there(server: Server, tree: str, request: Mapping[str, Any]) -> dict[str, Any]:
     with server.client() as client:
         known = client.request("GET", f"/v1/trees/{step(tree)}").json()
-        _check_lengths(request, known["coordinates"])
-        return dict(client.evaluate(tree, **{"q": [0.0] * known["dof"], **request}))
+        q = _resting(request, known["coordinates"], known.get("balls", ()))
+        return dict(client.evaluate(tree, **{"q": q, **request}))
 
 
-def _check_lengths(request: Mapping[str, Any], coordinates: Sequence[str]) -> None:
-    """One state is meant, also of one coordinate, where requests may have many. Raises BadParameter."""
+def _resting(request: Mapping[str, Any], coordinates: Sequence[str], balls: Sequence[BallRow]) -> list[float]:
+    """The state q that nothing is said of. Raises BadParameter for other lengths than of one state, which is meant also
+    of one coordinate, where requests may have many.
+    """
+    positions = positions_of(coordinates, balls)
     for name in STATE:
-        if name in request and len(request[name]) != len(coordinates):
-            raise typer.BadParameter(f"--{name}: {wrong_length(len(request[name]), coordinates)}")
+        names = positions if name == "q" else coordinates
+        if name in request and len(request[name]) != len(names):
+            raise typer.BadParameter(f"--{name}: {wrong_length(len(request[name]), names)}")
+    return resting_state(positions, balls)
 
 
 def _numbers(text: str) -> list[float]:

@@ -43,8 +43,11 @@ class Limits:
             low, high, unit = self.low[a], self.high[a], "rad" if self.joints[a] == "R" else "m"
             slack = BEYOND * (1 + sum(abs(x) for x in (low, high) if np.isfinite(x)))
             went = [
-                f"{'down' if reached == lowest[a] else 'up'} to {reached:.6g} {unit}"
-                for reached, beyond in ((lowest[a], low - lowest[a]), (highest[a], highest[a] - high))
+                f"{way} to {reached:.6g} {unit}"
+                for way, reached, beyond in (
+                    ("down", lowest[a], low - lowest[a]),
+                    ("up", highest[a], highest[a] - high),
+                )
                 if beyond > slack
             ]
             if went:

@@ -79,8 +79,9 @@ def state_warnings(
 ) -> Iterator[dict[str, Any]]:
     """A warning for every state with results that are doubtful."""
     for name, by_state in told.items():
+        finite = np.asarray(np.isfinite(_rows(results[name])).all(axis=1))
         for state, doubt in by_state.items():
-            if np.isfinite(_rows(results[name])[state]).all():
+            if finite[state]:
                 place = "/q" if single else f"/q/{state}"
                 told_of = {"pointer": place, "code": doubt.code, "message": doubt.message}
                 yield {**told_of, "state": state, "quantity": name}
