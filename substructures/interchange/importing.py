@@ -13,7 +13,7 @@ from substructures.interchange.files.wanted import Options, text_of_file
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
 from substructures.interchange.report import MOST_REMARKS, Report, refuse
-from substructures.interchange.robot import Robot
+from substructures.interchange.robot import Robot, tell_of_missing_masses
 from substructures.interchange.rows.cut import cut_rows
 from substructures.interchange.turning import is_turning
 
@@ -82,6 +82,7 @@ def import_file(
         definition = _told(definition, rows[0], data, file, license_of_file)
         return Imported(rows[0], definition, tree, rows[2].plain(), rows[2].checks(), {}, [])
     found, robot = read_robot(data, kind, included)
+    tell_of_missing_masses(robot, floats=options.base == "floating")
     _require_open(robot, options)
     if cut:
         made = cut_robot(robot, cut, options, name)

@@ -11,7 +11,7 @@ from substructures.interchange.files.content import is_par, is_table, is_usd, is
 from substructures.interchange.files.wanted import KINDS
 from substructures.interchange.mjcf.reader import read_mjcf
 from substructures.interchange.report import Place, Report, refuse
-from substructures.interchange.robot import Robot, tell_of_missing_masses
+from substructures.interchange.robot import Robot
 from substructures.interchange.rows.symoro import read_par
 from substructures.interchange.rows.tables import read_csv, read_table
 from substructures.interchange.sdf.reader import read_sdf
@@ -59,9 +59,7 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     if is_usd(data):
         if kind not in (None, "usd"):
             raise refuse(Place(0, "USD"), "wrong-kind", f"this is USD, not {kind.upper()}")
-        robot = read_usd(data, included)
-        tell_of_missing_masses(robot)
-        return "usd", robot
+        return "usd", read_usd(data, included)
     if data.strip() and b"\0" not in data and not is_xml(data):  # it is text
         raise InvalidDocument.at("", "unknown-format", _NO_XML)
     root = read_xml(data)
@@ -73,6 +71,4 @@ def read_robot(data: bytes, kind: str | None = None, included: Mapping[str, byte
     name, reader = found
     if kind is not None and kind != name:
         raise refuse(root.place, "wrong-kind", f"this is {name.upper()}, not {kind.upper()}")
-    robot = reader(root, {} if included is None else included)
-    tell_of_missing_masses(robot)
-    return name, robot
+    return name, reader(root, {} if included is None else included)

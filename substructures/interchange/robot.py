@@ -244,9 +244,9 @@ class Robot:
     gravity_place: Place | None = None
 
 
-def tell_of_missing_masses(robot: Robot) -> None:
+def tell_of_missing_masses(robot: Robot, floats: bool = False) -> None:
     """A warning for every link that moves without any mass, alone or with what is fixed to it, and is seen or carries
-    nothing: its mass is not in the file.
+    nothing: its mass is not in the file. ``floats``: whether roots move.
     """
     group: dict[str, str] = {}  # of every link the one that moves it
     for link in robot.links:
@@ -255,7 +255,8 @@ def tell_of_missing_masses(robot: Robot) -> None:
     carrying = {group[link.parent] for link in robot.links if link.motions and link.parent is not None}
     shown = {group[link.name] for link in robot.links if link.has_shape}
     for link in robot.links:
-        if link.motions and link.name not in weighed and (link.name in shown or link.name not in carrying):
+        moves = link.motions or (floats and link.parent is None)
+        if moves and link.name not in weighed and (link.name in shown or link.name not in carrying):
             message = "the link moves and no mass is given for it: it is taken as massless"
             robot.report.lost(link.place, message, "physics")
 

@@ -121,6 +121,17 @@ def bodies_of(text: str) -> list[dict[str, Any]]:
     return bodies
 
 
+def test_rounding_displaces_nothing() -> None:
+    """0.1 + 0.2 and 0.3 are one place."""
+    frames = '<frame name="f"><pose>0 0 0.1 0 0 0</pose></frame>'
+    frames += '<frame name="g"><pose relative_to="f">0 0 0.2 0 0 0</pose></frame>'
+    links = '<link name="b"><pose relative_to="g"/></link><link name="c"><pose>0 0 0.3 0 0 0</pose></link>'
+    joint = '<joint name="j" type="ball"><pose relative_to="c"/><parent>c</parent><child>b</child></joint>'
+    bodies = bodies_of(f'<sdf version="1.9"><model name="m">{frames}{links}{joint}</model></sdf>')
+    assert "placement" not in bodies[1]["joint"]
+    assert "com" not in bodies[1]
+
+
 def test_numbers_stand_on_lines_of_their_own() -> None:
     lines = SDF.replace("0.1 0 0.3 0.1 0.2 0.3</pose>", "\n0.1 0 0.3\n0.1 0.2\n\n0.3\n</pose>")
     assert bodies_of(lines) == bodies_of(SDF)

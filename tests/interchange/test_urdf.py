@@ -104,6 +104,17 @@ def test_floating_joints_and_bases_have_six_coordinates() -> None:
     assert free["bodies"][0]["joint"]["coordinate"] == [f"a_free_{s}" for s in steps]
 
 
+def test_floating_roots_that_are_seen_and_have_no_mass_are_told() -> None:
+    shape = '<visual><geometry><sphere radius="1"/></geometry></visual>'
+    for root, options, is_told in (
+        (f'<link name="a">{shape}</link>', Options(base="floating"), True),
+        (f'<link name="a">{shape}</link>', Options(), False),
+        ('<link name="a"/>', Options(base="floating"), False),
+    ):
+        found = import_file(urdf(root + joint("j", "a", "b"), "b"), options)
+        assert any("no mass is given" in remark["message"] for remark in found.report) == is_told
+
+
 def test_limits_damping_and_remarks() -> None:
     more = (
         '<axis xyz="0 0 1"/><limit lower="-1" upper="2" effort="1" velocity="1"/>'

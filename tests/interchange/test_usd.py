@@ -132,6 +132,15 @@ def test_the_arm_is_that_of_its_urdf_file() -> None:
     assert at == [[-np.pi / 2, pytest.approx(2 * np.pi / 3)], [], [0, 0.25]]
 
 
+def test_rounding_displaces_nothing() -> None:
+    """Two frames at one place, turned alike: 0.1 stays 0.1."""
+    text = USD.replace("(0, 0.1, 0.6)", "(0.1, 0.2, 0.3)").replace("(0.8, 0, 0, 0.6)", "(0.3, 0.4, 0.5, 0.6)")
+    more = "point3f physics:localPos1 = (0.1, 0.2, 0.3)\n        quatf physics:localRot1 = (0.3, 0.4, 0.5, 0.6)\n"
+    text = text.replace("        quatf physics:localRot0", f"        {more}        quatf physics:localRot0")
+    placement = read(text).definition["bodies"][1]["joint"]["placement"]
+    assert [str(x) for x in placement["position"]] == ["0.1", "-0.1", "0.3"]
+
+
 def test_limits_are_two_in_order_or_told() -> None:
     for low, high, message in (
         ("-inf", "0.25", "one limit alone"),

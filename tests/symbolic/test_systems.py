@@ -198,6 +198,14 @@ def _half_heavy() -> System:
     return system
 
 
+def _in_a_field() -> System:
+    """Gravity as SymPy's Lagrangian has it."""
+    system = cart_pole()
+    system.loads = []
+    system.bodies[2].potential_energy = g * l
+    return system
+
+
 def _loose() -> System:
     system = System()
     system.add_joints(PinJoint("pin", RigidBody("a"), RigidBody("b")))
@@ -209,6 +217,7 @@ def _loose() -> System:
     [
         (_tied, "velocity constraints are not taken over"),
         (_half_heavy, "are not the gravity of all bodies"),
+        (_in_a_field, "the potential energy of body 'pole' is not taken over"),
         (_loose, "body 'a' is on no joint, and not at the fixed point"),
         (_with_ball, "joint 'ball' is a SphericalJoint"),
         (_in_a_loop, "make no tree with one root|is in a loop"),

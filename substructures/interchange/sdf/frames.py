@@ -8,7 +8,8 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.errors import among
-from substructures.interchange.numbers import triple, value
+from substructures.interchange.merge import vector
+from substructures.interchange.numbers import Triple, triple, value
 from substructures.interchange.report import Place, refuse
 from substructures.interchange.rotations import from_quaternion, from_rpy, turn
 from substructures.interchange.xml import Node, numbers_in
@@ -81,6 +82,11 @@ class Frames:
 def _beyond(one: Pose, other: Pose) -> Pose:
     """A pose that is given in one."""
     return one[0] @ other[0], one[1] + one[0] @ other[1]
+
+
+def place_in(frame: Pose, r: Array) -> Triple:
+    """A point in a frame that is given beside it, without what is only rounding of both places."""
+    return vector(frame[0].T @ (r - frame[1]), float(max(np.abs(r).max(), np.abs(frame[1]).max())))
 
 
 def full_name(prefix: str, name: str) -> str:

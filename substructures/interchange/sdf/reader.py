@@ -34,7 +34,18 @@ from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
 from substructures.interchange.rotations import to_rpy, turned_inertia
 from substructures.interchange.sdf.axes import laws_of, limits_of, number, tell_of_laws
-from substructures.interchange.sdf.frames import WORLD, Framed, Frames, Pose, by_placement, framed, full_name, is_true
+from substructures.interchange.sdf.frames import (
+    HERE,
+    WORLD,
+    Framed,
+    Frames,
+    Pose,
+    by_placement,
+    framed,
+    full_name,
+    is_true,
+    place_in,
+)
 from substructures.interchange.sdf.includes import with_included
 from substructures.interchange.sdf.merging import FLAG, canonical_link
 from substructures.interchange.xml import Node, numbers_in
@@ -171,8 +182,8 @@ class _Reader:
         parent = _text(node, "parent")
         over = None if parent == WORLD else self._end(prefix + parent, node)
         here = self.frames.pose(child, node.place)
-        R, r = (np.eye(3), np.zeros(3)) if over is None else self.frames.pose(over, node.place)
-        position, rpy = vector(R.T @ (here[1] - r)), to_rpy(R.T @ here[0])
+        host = HERE if over is None else self.frames.pose(over, node.place)
+        position, rpy = place_in(host, here[1]), to_rpy(host[0].T @ here[0])
         own = self.links[child]
         motions, inertial = self._motions(prefix, node, here), self._inertial(own)
         return Link(child, over, own.place, position, rpy, motions, inertial, prefix + node.text_of("name"))
@@ -191,7 +202,7 @@ class _Reader:
         if kind == "fixed":
             return ()
         R, r = self.frames.pose(name, node.place)
-        anchor = vector(link[0].T @ (r - link[1]))
+        anchor = place_in(link, r)
         if kind == "ball":
             tell_of_laws(node, self.report)
             return (Motion(name, "spherical", node.place, anchor=anchor),)
@@ -242,8 +253,8 @@ class _Reader:
 
     def _frame(self, name: str, link: str) -> NamedFrame:
         place = self.frames.given[name].place
-        (R, r), (R0, r0) = self.frames.pose(name, place), self.frames.pose(link, place)
-        return NamedFrame(name, link, vector(R0.T @ (r - r0)), to_rpy(R0.T @ R))
+        here, host = self.frames.pose(name, place), self.frames.pose(link, place)
+        return NamedFrame(name, link, place_in(host, here[1]), to_rpy(host[0].T @ here[0]))
 
     def _inertial(self, node: Node) -> Inertial:
         """Mass, mass centre and R I R^T."""

@@ -153,6 +153,10 @@ def _inertia(reader: _Reader, body: Any, seat: _Seat) -> Plain:
 def _gravity(reader: _Reader, system: Any, seats: Mapping[Any, _Seat]) -> list[str | int]:
     """In axes of the root; every body has to have the same, but for the root, which stands still."""
     forces: dict[Any, Any] = {}
+    for body in () if system.loads else seats:
+        if body.potential_energy != 0:
+            what = f"the potential energy of body '{body.name}'"
+            raise _refused(what, "is not taken over: give gravity as a load (apply_uniform_gravity)")
     for load in system.loads:
         if not isinstance(load, Force):
             raise _refused(f"the load {load}", "is no force of gravity")

@@ -141,7 +141,7 @@ def _root(links: dict[str, Node], joints: list[_Joint], report: Report) -> Link:
         message = f"there are several roots ({', '.join(roots[:5])}): connect them by fixed joints to one link"
         raise refuse(links[roots[1]].place, "several-roots", message)
     node = links[roots[0]]
-    return Link(roots[0], None, node.place, inertial=_inertial(node, report))
+    return Link(roots[0], None, node.place, inertial=_inertial(node, report), has_shape=_is_shown(node))
 
 
 def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Report) -> Link:
@@ -164,9 +164,12 @@ def _link(joint: _Joint, node: Node, rotors: Mapping[str, Number], report: Repor
         for limit in joint.node.all("limit"):
             if {"lower", "upper"} & limit.attributes.keys():
                 report.lost(limit.place, f"limits of a {joint.type} joint are not read: it moves anywhere here")
-    is_shown = any(node.all("visual", "collision"))
     inertial = _inertial(node, report)
-    return Link(joint.child, joint.parent, node.place, position, rpy, motions, inertial, joint.name, is_shown)
+    return Link(joint.child, joint.parent, node.place, position, rpy, motions, inertial, joint.name, _is_shown(node))
+
+
+def _is_shown(link: Node) -> bool:
+    return any(link.all("visual", "collision"))
 
 
 def _motion(joint: _Joint, armature: Number, report: Report) -> Motion:

@@ -17,7 +17,7 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import among
 from substructures.interchange.merge import ordered_limits, vector
-from substructures.interchange.numbers import ZERO, Number, angle, decimal_of, direction
+from substructures.interchange.numbers import ROUNDING, ZERO, Number, angle, decimal_of, direction
 from substructures.interchange.report import Report, refuse
 from substructures.interchange.robot import Loop, Motion
 from substructures.interchange.rotations import to_rpy
@@ -44,8 +44,10 @@ class Joint:
     is_cut: bool  #: excludeFromArticulation
 
     def placed(self, child: int) -> Pose:
-        """The child, which is end 0 or 1, in the other one where q is zero."""
-        return self.frames[1 - child].beyond(self.frames[child].inverse)
+        """The child, which is end 0 or 1, in the other one where q is zero, without what is only rounding."""
+        R, r = self.frames[1 - child].beyond(self.frames[child].inverse)
+        least = ROUNDING * max(np.abs(frame.r).max() for frame in self.frames)
+        return Pose(R, np.where(np.abs(r) < least, 0.0, r))
 
     def motions(self, child: int, scene: Scene, report: Report) -> tuple[Motion, ...]:
         """Of the child, in its axes."""
