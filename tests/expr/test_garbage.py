@@ -12,6 +12,7 @@ import pytest
 from substructures import Definition, InvalidDocument, TreeSpec, catalogue, couple, derive, linearise, simulate
 from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr, Graph
+from substructures.mechanics.frame_choice import _chosen
 
 ARM = Definition.read(catalogue.load("puma560"))
 TREE = TreeSpec.read({"name": "t", "instances": [{"name": "a", "substructure": "puma560"}]})
@@ -75,6 +76,18 @@ def test_formulas_of_first_results_leave_no_nodes(name: str) -> None:
     try:
         work()
         assert sum(isinstance(x, Expr) for x in gc.get_objects()) < 150
+    finally:
+        gc.enable()
+
+
+def test_the_choice_of_frames_leaves_no_garbage() -> None:
+    part = derive(ARM)
+    _chosen.cache_clear()
+    gc.collect()
+    gc.disable()
+    try:
+        couple(TREE, {"a": part})
+        assert gc.collect() < 1000
     finally:
         gc.enable()
 
