@@ -39,14 +39,13 @@ def derivative(expr: Expr, name: str) -> Expr:
     its zeros there is no derivative (the jump of ``sign`` is not represented). Raises ZeroDivisionError where a
     derivative is infinite for every value of the symbols.
     """
-    return _derivatives([expr], name)[0]
+    return directional([expr], {name: expr.graph.one})[0]
 
 
 def gradient(exprs: Iterable[Expr], names: Sequence[str]) -> list[list[Expr]]:
     """Jacobian: row i, column j is the derivative of expression i with respect to symbol j."""
     rows = list(exprs)
-    columns = [_derivatives(rows, name) for name in names]
-    return [[column[i] for column in columns] for i in range(len(rows))]
+    return in_directions(rows, [{name: rows[0].graph.one} for name in names]) if rows else []
 
 
 def pullback(exprs: Iterable[Expr], weights: Iterable[Expr], names: Sequence[str]) -> list[Expr]:
@@ -108,18 +107,19 @@ def _shares(node: Expr, w: Expr) -> tuple[Expr, ...]:
     return (w * _OUTER[op](args[0], node),) if op in _OUTER else ()
 
 
-def _derivatives(roots: Sequence[Expr], name: str) -> list[Expr]:
-    return directional(roots, {name: roots[0].graph.one}) if roots else []
-
-
 def directional(roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
     """Directional derivatives: sum over symbols of the partial derivative times ``seeds[symbol]``, in one walk.
 
     Raises ZeroDivisionError where a derivative is infinite for every value of the symbols.
     """
+    return _along(reachable(roots), roots, seeds)
+
+
+def _along(nodes: Sequence[Expr], roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
+    """The same; ``nodes``: those that the roots need."""
     # nodes that do not depend on the symbols have no entry
     d: dict[Expr, Expr] = {}
-    for node in reachable(roots):
+    for node in nodes:
         if node.op == "sym":
             if str(node.value) in seeds:
                 d[node] = seeds[str(node.value)]
@@ -132,7 +132,8 @@ def directional(roots: Sequence[Expr], seeds: Mapping[str, Expr]) -> list[Expr]:
 
 def in_directions(roots: Sequence[Expr], directions: Iterable[Mapping[str, Expr]]) -> list[list[Expr]]:
     """Row i, column j is the derivative of expression i in direction j, as of :func:`directional`."""
-    columns = [directional(roots, seeds) for seeds in directions]
+    nodes = reachable(roots)
+    columns = [_along(nodes, roots, seeds) for seeds in directions]
     return [[column[i] for column in columns] for i in range(len(roots))]
 
 

@@ -137,7 +137,10 @@ def evaluation_frames(chain: Sequence[Link], christoffel: bool = True) -> tuple[
 
 @lru_cache(maxsize=256)
 def _chosen(shapes: tuple[Shape, ...], christoffel: bool) -> tuple[int, ...]:
-    return _Choice(shapes, christoffel).frames()
+    choice = _Choice(shapes, christoffel)
+    found = choice.frames()
+    choice.tally.operations.clear()  # tally and scalars refer to each other: Python's collector would look at them all
+    return found
 
 
 class _Choice:

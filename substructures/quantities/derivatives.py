@@ -83,7 +83,9 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
         return array((r.n, r.n), lambda a, b: found[a][b])
 
     rates = [{f"{name}'": r.graph.one} for name in model.coordinates]
-    return r.program({ID: vector(rows), f"{ID}_q": matrix(r.displacements), f"{ID}_qd": matrix(rates)})
+    result = r.program({ID: vector(rows), f"{ID}_q": matrix(r.displacements), f"{ID}_qd": matrix(rates)})
+    r.graph.release()
+    return result
 
 
 def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:

@@ -6,10 +6,25 @@ import numpy as np
 import pytest
 from random_expressions import collected, sample
 
-from substructures.expr.differentiate import derivative, gradient, pullback
+from substructures.expr import differentiate
+from substructures.expr.differentiate import derivative, gradient, in_directions, pullback
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.trigonometry import cos, sin, tan
+
+
+def test_all_directions_take_one_walk(monkeypatch: pytest.MonkeyPatch) -> None:
+    g = Graph()
+    x, y = g.symbol("x"), g.symbol("y")
+    walks, nodes = list[int](), differentiate.reachable
+    monkeypatch.setattr(differentiate, "reachable", lambda roots: walks.append(1) or nodes(roots))
+    assert in_directions([x * y, x], [{"x": y}, {"y": x}, {"x": g.one, "y": g.one}]) == [
+        [y * y, x * x, x + y],
+        [y, g.zero, g.one],
+    ]
+    assert gradient([x * y], ["x", "y"]) == [[y, x]]
+    assert gradient([], ["x"]) == []
+    assert len(walks) == 2
 
 
 def test_rules() -> None:

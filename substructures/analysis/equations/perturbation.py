@@ -28,6 +28,7 @@ from substructures.analysis.given import require_known
 from substructures.certificate.derived.perturbed import first_order, perturbed
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient, in_directions
+from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
@@ -74,6 +75,7 @@ def perturbation(model: Model) -> Program:
 
 
 @lru_cache(maxsize=32)
+@without_collections
 def _perturbation(known: Known) -> Program:
     model: Model = known.source
     if model.closures:
@@ -98,6 +100,7 @@ def _perturbation(known: Known) -> Program:
     if model.closures:
         outputs |= _with_closures(f, outputs)
     result = program(f.graph, outputs, {s.name: s for s in source.symbols} | f.symbols)
+    f.graph.release()
     multipliers = multipliers_of(model)
     more = dict.fromkeys(multipliers, "input")
     return certified(result, model, perturbed(names, multipliers, model.balls), "perturbation", more=more)

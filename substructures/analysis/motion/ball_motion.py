@@ -50,6 +50,7 @@ from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
+from substructures.expr.garbage import without_collections
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached
@@ -75,11 +76,14 @@ def equations_in_rates(model: Model, zero: Iterable[str] = ()) -> Program:
         "forward_dynamics": array((f.n,), lambda a: second[a]),
         "power": array((), lambda: f.power),
     }
+    result = program(f.graph, outputs, f.symbols)
+    f.graph.release()
     expected = simulated_in_rates(model.positions, model.balls)
-    return certified(program(f.graph, outputs, f.symbols), model, expected, "equations of motion", zero=f.zero)
+    return certified(result, model, expected, "equations of motion", zero=f.zero)
 
 
 @lru_cache(maxsize=16)
+@without_collections
 def _kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
     return compile_program(equations_in_rates(model.source, zero), OUTPUTS, folder)
 
