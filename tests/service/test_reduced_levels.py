@@ -126,7 +126,7 @@ def test_sweeps_have_its_columns(press: TestClient, store: Store) -> None:
     job = {
         "kind": "sweep",
         "template": TREE,
-        "samples": {"of": {"x.l2": {"uniform": ["0.85", "1.0"], "count": 5}}},
+        "samples": {"of": {"x.l2": {"uniform": [0.85, 1.0], "count": 5}}},
         "columns": {"torque": {"quantity": "gravity", "of": "x.phi", "over": {"q": [0.7]}, "take": "largest_absolute"}},
         "proof": 5,
     }
