@@ -9,12 +9,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from closed_trees import tree_model
 from exported_models import exported_of, tree_of, write
+from mechanics.reduced_parts import WISHBONE
 from mixed_program import mixed_program
 from run_code import STRICT, alone, call_c, shared, state, tool
 
 from substructures import Model
 from substructures.export import Exported
+from substructures.export.reference import reference
 
 OLD = ["-std=c89", "-Wall", "-Wextra", "-Wpedantic", "-Wconversion", "-Wdeclaration-after-statement", "-Werror"]
 
@@ -101,3 +104,15 @@ def test_elements_have_names_units_and_defaults(models: list[Model], tmp_path: P
     assert re.search(r"demo_P_i0_m2 = \d+, // i0\.m2 \[kg\], default 1\.0\n", header)
     assert "demo_Q_i0_q1 = 0, // i0.q1 [rad]\n" in header
     assert "demo_U_tau_i0_q1 = 0, // tau.i0.q1 [N m]\n" in header
+
+
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_self_tests_compare_where_loops_are_closed(precision: str, tmp_path: Path) -> None:
+    """A suspension, whose loops are open at the usual position, by steps of Newton's method."""
+    tree = {"gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "wishbone"}]}
+    exported = replace(exported_of(tree_model(tree, {"wishbone": WISHBONE})), precision=precision)
+    assert all(call.checks for call in reference(exported))
+    write(exported, "c", tmp_path)
+    command = [tool("gcc"), *STRICT, "-o", "run", "demo.c", "demo_selftest.c", "-lm"]
+    subprocess.run(command, cwd=tmp_path, check=True)
+    assert subprocess.run([str(tmp_path / "run")], capture_output=True, text=True, check=True).stdout == "ok\n"
