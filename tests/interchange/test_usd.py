@@ -386,6 +386,7 @@ def test_shapes_beside_one_with_a_mass_are_told() -> None:
 
 OTHERS = {
     "PhysxPhysicsGearJoint": 'def PhysxPhysicsGearJoint "gear"\n{\nrel physics:hinge0 = </arm/shoulder>\n}\n',
+    "MjcActuator": 'def MjcActuator "servo"\n{\nrel mjc:target = </arm/shoulder>\n}\n',
     "PointInstancer": 'def PointInstancer "p"\n{\ndef "a" (prepend apiSchemas = ["PhysicsRigidBodyAPI"])\n{\n}\n}\n',
 }  # fmt: skip
 

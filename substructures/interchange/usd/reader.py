@@ -170,7 +170,7 @@ class _Reader:
         joint, copies = package("UsdPhysics").Joint, package("UsdGeom").PointInstancer
         for prim in self.scene.prims:
             kind = str(prim.GetTypeName())
-            is_other = any(word in kind for word in ("Joint", "Tendon", "Equality")) and not prim.IsA(joint)
+            is_other = any(word in kind for word in ("Joint", "Tendon", "Equality", "Actuator")) and not prim.IsA(joint)
             if is_other or (prim.IsA(copies) and any(_is_on(body, [prim]) for body in self.scene.bodies.values())):
                 yield prim, kind
             for attribute in prim.GetAuthoredAttributes():
