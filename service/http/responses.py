@@ -11,7 +11,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
 from service.http.requests import store_of
-from service.messages.answers import FOR_EVER, REVALIDATE, Answer, Stream, some_of
+from service.messages.answers import FOR_EVER, REVALIDATE, Answer, Stream, names, some_of
 
 AT_ONCE = 2**22  # bytes that are handed to the connection at a time
 
@@ -42,8 +42,7 @@ async def _ahead(pieces: Iterator[bytes | memoryview]) -> AsyncIterator[bytes | 
 def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
     """304 when the client has the representation already, otherwise make it."""
     headers = {"ETag": tag, "Cache-Control": FOR_EVER if immutable else REVALIDATE, "Vary": "Accept"}
-    known = [item.strip().removeprefix("W/") for item in request.headers.get("if-none-match", "").split(",")]
-    if tag in known or "*" in known:
+    if names(request.headers.get("if-none-match", ""), tag):
         return Response(status_code=304, headers=headers)
     answer = make()
     return Response(answer.body, answer.status, {**answer.headers, **headers})

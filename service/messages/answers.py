@@ -61,3 +61,9 @@ def etag(*identity: str) -> str:
     """A strong ETag of a representation that is a function of its identity and of the software."""
     text = "\n".join((__version__, *identity))
     return f'"{hashlib.sha256(text.encode()).hexdigest()[:32]}"'
+
+
+def names(given: str, tag: str) -> bool:
+    """Whether a header names a tag, or all; weak ones are the same, as which proxies send what they compress."""
+    known = [each.strip().removeprefix("W/") for each in given.split(",")]
+    return tag in known or "*" in known

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 from service.content.summaries import PartContent, part_content
 from service.database.connections import Connection
 from service.jobs.worker import Worker
+from service.messages.answers import names
 from service.messages.references import ALIAS, Reference, parse_reference
 from service.messages.refusals import Refused, not_found, unprocessable
 from service.messages.viewer import Viewer
@@ -159,7 +160,7 @@ def set_alias(
     if current is not None and if_match is None:
         detail = f"the alias '{alias}' exists; send its ETag in If-Match to move it"
         raise Refused(428, "precondition-required", detail, headers={"ETag": alias_tag(current)})
-    if if_match is not None and (current is None or if_match not in ("*", alias_tag(current))):
+    if if_match is not None and (current is None or not names(if_match, alias_tag(current))):
         raise Refused(412, "precondition-failed", f"the alias '{alias}' is not what If-Match says")
     if current is not None and current.version == version:
         return current

@@ -12,7 +12,7 @@ from service.database.connections import Connection
 from service.jobs.kinds.assemble import NAMED, pinned_spec
 from service.jobs.kinds.shapes import KNOWN, SHARE
 from service.jobs.worker import Worker
-from service.messages.answers import etag
+from service.messages.answers import etag, names
 from service.messages.references import Reference, is_pinned, parse_reference
 from service.messages.refusals import Refused, StaleError, moved, not_found, unprocessable
 from service.messages.viewer import Viewer
@@ -169,7 +169,7 @@ def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> 
         base = find(connection, viewer, text)
         tag = tree_tag(base, withdrawn(connection, viewer, base)) if if_match else ""
     owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
-    if if_match not in (None, "*", tag):
+    if if_match is not None and not names(if_match, tag):
         detail = f"the tree '{text}' is not what If-Match says; it is {tag} now"
         raise Refused(412, "precondition-failed", detail, headers={"ETag": tag})
     return base, _current(base)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from typing import Annotated, Any
+from typing import Annotated, Any, Self
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Discriminator, Field, RootModel, Tag, model_validator
@@ -56,7 +56,13 @@ def _pair(given: Any) -> Any:
 def _ordered(given: tuple[float, float]) -> tuple[float, float]:
     if given[0] > given[1]:
         raise refused("range", f"{given[0]:g} is above {given[1]:g}")
+    _near(*given)
     return given
+
+
+def _near(low: float, high: float) -> None:
+    if not math.isfinite(high - low):
+        raise refused("range", f"{low:g} and {high:g} are further apart than the largest number")
 
 
 def _object(given: Any) -> Any:
@@ -86,6 +92,11 @@ class AxisSpan(Shape):
         if given.keys() != {"from", "to", "count"}:
             raise refused("axis", "an axis has 'from', 'to' and 'count'")
         return given
+
+    @model_validator(mode="after")
+    def _is_finite(self) -> Self:
+        _near(self.start, self.stop)
+        return self
 
 
 def _kind(given: Any) -> str:

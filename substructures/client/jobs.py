@@ -267,11 +267,17 @@ class JobCaller(Caller):
         return item
 
     def content_of(self, answer: httpx2.Response) -> bytes:
-        """What was answered, also where it took so long that it became a job of one item with a file."""
+        """What was answered, as :meth:`file_of`."""
+        return self.file_of(answer)[1]
+
+    def file_of(self, answer: httpx2.Response) -> tuple[str, bytes]:
+        """The name, if there is one, and the content of what was answered, or of the file of the one item of the job
+        that it became as it took so long."""
         if answer.status_code != 202:
-            return answer.content
-        (file,) = self._item_of_job(answer.json()["id"])["files"]
-        return self.request("GET", file["href"]).content
+            return answer.headers.get("content-disposition", "").partition('filename="')[2].rstrip('"'), answer.content
+        item = self._item_of_job(answer.json()["id"])
+        (file,) = item["files"]
+        return item["result"].get("name", ""), self.request("GET", file["href"]).content
 
     def _made(self, method: str, path: str, body: Any = None) -> dict[str, Any]:
         """What a request has made, also where it took so long that it became a job of one item."""

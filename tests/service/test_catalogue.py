@@ -269,7 +269,7 @@ def test_aliases_move_only_with_if_match(filled: TestClient) -> None:
     assert (created.status_code, created.headers["etag"]) == (201, '"1"')
     assert filled.put(url, json={"version": 2}).status_code == 428
     assert filled.put(url, json={"version": 2}, headers={"If-Match": '"7"'}).status_code == 412
-    moved = filled.put(url, json={"version": 2}, headers={"If-Match": created.headers["etag"]})
+    moved = filled.put(url, json={"version": 2}, headers={"If-Match": f"W/{created.headers['etag']}"})
     assert (moved.status_code, moved.headers["etag"]) == (200, '"2"')
     AliasView.model_validate(moved.json())
     assert [change["version"] for change in filled.get(url).json()["history"]] == [2, 1]

@@ -361,5 +361,6 @@ def test_the_command_waits_where_it_becomes_a_job(
 
         monkeypatch.setattr(Client, "request", asked)
         assert main(["export", "to-go", "--target", "c", "--server", address]) == 0
-    assert "to-go.zip" in capsys.readouterr().out
-    assert "to_go.c" in members(Path("to-go.zip").read_bytes())
+        assert main(["export", "to-go", "--target", "urdf", "--bind", "defaults", "--server", address]) == 0
+    assert [line.partition(":")[0] for line in capsys.readouterr().out.splitlines()] == ["to_go_c.zip", "to_go.urdf"]
+    assert "to_go.c" in members(Path("to_go_c.zip").read_bytes())

@@ -12,6 +12,7 @@ from fastapi.testclient import TestClient
 
 from service.jobs.kinds import KINDS
 from service.operations.jobs import jobs as operations
+from service.routes.jobs import job_streams
 from service.schemas.jobs import JobKind
 from service.store.store import Store
 from substructures.expr.program import read_program
@@ -95,6 +96,22 @@ def test_an_archive_has_the_formulas_of_trees_and_parts(filled: TestClient, stor
                         tree = filled.get(of_job.format(tree=item["result"]["tree"])).json()
                         assert tree["program"] == program.digest
                         assert {"metric", "christoffel", "forces"} <= set(program.outputs)
+
+
+def test_an_archive_breaks_off_where_its_job_is_removed(
+    filled: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(job_streams, "ITEMS", 1)
+    for count in (1, 2):  # before a file, before the next items
+        with running(store, FakeEngine()):
+            job = submitted(filled, export("cell", "metric", "gravity"))
+            finished(filled, job)
+        pieces = job_streams._archive(store, job)
+        for _ in range(count):
+            next(pieces)
+        assert filled.delete(f"/v1/jobs/{job}").status_code == 204
+        with pytest.raises(job_streams._Removed):
+            list(pieces)
 
 
 def test_filters_are_checked(client: TestClient) -> None:

@@ -162,6 +162,16 @@ EVALUATION: dict[str, Any] = {"tree": "cell", "request": {"quantities": ["metric
         ),
         (
             "evaluate",
+            {"items": [EVALUATION | {"sample": {"count": 1, "ranges": {"arm.q": [-1e308, 1e308]}}}]},
+            ("/items/0/sample/ranges/arm.q", "range"),
+        ),
+        (
+            "evaluate",
+            {"items": [EVALUATION | {"grid": {"arm.q": {"from": 1e308, "to": -1e308, "count": 3}}}]},
+            ("/items/0/grid/arm.q", "range"),
+        ),
+        (
+            "evaluate",
             {"items": [{**EVALUATION, "tree": "free", "sample": {"count": 1}}]},
             ("/items/0/sample/ranges", "missing"),
         ),

@@ -125,11 +125,7 @@ def _remote(server: Server, tree: str, is_part: bool, request: ExportRequest) ->
     }
     with server.client() as client:
         answer = client.request("GET", f"/v1/{kind}/{step(tree)}/export", params=wanted)
-        content = client.content_of(answer)  # waits where it became a job
-    told = answer.headers.get("content-disposition", "").partition('filename="')[2].rstrip('"')
-    zipped = ".zip" if content.startswith(b"PK") else ".txt"
-    ending = ".fmu" if request.target == "fmu" else zipped
-    name = told or f"{request.name or tree.partition('@')[0]}{ending}"
+        name, content = client.file_of(answer)  # waits where it became a job
     return Package(Path(name).name, answer.headers["content-type"], content)
 
 

@@ -122,6 +122,8 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
     after, told = -1, set[str]()
     while True:
         with store.database.read() as connection:
+            if rows.get_job(connection, job) is None:
+                raise _Removed(job)
             items = rows.page_items(connection, job, None, after, ITEMS)
             files = results.list_files(connection, [item.key for item in items if item.summary is not None])
         for item in items:
@@ -138,13 +140,17 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
                     yield f"programs/{stored.removeprefix('sha256:')}.json", formulas
             for file in there:
                 with store.database.read() as connection:
-                    yield (
-                        f"{item.position}/{file_name(item, file.name)}",
-                        results.get_file(connection, file.key, file.name) or b"",
-                    )
+                    data = results.get_file(connection, file.key, file.name)
+                if data is None:
+                    raise _Removed(job)
+                yield f"{item.position}/{file_name(item, file.name)}", data
         if len(items) < ITEMS:
             return
         after = items[-1].position
+
+
+class _Removed(Exception):
+    """A job was removed while its files were sent: what was sent is to be no whole archive."""
 
 
 class _Sink(io.RawIOBase):
