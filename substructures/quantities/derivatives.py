@@ -19,7 +19,7 @@ from dataclasses import replace
 from substructures.errors import InvalidDocument, TooLarge
 from substructures.expr.differentiate import directional, in_directions
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, array
+from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
 from substructures.part.part import MAX_NODES
@@ -83,9 +83,7 @@ def inverse_dynamics_jacobians(model: Model) -> Program:
         return array((r.n, r.n), lambda a, b: found[a][b])
 
     rates = [{f"{name}'": r.graph.one} for name in model.coordinates]
-    result = r.program({ID: vector(rows), f"{ID}_q": matrix(r.displacements), f"{ID}_qd": matrix(rates)})
-    r.graph.release()
-    return result
+    return r.program({ID: vector(rows), f"{ID}_q": matrix(r.displacements), f"{ID}_qd": matrix(rates)})
 
 
 def forward_dynamics(model: Model, max_nodes: int = MAX_NODES) -> Program:
@@ -113,7 +111,8 @@ def forward_dynamics_derivative(model: Model, max_nodes: int = MAX_NODES) -> Pro
     factors, told = factors_of(r, max_nodes)
     found = _accelerations(r, factors)
     # dID at the symbols q'' with dq'' = 0, then at q'' = FD
-    slopes = r.program({"slopes": vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))})
+    rows = vector(_along(r, r.inverse_dynamics(), frozenset(("acceleration",))))
+    slopes = program(r.graph, {"slopes": rows}, r.symbols)
     bindings = {f"{name}''": x for name, x in zip(model.coordinates, found, strict=True)}
     at_found = replay(slopes, r.graph, bindings)["slopes"].entries
     # g d(q'') = -dID

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from substructures.certificate.derived.model_formulas import SERVED
 from substructures.errors import TooLarge
+from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
@@ -78,6 +79,7 @@ def total_momentum(model: Model, _: int) -> Program:
 CLOSED_DYNAMICS = "closed_dynamics"
 
 
+@without_collections
 def derived(model: Model, quantity: str, max_nodes: int = MAX_NODES) -> Program:
     """A quantity of DERIVED as a program with an output of that name (notation.md, section 7), or CLOSED_DYNAMICS.
 

@@ -13,6 +13,7 @@ from substructures import Definition, InvalidDocument, TreeSpec, catalogue, coup
 from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr, Graph
 from substructures.mechanics.frame_choice import _chosen
+from substructures.quantities.formulas import derived
 
 ARM = Definition.read(catalogue.load("puma560"))
 TREE = TreeSpec.read({"name": "t", "instances": [{"name": "a", "substructure": "puma560"}]})
@@ -47,13 +48,16 @@ def test_nothing_is_collected_meanwhile(coupled: bool, collections: list[int]) -
 
 
 def first_results(name: str) -> Callable[[], None]:
-    """The first motion of a catalogue entry at the world, and its linearisation where it has no ball joints."""
+    """The first motion of a catalogue entry at the world; where it has no ball joints its linearisation, and a quantity
+    that is asked for.
+    """
     model = couple({"name": "t", "instances": [{"name": "a", "substructure": name}]}, {"a": derive(name)})
 
     def work() -> None:
         assert simulate(model, {q: float(q == "a.qw") for q in model.positions}, (0, 0.1)).is_right
         if not model.balls:
             linearise(model, [0.1] * model.dof)
+            derived(model, "christoffel_second_kind")
 
     return work
 

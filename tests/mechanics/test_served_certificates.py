@@ -155,7 +155,7 @@ MAKERS: dict[str, tuple[Callable[[], Any], str]] = {
 }  # fmt: skip
 MODULES = (
     *(adjoint, base, curvature, first_integrals, parameter_sensitivity, perturbation, quasi_velocities, of_parts),
-    *(right_hand_side, routh, steady, work, linearised, solved, variation),
+    *(routh, steady, work, linearised, solved, variation),
 )
 
 

@@ -96,11 +96,10 @@ def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegra
     searched = search.beyond(degree)
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
     integrals = tuple(i for i, _ in search.found)
-    result, rows = program(f.graph, outputs, f.symbols), f.multipliers
+    result, rows = f.program(outputs), f.multipliers
     expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result), model.balls)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
-    f.graph.release()
     result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
     return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
 

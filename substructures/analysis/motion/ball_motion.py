@@ -51,7 +51,7 @@ from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.expr.garbage import without_collections
-from substructures.expr.program import Program, array, program
+from substructures.expr.program import Program, array
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached
 from substructures.quantities.numbers.quaternions import moved_on, quaternions_in
@@ -76,10 +76,8 @@ def equations_in_rates(model: Model, zero: Iterable[str] = ()) -> Program:
         "forward_dynamics": array((f.n,), lambda a: second[a]),
         "power": array((), lambda: f.power),
     }
-    result = program(f.graph, outputs, f.symbols)
-    f.graph.release()
     expected = simulated_in_rates(model.positions, model.balls)
-    return certified(result, model, expected, "equations of motion", zero=f.zero)
+    return certified(f.program(outputs), model, expected, "equations of motion", zero=f.zero)
 
 
 @lru_cache(maxsize=16)

@@ -24,7 +24,7 @@ from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.expr.garbage import without_collections
-from substructures.expr.program import Program, array, program
+from substructures.expr.program import Program, array
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model
 
@@ -43,9 +43,7 @@ def forward_dynamics(model: Model, zero: Iterable[str] = ()) -> Program:
         PIVOTS: array((f.n,), lambda a: f.factors.D[a]),
         POWER: array((), lambda: power),
     }
-    result = program(f.graph, outputs, f.symbols)
-    f.graph.release()
-    return certified(result, model, simulated, "equations of motion", zero=f.zero)
+    return certified(f.program(outputs), model, simulated, "equations of motion", zero=f.zero)
 
 
 @lru_cache(maxsize=32)

@@ -184,8 +184,10 @@ class Workspace:
         return [x + bias.get((a,), 0) - forces.get((a,), 0) for a, x in enumerate(rows)]
 
     def program(self, outputs: Mapping[str, Formulas]) -> Program:
-        """Outputs as a program."""
-        return program(self.graph, outputs, self.symbols)
+        """Outputs as a program, which is the last that is made here: the nodes are forgotten."""
+        found = program(self.graph, outputs, self.symbols)
+        self.graph.release()
+        return found
 
     def _replayed(self, names: Sequence[str], bindings: Mapping[str, Expr] | None) -> dict[str, Formulas]:
         require_stored(self.model.program, names)
