@@ -33,6 +33,14 @@ def test_lists_arrays_and_columns_are_the_same_states() -> None:
         assert np.array_equal(other["kinematics"]["position"], found[0]["kinematics"]["position"])
 
 
+def test_numbers_of_one_coordinate_are_states() -> None:
+    model = catalogue_model("simple-pendulum")
+    rates = evaluate(model, ["kinetic_energy", "inverse_dynamics"], [0.1], [1, 2, 3], [4, 5, 6])
+    rows = evaluate(model, ["kinetic_energy", "inverse_dynamics"], [[0.1]] * 3, [[1], [2], [3]], [[4], [5], [6]])
+    for name in rows.quantities:
+        assert np.array_equal(rates[name], rows[name])
+
+
 def test_it_is_shown_in_two_lines() -> None:
     found = evaluate(catalogue_model("planar-2r"), ["metric", "momentum"], np.zeros((3, 2)))
     head, shapes = repr(found).split("\n")

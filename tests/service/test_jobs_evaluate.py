@@ -60,6 +60,18 @@ def test_grids_of_trees_with_ball_joints() -> None:
     assert refused == {("/items/0/sample", "has-balls")}
 
 
+def test_samples_are_of_the_coordinates_that_are_left() -> None:
+    """Not of one whose motion is given: q_1 = pi t."""
+    joints = [{"type": "revolute", "coordinate": name, "theta": "pi/2"} for name in ("q1", "q2")]
+    bodies = [{"name": f"b{k}", "parent": f"b{k - 1}" if k else "base", "joint": x} for k, x in enumerate(joints)]
+    part = {"name": "arm", "bodies": [{**body, "mass": 1, "com": [1, 0, 0]} for body in bodies]}
+    tree = {"name": "t", "gravity": [0, 0, 0], "instances": [{"name": "x", "substructure": "arm"}]}
+    library = MemoryLibrary([part], [{**tree, "driven": {"x.q1": "pi*t"}}])
+    item = {"tree": "t", "request": {"quantities": ["metric"]}, "sample": {"count": 5}}
+    made = outcomes(library, "evaluate", {"items": [item]})
+    assert joined(made, "metric").shape == (5, 1, 1)
+
+
 def test_arrow_says_what_npz_says(library: MemoryLibrary) -> None:
     pytest.importorskip("pyarrow")
     item = {

@@ -112,7 +112,9 @@ def _described(
         return {"grid": grid}
     if item.sample is not None:
         require_chains(model.balls, "give 'q' in lists, or a grid", "/sample")
-        sample = read_sample(item.sample, known, joint_limits(tree, library))
+        # not of what is given, or follows from loops
+        limits = {name: limit for name, limit in joint_limits(tree, library).items() if name in known}
+        sample = read_sample(item.sample, known, limits)
         _check_once(request, "/sample/ranges", sample["ranges"])
         return {"sample": sample}
     return {}

@@ -60,8 +60,10 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
         if model.dof:
             raise InvalidArgument.at("/q", "missing", "states 'q' are needed")
         q = np.zeros((1, 0)), True
-    # one q stands for as many states as anything else has
-    count = longest(given) if len(q[0]) == 1 else len(q[0])
+    rates = {name: x[0] for name in STATE[1:] if (x := _state(model, given.get(name), name)) is not None}
+    # one q stands for as many states as anything else has, also numbers of one coordinate
+    most = max(longest(given), *(len(x) for x in rates.values() if limit != 1), 1)
+    count = most if len(q[0]) == 1 else len(q[0])
     if limit is not None and count > limit:
         told = f"{count:,} states; the limit is {limit:,}"
         if limit == 1:
@@ -70,15 +72,11 @@ def read_states(model: Model, given: ArgumentsByName, limit: int | None) -> Stat
         raise InvalidArgument.at("/q", "too-many-states", told)
     if limit == 1 and not count:
         raise InvalidArgument.at("/q", "missing", "a state is needed")
-    others = []
-    for name in STATE[1:]:
-        found = _state(model, given.get(name), name)
-        if found is not None and len(found[0]) not in (1, count):
-            message = f"{len(found[0])} states where there are {count}"
-            raise InvalidArgument.at(f"/{name}", "wrong-length", message)
-        others.append(None if found is None else found[0])
-    qd = np.zeros((1, model.dof)) if others[0] is None else others[0]
-    return States(q[0], qd, others[1], count, q[1] and count == 1)
+    for name, rows in rates.items():
+        if len(rows) not in (1, count):
+            raise InvalidArgument.at(f"/{name}", "wrong-length", f"{len(rows)} states where there are {count}")
+    qd = rates.get("qd", np.zeros((1, model.dof)))
+    return States(q[0], qd, rates.get("qdd"), count, q[1] and count == 1)
 
 
 def argument_units(model: Model) -> dict[str, PlaceUnits]:
