@@ -1,1 +1,1 @@
-"""Loops of parts in closed form: dependent coordinates as functions of independent ones (notation.md, section 10)."""
+"""Loops of parts: dependent coordinates as functions of independent ones (notation.md, section 10)."""
