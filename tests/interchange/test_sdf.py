@@ -192,6 +192,54 @@ def model_of(content: str) -> tuple[Imported, Model]:
     return found, couple(TreeSpec.read(found.tree or tree), {"robot": derived_once(found.definition)})
 
 
+PITCHES = {
+    "<screw_thread_pitch>0.4</screw_thread_pitch>": 0.4 / (2 * np.pi),
+    "<screw_thread_pitch>-4E-10</screw_thread_pitch><thread_pitch>7</thread_pitch>": -4e-10 / (2 * np.pi),
+    "<thread_pitch>5</thread_pitch>": -1 / 5,
+}
+
+
+@pytest.mark.parametrize("pitch", PITCHES)
+def test_a_screw_by_hand(pitch: str) -> None:
+    """J + m mu^2 and -m g mu; a right-handed one, turned by the right hand about its axis, goes along it."""
+    mu = PITCHES[pitch]
+    laws = "<limit><lower>-9</lower><upper>9</upper></limit><dynamics><damping>0.5</damping></dynamics>"
+    found, model = model_of(link("nut") + joint("s", "screw", "world", "nut", along("0 0 2", more=laws) + pitch))
+    assert model.coordinates == ("robot.s",)
+    numbers = evaluate(model, ["metric", "forces", "kinematics"], q=[0.7], qd=[0.2])
+    assert numbers["metric"][0, 0] == pytest.approx(0.02 + 3 * mu**2, rel=1e-12)
+    assert numbers["forces"][0] == pytest.approx(-3 * 3.7 * mu - 0.5 * 0.2, rel=1e-12)
+    at = list(model.frames).index("robot.nut")
+    assert numbers["kinematics"]["position"][at, 2] == pytest.approx(0.7 * mu, rel=1e-12)
+    said = [remark["message"] for remark in found.report]
+    assert any("its coordinate is its angle" in each for each in said)
+    assert any("rad/m, and left-handed" in each for each in said) == pitch.startswith("<thread")
+
+
+GEARS = {
+    "both on it": (("c", "a", "0 1 0"), "0 1 0", -3),
+    "against its axis": (("c", "a", "0 -1 0"), "0 1 0", 3),
+    "it on the first": (("a", "c", "0 1 0"), "0 2 0", 3),
+    "axis of the gearbox": (("c", "a", "0 1 0"), "0 -1 0", 3),
+}
+
+
+@pytest.mark.parametrize("name", GEARS)
+def test_a_gearbox_by_hand(name: str) -> None:
+    """The angles of both wheels against the carrier: theta_2 = -3 theta_1."""
+    (parent, child, axis), first, ratio = GEARS[name]
+    links = link("a") + link("c", "0 0 1 0 0 0") + link("b", "0 0 2 0 0 0")
+    box = along(first) + along("1 0 0", "axis2") + "<gearbox_ratio>3</gearbox_ratio>"
+    box = joint("box", "gearbox", "a", "b", f"{box}<gearbox_reference_body>c</gearbox_reference_body>")
+    tree = joint("qa", "revolute", parent, child, along(axis)) + joint("qb", "revolute", "c", "b", along("1 0 0"))
+    found, model = model_of(links + box + tree)
+    assert model.coordinates == ("robot.qa",)
+    (relation,) = found.definition["relations"]
+    assert relation == {"coordinate": "qb", "of": "qa", "multiplier": ratio, "offset": 0}
+    with pytest.raises(InvalidDocument, match="no revolute joints about its axes move its parent and child"):
+        model_of(links + box.replace("<xyz>1 0 0", "<xyz>0 1 0") + tree)
+
+
 def bar(closing: str, more: str = "", flag: str = "") -> str:
     """A parallelogram about x in the plane of y and z: crank and rocker 0.2 long, coupler and ground 0.3."""
     x, still = along("1 0 0", more=more), along("1 0 0")
@@ -248,7 +296,12 @@ BAD = {
     "circle": (SDF.replace('attached_to="upper"><pose', 'attached_to="upper"><pose relative_to="lower"'), "to itself"),
     "link": (SDF.replace("<parent>upper", "<parent>arm"), 'line 13: <joint name="elbow">: there is no link .arm'),
     "axis": (SDF.replace("<xyz>0 1 0", "<xyz>0 0 0"), "line 10: <xyz>: the axis has no direction"),
-    "type": (SDF.replace('"elbow" type="revolute"', '"elbow" type="screw"'), "type 'screw' is none of"),
+    "type": (SDF.replace('"elbow" type="revolute"', '"elbow" type="hinge"'), "type 'hinge' is none of"),
+    "screw": (SDF.replace('"elbow" type="revolute"', '"elbow" type="screw"'), "<screw_thread_pitch> is needed"),
+    "two screws": (
+        SDF.replace("</model>", f"{joint('s', 'screw', 'world', 'lower')}</model>"),
+        "the link 'lower' is the child of 'elbow' already, and a joint 'screw' on 'None' closes no loop",
+    ),
     "skew": (
         SDF.replace("</model>", f"{joint('u', 'universal', 'upper', 'lower', SKEW)}</model>"),
         "it closes a loop, and its axes are not at a right angle",

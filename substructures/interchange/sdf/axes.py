@@ -28,7 +28,7 @@ def laws_of(axis: Node, joint: Node, report: Report) -> dict[str, Number]:
 
 
 def tell_of_laws(joint: Node, what: str, report: Report) -> None:
-    """Of a joint that has no coordinates along its axes: a ball, one that closes a loop."""
+    """Of a joint that has no coordinates along its axes: a ball, a gearbox, one that closes a loop."""
     for axis in joint.all("axis", "axis2"):
         told = Report()
         laws, limits = laws_of(axis, joint, told), limits_of(axis, "", told)

@@ -5,7 +5,8 @@ of a frame to what it is attached to, or to ``relative_to``. An axis is given in
 ``expressed_in``; it goes through the origin of the joint's frame, which need not be that of the child link. Until SDF
 1.4, and where ``use_parent_model_frame`` says so until 1.6, it is given in the frame of the model.
 
-The first joint of which a link is the child carries it, but for one that ``must_be_loop_joint``; others close loops.
+The first joint of which a link is the child carries it, but for one that ``must_be_loop_joint``; others close loops. A
+screw is a prismatic joint that moves with a revolute one; a gearbox carries nothing, and binds two joints.
 """
 
 from __future__ import annotations
@@ -35,7 +36,7 @@ from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion,
 from substructures.interchange.rotations import to_rpy, turned_inertia
 from substructures.interchange.sdf.axes import laws_of, limits_of, number, tell_of_laws
 from substructures.interchange.sdf.contents import Contents, text_in
-from substructures.interchange.sdf.couplings import CLOSURES, is_cut, loop_of
+from substructures.interchange.sdf.couplings import CLOSURES, is_cut, lead_of, loop_of, turn_of
 from substructures.interchange.sdf.frames import (
     HERE,
     WORLD,
@@ -51,7 +52,7 @@ from substructures.interchange.xml import Node, numbers_in
 
 _IN_MODEL_FRAME = "1.4"  #: and where use_parent_model_frame says so
 _VERSIONS = (_IN_MODEL_FRAME, "1.5", "1.6", "1.7", "1.8", "1.9", "1.10", "1.11", "1.12")
-_TYPES = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
+_TYPES = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2", "screw", "gearbox")
 _IN_WORLD = "world::"  #: before the names of frames beside the model
 _GRAVITY = (ZERO, ZERO, Decimal("-9.8"))  #: of a world that does not say it
 
@@ -97,8 +98,11 @@ class _Reader:
         links = in_order([*roots, *carried.values()])
         name = self.model.attributes.get("name", "")
         known = joints_of(links)
-        mimics = tuple(mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known))
-        robot = Robot(name, links, self.report, frames=frames, mimics=mimics, loops=loops)
+        mimics = [mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known)]
+        for prefix, node in self.joints:
+            if node.text_of("type") == "gearbox":
+                mimics += self._gearbox(prefix, node, {link.name: link for link in links}, known)
+        robot = Robot(name, links, self.report, frames=frames, mimics=tuple(mimics), loops=loops)
         if self.world is None:
             return robot
         gravity = self.world.one("gravity")
@@ -112,6 +116,8 @@ class _Reader:
         carried: dict[str, Link] = {}
         loops: list[Loop] = []
         for prefix, node in sorted(self.joints, key=lambda joint: is_cut(joint[1])):
+            if node.text_of("type") == "gearbox":
+                continue
             child = self._end(prefix + text_in(node, "child"), node)
             if child in carried:
                 loops.append(self._loop(prefix, node, carried[child]))
@@ -131,9 +137,25 @@ class _Reader:
         axes = [self._direction(prefix, node, tag)[1] for tag in CLOSURES[kind][1]]
         return loop_of(node, name, (child.name, over), poses, self.frames.pose(name, node.place), axes)
 
+    def _gearbox(self, prefix: str, node: Node, links: dict[str, Link], known: dict[str, bool]) -> list[Mimic]:
+        """Of the angles of parent and child against the reference body: theta_2 = -ratio theta_1."""
+        reference = self._host(prefix, node, "gearbox_reference_body")
+        ends = [(self._host(prefix, node, end), reference) for end in ("parent", "child")]
+        axes = [self._direction(prefix, node, tag)[1] for tag in ("axis", "axis2")]
+        (one, k1), (two, k2) = (turn_of(*each, links, self.frames) for each in zip(ends, axes, strict=True))
+        if not (one and two):
+            message = "no revolute joints about its axes move its parent and child against gearbox_reference_body"
+            raise refuse(node.place, "not-read", message)
+        tell_of_laws(node, "a gearbox", self.report)
+        ratio = -k1 * k2 * number(node, "gearbox_ratio", "1")
+        return mimic_of(two, one, (ratio, ZERO), node.place, known, self.report)
+
     def _mimics(self, prefix: str, joint: Node, known: dict[str, bool]) -> Iterator[Mimic]:
         """Bindings of the axes of a joint: q = multiplier (q_leader - reference) + offset."""
         name = prefix + joint.text_of("name")
+        if joint.text_of("type") == "screw":
+            lead = lead_of(joint, self.report), ZERO
+            yield from mimic_of(f"{name}_slide", name, lead, joint.place, known, self.report)
         for tag in ("axis", "axis2"):
             axis = joint.one(tag)
             for node in () if axis is None else axis.all("mimic"):
@@ -178,6 +200,9 @@ class _Reader:
             tell_of_laws(node, "a ball joint", self.report)
             return (Motion(name, "spherical", node.place, anchor=anchor),)
         first = self._axis(prefix, node, "axis", name, link, anchor, kind)
+        if kind == "screw":
+            self.report.merged(node.place, "its coordinate is its angle, of which are limits and all laws of its axis")
+            return Motion(f"{name}_slide", "prismatic", node.place, first.axis), first
         if kind not in ("universal", "revolute2"):
             return (first,)
         # the second axis is carried by the first one; both are given at zero
