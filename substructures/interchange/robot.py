@@ -161,7 +161,7 @@ class Loop:
     """A cut joint: ``kind`` of a closure of frames fixed in links (None: the world), whose third axes are its own."""
 
     name: str
-    kind: Literal["ball", "weld", "pin", "slider"]
+    kind: Literal["ball", "weld", "pin", "slider", "universal"]
     link: str
     other: str | None
     position: Triple

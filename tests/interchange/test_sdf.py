@@ -6,12 +6,15 @@ from decimal import Decimal
 from time import process_time
 from typing import Any
 
+import numpy as np
 import pytest
+from made_once import derived_once
 
-from substructures import Definition, derive
+from substructures import Definition, Model, TreeSpec, couple, derive, evaluate
+from substructures.analysis.closed.loops import loop_state
 from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import equivalence
-from substructures.interchange.importing import import_file
+from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import Side
 
 URDF = """<robot name="arm"><link name="ground"/>
@@ -162,9 +165,130 @@ def test_universal_and_ball_joints() -> None:
     assert ball["bodies"][0]["joint"]["coordinate"] == ["u_yaw", "u_pitch", "u_roll"]
     damped = both.replace("</xyz></axis>", "</xyz><dynamics><damping>3</damping></dynamics></axis>", 1)
     (lost,) = import_file(damped.replace('type="universal"', 'type="ball"').encode()).definition["left_out"]
-    assert "damping, springs and friction of a ball joint are not read" in lost["message"]
+    assert "damping, springs, friction and limits of a ball joint are not read" in lost["message"]
 
 
+INERTIA = "<inertia><ixx>0.02</ixx><iyy>0.02</iyy><izz>0.02</izz></inertia>"
+
+
+def link(name: str, pose: str = "0 0 0 0 0 0", com: str = "0 0 0 0 0 0", mass: float = 3) -> str:
+    inertial = f"<inertial><pose>{com}</pose><mass>{mass}</mass>{INERTIA}</inertial>"
+    return f'<link name="{name}"><pose>{pose}</pose>{inertial}</link>'
+
+
+def joint(name: str, kind: str, parent: str, child: str, more: str = "", pose: str = "0 0 0 0 0 0") -> str:
+    ends = f"<parent>{parent}</parent><child>{child}</child><pose>{pose}</pose>"
+    return f'<joint name="{name}" type="{kind}">{ends}{more}</joint>'
+
+
+def along(xyz: str, tag: str = "axis", more: str = "") -> str:
+    return f"<{tag}><xyz>{xyz}</xyz>{more}</{tag}>"
+
+
+def model_of(content: str) -> tuple[Imported, Model]:
+    text = f'<world name="w"><gravity>0 0 -3.7</gravity><model name="m">{content}</model></world>'
+    found = import_file(f'<sdf version="1.11">{text}</sdf>'.encode())
+    tree = {"name": "t", "gravity": [0, 0, "-3.7"], "instances": [{"name": "robot", "definition": found.definition}]}
+    return found, couple(TreeSpec.read(found.tree or tree), {"robot": derived_once(found.definition)})
+
+
+PITCHES = {
+    "<screw_thread_pitch>0.4</screw_thread_pitch>": 0.4 / (2 * np.pi),
+    "<screw_thread_pitch>-4E-10</screw_thread_pitch><thread_pitch>7</thread_pitch>": -4e-10 / (2 * np.pi),
+    "<thread_pitch>5</thread_pitch>": -1 / 5,
+}
+
+
+@pytest.mark.parametrize("pitch", PITCHES)
+def test_a_screw_by_hand(pitch: str) -> None:
+    """J + m mu^2 and -m g mu; a right-handed one, turned by the right hand about its axis, goes along it."""
+    mu = PITCHES[pitch]
+    laws = "<limit><lower>-9</lower><upper>9</upper></limit><dynamics><damping>0.5</damping></dynamics>"
+    found, model = model_of(link("nut") + joint("s", "screw", "world", "nut", along("0 0 2", more=laws) + pitch))
+    assert model.coordinates == ("robot.s",)
+    numbers = evaluate(model, ["metric", "forces", "kinematics"], q=[0.7], qd=[0.2])
+    assert numbers["metric"][0, 0] == pytest.approx(0.02 + 3 * mu**2, rel=1e-12)
+    assert numbers["forces"][0] == pytest.approx(-3 * 3.7 * mu - 0.5 * 0.2, rel=1e-12)
+    at = list(model.frames).index("robot.nut")
+    assert numbers["kinematics"]["position"][at, 2] == pytest.approx(0.7 * mu, rel=1e-12)
+    said = [remark["message"] for remark in found.report]
+    assert any("its coordinate is its angle" in each for each in said)
+    assert any("rad/m, and left-handed" in each for each in said) == pitch.startswith("<thread")
+
+
+GEARS = {
+    "both on it": (("c", "a", "0 1 0"), "0 1 0", -3),
+    "against its axis": (("c", "a", "0 -1 0"), "0 1 0", 3),
+    "it on the first": (("a", "c", "0 1 0"), "0 2 0", 3),
+    "axis of the gearbox": (("c", "a", "0 1 0"), "0 -1 0", 3),
+}
+
+
+@pytest.mark.parametrize("name", GEARS)
+def test_a_gearbox_by_hand(name: str) -> None:
+    """The angles of both wheels against the carrier: theta_2 = -3 theta_1."""
+    (parent, child, axis), first, ratio = GEARS[name]
+    links = link("a") + link("c", "0 0 1 0 0 0") + link("b", "0 0 2 0 0 0")
+    box = along(first) + along("1 0 0", "axis2") + "<gearbox_ratio>3</gearbox_ratio>"
+    box = joint("box", "gearbox", "a", "b", f"{box}<gearbox_reference_body>c</gearbox_reference_body>")
+    tree = joint("qa", "revolute", parent, child, along(axis)) + joint("qb", "revolute", "c", "b", along("1 0 0"))
+    found, model = model_of(links + box + tree)
+    assert model.coordinates == ("robot.qa",)
+    (relation,) = found.definition["relations"]
+    assert relation == {"coordinate": "qb", "of": "qa", "multiplier": ratio, "offset": 0}
+    with pytest.raises(InvalidDocument, match="no revolute joints about its axes move its parent and child"):
+        model_of(links + box.replace("<xyz>1 0 0", "<xyz>0 1 0") + tree)
+
+
+def bar(closing: str, more: str = "", flag: str = "") -> str:
+    """A parallelogram about x in the plane of y and z: crank and rocker 0.2 long, coupler and ground 0.3."""
+    x, still = along("1 0 0", more=more), along("1 0 0")
+    cut = joint("closing", closing, "coupler", "rocker", x + flag, "0 0.2 0 0 0 0")
+    links = link("crank", com="0 0.1 0 0 0 0", mass=1)
+    links += link("coupler", "0 0.2 0 0 0 0", "0 0.15 0 0 0 0", 1)
+    links += link("rocker", "0 0.3 0 0 0 0", "0 0 0 0 0 0", 1)
+    first = joint("q1", "revolute", "world", "crank", still) + joint("q2", "revolute", "crank", "coupler", still)
+    both = [cut, joint("q3", "revolute", "world", "rocker", still)]
+    return links + first + "".join(both if flag else both[::-1])
+
+
+@pytest.mark.parametrize(
+    "flag", ["", "<physics><simbody><must_be_loop_joint>1</must_be_loop_joint></simbody></physics>"]
+)
+@pytest.mark.parametrize("kind", ["revolute", "ball"])
+def test_a_second_parent_closes_a_loop(kind: str, flag: str) -> None:
+    """q2 = -q1, q3 = q1: M q1'' = -dV/dq1, M = 2 J + m (0.1^2 + 0.2^2), V = 3.7 (0.1 + 0.2) sin q1."""
+    limits = "<limit><lower>-1</lower><upper>1</upper></limit>"
+    found, model = model_of(bar(kind, limits if flag else "<dynamics><damping>2</damping></dynamics>", flag))
+    q = [0.4, -0.4, 0.4]
+    assert model.coordinates == ("robot.q1", "robot.q2", "robot.q3")
+    assert np.abs(evaluate(model, ["closure.residual"], q=q)["closure.residual"]).max() < 1e-15
+    wanted = -3.7 * (0.1 + 0.2) * np.cos(0.4) / (2 * 0.02 + 0.1**2 + 0.2**2)
+    np.testing.assert_allclose(loop_state(model, q).qdd, wanted * np.array([1, -1, 1]), rtol=1e-12)
+    said = [remark["message"] for remark in found.report]
+    assert "the link 'rocker' is the child of 'q3' already: this joint closes a loop" in said
+    assert "limits of a joint that closes a loop are not read" in found.definition["left_out"][0]["message"]
+
+
+ROWS = {"revolute": 5, "prismatic": 5, "ball": 3, "fixed": 6, "universal": 4, "revolute2": 4}
+
+
+@pytest.mark.parametrize("kind", ROWS)
+def test_a_loop_leaves_what_its_joint_leaves(kind: str) -> None:
+    """Beside a joint like it it holds nothing anywhere; beside a ball elsewhere it does."""
+    links = link("a", "0.1 0.2 0.3 0.4 0.5 0.6") + link("b", "-0.3 0 0.5 1 -0.7 0.2")
+    axes = along("1 2 2") + along("2 1 -2", "axis2")
+    cut = joint("cut", kind, "a", "b", axes, "0.2 0.1 -0.3 0.3 0.2 0.1")
+    start = links + joint("w", "revolute", "world", "a", along("1 2 3"))
+    for tree, holds in ((cut.replace("cut", "tree"), False), (joint("x", "ball", "a", "b", "", "0.3 0 0 0 0 0"), True)):
+        _, model = model_of(start + tree + cut)
+        assert [len(closure.rows) for closure in model.closures] == [ROWS[kind]]
+        q = np.random.default_rng(3).uniform(-1, 1, model.dof)
+        found = np.abs(evaluate(model, ["closure.residual"], q=q)["closure.residual"]).max()
+        assert found > 0.01 if holds else found < 1e-14
+
+
+SKEW = along("0 0 1") + along("0 1 1", "axis2")
 BAD = {
     "version": (SDF.replace("1.9", "1.2"), "line 1: <sdf>: version '1.2' is none of"),
     "include": (SDF.replace("<frame", "<include><uri>m</uri></include><frame", 1), "line 4: <include>: 'm' is not"),
@@ -172,7 +296,16 @@ BAD = {
     "circle": (SDF.replace('attached_to="upper"><pose', 'attached_to="upper"><pose relative_to="lower"'), "to itself"),
     "link": (SDF.replace("<parent>upper", "<parent>arm"), 'line 13: <joint name="elbow">: there is no link .arm'),
     "axis": (SDF.replace("<xyz>0 1 0", "<xyz>0 0 0"), "line 10: <xyz>: the axis has no direction"),
-    "type": (SDF.replace('"elbow" type="revolute"', '"elbow" type="screw"'), "type 'screw' is none of"),
+    "type": (SDF.replace('"elbow" type="revolute"', '"elbow" type="hinge"'), "type 'hinge' is none of"),
+    "screw": (SDF.replace('"elbow" type="revolute"', '"elbow" type="screw"'), "<screw_thread_pitch> is needed"),
+    "two screws": (
+        SDF.replace("</model>", f"{joint('s', 'screw', 'world', 'lower')}</model>"),
+        "the link 'lower' is the child of 'elbow' already, and a joint 'screw' on 'None' closes no loop",
+    ),
+    "skew": (
+        SDF.replace("</model>", f"{joint('u', 'universal', 'upper', 'lower', SKEW)}</model>"),
+        "it closes a loop, and its axes are not at a right angle",
+    ),
     "pose": (SDF.replace("0.1 0.2 0.3</pose>", "0.1 0.2</pose>"), "line 2: <pose>: 'pose' needs 6 numbers"),
     "mass": (SDF.replace("<mass>4", "<mass>-4"), "line 2: <inertial>: the mass -4 kg is negative"),
     "models": ('<sdf version="1.9"/>', "0 models: one is needed"),

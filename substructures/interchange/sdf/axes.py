@@ -5,7 +5,7 @@ from __future__ import annotations
 from decimal import Decimal
 
 from substructures.interchange.merge import ordered_limits
-from substructures.interchange.numbers import Number, decimal_of, is_zero, number_of, value
+from substructures.interchange.numbers import ZERO, Number, decimal_of, is_zero, number_of, value
 from substructures.interchange.report import Report
 from substructures.interchange.xml import Node
 
@@ -27,13 +27,14 @@ def laws_of(axis: Node, joint: Node, report: Report) -> dict[str, Number]:
     return laws | {ours: number(dynamics, theirs) for ours, theirs in _LAWS.items()}
 
 
-def tell_of_laws(joint: Node, report: Report) -> None:
-    """Of a joint that turns about all axes."""
-    for axis in joint.all("axis"):
-        for dynamics in axis.all("dynamics"):
-            if not all(is_zero(number(dynamics, tag)) for tag in ("damping", "friction", "spring_stiffness")):
-                message = "damping, springs and friction of a ball joint are not read: add loads for them"
-                report.lost(dynamics.place, message)
+def tell_of_laws(joint: Node, what: str, report: Report) -> None:
+    """Of a joint that has no coordinates along its axes: a ball, a gearbox, one that closes a loop."""
+    for axis in joint.all("axis", "axis2"):
+        told = Report()
+        laws, limits = laws_of(axis, joint, told), limits_of(axis, "", told)
+        if told.remarks or limits or not all(is_zero(laws.get(x, ZERO)) for x in ("damping", "stiffness")):
+            message = f"damping, springs, friction and limits of {what} are not read: add loads for them"
+            report.lost(axis.place, message)
 
 
 def _armature(axis: Node, joint: Node, report: Report) -> Number:

@@ -4,11 +4,13 @@ The model stands in the world, where its pose says. A pose is given relative to 
 of a frame to what it is attached to, or to ``relative_to``. An axis is given in the frame of its joint, or in that of
 ``expressed_in``; it goes through the origin of the joint's frame, which need not be that of the child link. Until SDF
 1.4, and where ``use_parent_model_frame`` says so until 1.6, it is given in the frame of the model.
+
+The first joint of which a link is the child carries it, but for one that ``must_be_loop_joint``; others close loops. A
+screw is a prismatic joint that moves with a revolute one; a gearbox carries nothing, and binds two joints.
 """
 
 from __future__ import annotations
 
-from collections import ChainMap
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from decimal import Decimal
@@ -18,7 +20,6 @@ import numpy as np
 from substructures.array import Array
 from substructures.errors import among
 from substructures.interchange.bindings import joints_of, mimic_of
-from substructures.interchange.known.check import acting
 from substructures.interchange.known.sdf import SDF
 from substructures.interchange.merge import judge, vector
 from substructures.interchange.numbers import (
@@ -31,36 +32,29 @@ from substructures.interchange.numbers import (
     value,
 )
 from substructures.interchange.report import Report, refuse
-from substructures.interchange.robot import Inertial, Link, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
+from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion, MotionType, NamedFrame, Robot, in_order
 from substructures.interchange.rotations import to_rpy, turned_inertia
 from substructures.interchange.sdf.axes import laws_of, limits_of, number, tell_of_laws
+from substructures.interchange.sdf.contents import Contents, text_in
+from substructures.interchange.sdf.couplings import CLOSURES, is_cut, lead_of, loop_of, turn_of
 from substructures.interchange.sdf.frames import (
     HERE,
     WORLD,
-    Framed,
-    Frames,
     Pose,
-    by_placement,
     framed,
     full_name,
     is_true,
     place_in,
 )
 from substructures.interchange.sdf.includes import with_included
-from substructures.interchange.sdf.merging import FLAG, canonical_link
+from substructures.interchange.sdf.merging import FLAG
 from substructures.interchange.xml import Node, numbers_in
 
 _IN_MODEL_FRAME = "1.4"  #: and where use_parent_model_frame says so
 _VERSIONS = (_IN_MODEL_FRAME, "1.5", "1.6", "1.7", "1.8", "1.9", "1.10", "1.11", "1.12")
-_TYPES = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2")
+_TYPES = ("revolute", "continuous", "prismatic", "fixed", "ball", "universal", "revolute2", "screw", "gearbox")
 _IN_WORLD = "world::"  #: before the names of frames beside the model
 _GRAVITY = (ZERO, ZERO, Decimal("-9.8"))  #: of a world that does not say it
-#: elements that are mechanics and are not read, and the values with which they are none
-_ACTING: dict[str, tuple[str, ...]] = {
-    **dict.fromkeys(("static", "kinematic", "must_be_base_link", "enable_wind"), ("0", "false")),
-    **dict.fromkeys(("linear", "angular"), ("0", "0.0")),
-    "gravity": ("1", "true"), "linear_bushing_rpy": (), "ball_constraint": (),
-}  # fmt: skip
 
 
 def read_sdf(root: Node, included: Mapping[str, bytes] | None = None) -> Robot:
@@ -86,34 +80,29 @@ class _Reader:
 
     def __init__(self, model: Node, world: Node | None, report: Report, in_model_frame: bool) -> None:
         self.model, self.world, self.report, self.in_model_frame = model, world, report, in_model_frame
-        self.frames = Frames()
-        self.links: dict[str, Node] = {}
-        self.joints: list[tuple[str, Node]] = []
-        self.attached: dict[str, str] = {}  #: of frames what they are attached to
-        self.canonical: dict[str, str] = {}  #: of models their canonical links, of joints their children
-        self._resolved: dict[str, str | None] = {}
+        contents = Contents(report)
         for node in () if world is None else world.all("frame"):
             at = full_name(_IN_WORLD, node.attributes.get("attached_to") or WORLD)
-            self.frames.add(_IN_WORLD + node.text_of("name"), framed(node.one("pose"), _IN_WORLD, node.place, at))
-        self._enter(model, "", framed(model.one("pose"), _IN_WORLD, model.place))
+            contents.frames.add(_IN_WORLD + node.text_of("name"), framed(node.one("pose"), _IN_WORLD, node.place, at))
+        contents.enter(model, "", framed(model.one("pose"), _IN_WORLD, model.place))
+        self.frames, self.links, self.joints = contents.frames, contents.links, contents.joints
+        self.attached, self.link_of = contents.attached, contents.link_of
 
     def robot(self) -> Robot:
         """Links with the joints that carry them; roots are fixed to the interface."""
         if not self.links:
             raise refuse(self.model.place, "no-links", "the model has no <link>")
-        carried: dict[str, Link] = {}
-        for prefix, node in self.joints:
-            link = self._carried(prefix, node)
-            if link.name in carried:
-                raise refuse(node.place, "two-parents", f"the link '{link.name}' is the child of another joint already")
-            carried[link.name] = link
+        carried, loops = self._tree()
         roots = [self._root(name, node) for name, node in self.links.items() if name not in carried]
-        frames = tuple(self._frame(name, over) for name in self.attached if (over := self._link_of(name)))
+        frames = tuple(self._frame(name, over) for name in self.attached if (over := self.link_of(name)))
         links = in_order([*roots, *carried.values()])
         name = self.model.attributes.get("name", "")
         known = joints_of(links)
-        mimics = tuple(mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known))
-        robot = Robot(name, links, self.report, frames=frames, mimics=mimics)
+        mimics = [mimic for prefix, node in self.joints for mimic in self._mimics(prefix, node, known)]
+        for prefix, node in self.joints:
+            if node.text_of("type") == "gearbox":
+                mimics += self._gearbox(prefix, node, {link.name: link for link in links}, known)
+        robot = Robot(name, links, self.report, frames=frames, mimics=tuple(mimics), loops=loops)
         if self.world is None:
             return robot
         gravity = self.world.one("gravity")
@@ -122,9 +111,51 @@ class _Reader:
         numbers = triple(numbers_in(gravity.text, 3, gravity.place, "gravity"))
         return replace(robot, gravity=numbers, gravity_place=gravity.place)
 
+    def _tree(self) -> tuple[dict[str, Link], tuple[Loop, ...]]:
+        """Links by their names with the joints that carry them, and the joints that close loops."""
+        carried: dict[str, Link] = {}
+        loops: list[Loop] = []
+        for prefix, node in sorted(self.joints, key=lambda joint: is_cut(joint[1])):
+            if node.text_of("type") == "gearbox":
+                continue
+            child = self._end(prefix + text_in(node, "child"), node)
+            if child in carried:
+                loops.append(self._loop(prefix, node, carried[child]))
+            else:
+                carried[child] = self._carried(prefix, node, child)
+        return carried, tuple(loops)
+
+    def _loop(self, prefix: str, node: Node, child: Link) -> Loop:
+        """A joint whose child another one carries."""
+        kind, over, name = node.text_of("type"), self._host(prefix, node, "parent"), prefix + node.text_of("name")
+        already = f"the link '{child.name}' is the child of '{child.joint}' already"
+        if kind not in CLOSURES or over == child.name:
+            raise refuse(node.place, "two-parents", f"{already}, and a joint '{kind[:40]}' on '{over}' closes no loop")
+        tell_of_laws(node, "a joint that closes a loop", self.report)
+        self.report.merged(node.place, f"{already}: this joint closes a loop")
+        poses = self.frames.pose(child.name, node.place), self._pose(over, node)
+        axes = [self._direction(prefix, node, tag)[1] for tag in CLOSURES[kind][1]]
+        return loop_of(node, name, (child.name, over), poses, self.frames.pose(name, node.place), axes)
+
+    def _gearbox(self, prefix: str, node: Node, links: dict[str, Link], known: dict[str, bool]) -> list[Mimic]:
+        """Of the angles of parent and child against the reference body: theta_2 = -ratio theta_1."""
+        reference = self._host(prefix, node, "gearbox_reference_body")
+        ends = [(self._host(prefix, node, end), reference) for end in ("parent", "child")]
+        axes = [self._direction(prefix, node, tag)[1] for tag in ("axis", "axis2")]
+        (one, k1), (two, k2) = (turn_of(*each, links, self.frames) for each in zip(ends, axes, strict=True))
+        if not (one and two):
+            message = "no revolute joints about its axes move its parent and child against gearbox_reference_body"
+            raise refuse(node.place, "not-read", message)
+        tell_of_laws(node, "a gearbox", self.report)
+        ratio = -k1 * k2 * number(node, "gearbox_ratio", "1")
+        return mimic_of(two, one, (ratio, ZERO), node.place, known, self.report)
+
     def _mimics(self, prefix: str, joint: Node, known: dict[str, bool]) -> Iterator[Mimic]:
         """Bindings of the axes of a joint: q = multiplier (q_leader - reference) + offset."""
         name = prefix + joint.text_of("name")
+        if joint.text_of("type") == "screw":
+            lead = lead_of(joint, self.report), ZERO
+            yield from mimic_of(f"{name}_slide", name, lead, joint.place, known, self.report)
         for tag in ("axis", "axis2"):
             axis = joint.one(tag)
             for node in () if axis is None else axis.all("mimic"):
@@ -134,63 +165,26 @@ class _Reader:
                 own = name + ("_2" if tag == "axis2" else "")
                 yield from mimic_of(own, leader, (k, offset - k * reference), node.place, known, self.report)
 
-    def _enter(self, model: Node, prefix: str, placed: Framed) -> None:
-        """All frames of a model: its own, and those of links, joints, frames and models in it."""
-        base = f"{prefix}__model__"
-        self.frames.add(base, by_placement(placed, model, prefix))
-        link = canonical_link(model)
-        if link is not None:
-            self.canonical |= dict.fromkeys(filter(None, (base, prefix.removesuffix("::"))), prefix + link)
-        for node in model.children:
-            if node.tag in ("link", "joint", "frame", "model"):
-                self._named(node, prefix, base)
-            elif node.tag != "pose":
-                self._tell(node, "model")
-
-    def _tell(self, node: Node, holder: str) -> None:
-        """What acts and is not read."""
-        for each in acting(node, _ACTING):
-            message = f"<{each.tag}> in <{holder}> is not read: what it says of the mechanics is left out"
-            self.report.lost(each.place, message)
-
-    def _named(self, node: Node, prefix: str, base: str) -> None:
-        name = prefix + node.text_of("name")
-        if node.tag == "link":
-            self.links[name] = node
-            for child in node.children:
-                if child.tag not in ("pose", "inertial", "visual", "collision"):
-                    self._tell(child, "link")
-            self.frames.add(name, framed(node.one("pose"), prefix, node.place, base))
-        elif node.tag == "joint":
-            self.joints.append((prefix, node))
-            self.canonical[name] = prefix + _text(node, "child")
-            self.frames.add(name, framed(node.one("pose"), prefix, node.place, self.canonical[name]))
-        elif node.tag == "frame":
-            attached = node.attributes.get("attached_to")
-            at = prefix + attached if attached else base
-            self.attached[name] = at
-            placed = framed(node.one("pose"), prefix, node.place, at)
-            self.frames.add(name, by_placement(placed, node, prefix))
-        else:
-            inner = f"{name}::"
-            self._enter(node, inner, framed(node.one("pose"), prefix, node.place, base))
-            self.frames.add(name, Framed(f"{inner}__model__", np.eye(3), np.zeros(3), node.place))
-
-    def _carried(self, prefix: str, node: Node) -> Link:
+    def _carried(self, prefix: str, node: Node, child: str) -> Link:
         """The child link of a joint, placed on its parent, with the joint's axes through the joint's origin."""
-        child = self._end(prefix + _text(node, "child"), node)
-        parent = _text(node, "parent")
-        over = None if parent == WORLD else self._end(prefix + parent, node)
-        here = self.frames.pose(child, node.place)
-        host = HERE if over is None else self.frames.pose(over, node.place)
+        over = self._host(prefix, node, "parent")
+        here, host = self.frames.pose(child, node.place), self._pose(over, node)
         position, rpy = place_in(host, here[1]), to_rpy(host[0].T @ here[0])
         own = self.links[child]
         motions, inertial = self._motions(prefix, node, here), self._inertial(own)
         return Link(child, over, own.place, position, rpy, motions, inertial, prefix + node.text_of("name"))
 
+    def _pose(self, link: str | None, joint: Node) -> Pose:
+        return HERE if link is None else self.frames.pose(link, joint.place)
+
+    def _host(self, prefix: str, joint: Node, tag: str) -> str | None:
+        """The link that a child of the joint names; None for the world."""
+        name = text_in(joint, tag)
+        return None if name == WORLD else self._end(prefix + name, joint)
+
     def _end(self, name: str, joint: Node) -> str:
         """The link of an end of a joint, which is one or a frame that is attached to one."""
-        found = self._link_of(name)
+        found = self.link_of(name)
         if found is None:
             raise refuse(joint.place, "unknown-link", f"there is no link '{name}'{among(name, self.links)}")
         return found
@@ -201,20 +195,29 @@ class _Reader:
             raise refuse(node.place, "unknown-type", f"type '{kind[:40]}' is none of {', '.join(_TYPES)}")
         if kind == "fixed":
             return ()
-        R, r = self.frames.pose(name, node.place)
-        anchor = place_in(link, r)
+        anchor = place_in(link, self.frames.pose(name, node.place)[1])
         if kind == "ball":
-            tell_of_laws(node, self.report)
+            tell_of_laws(node, "a ball joint", self.report)
             return (Motion(name, "spherical", node.place, anchor=anchor),)
-        first = self._axis(prefix, node, "axis", name, (R, link[0]), anchor, kind)
+        first = self._axis(prefix, node, "axis", name, link, anchor, kind)
+        if kind == "screw":
+            self.report.merged(node.place, "its coordinate is its angle, of which are limits and all laws of its axis")
+            return Motion(f"{name}_slide", "prismatic", node.place, first.axis), first
         if kind not in ("universal", "revolute2"):
             return (first,)
         # the second axis is carried by the first one; both are given at zero
-        return first, self._axis(prefix, node, "axis2", f"{name}_2", (R, link[0]), anchor, "revolute")
+        return first, self._axis(prefix, node, "axis2", f"{name}_2", link, anchor, "revolute")
 
-    def _axis(
-        self, prefix: str, joint: Node, tag: str, name: str, axes: tuple[Array, Array], anchor: Triple, kind: str
-    ) -> Motion:
+    def _axis(self, prefix: str, joint: Node, tag: str, name: str, link: Pose, anchor: Triple, kind: str) -> Motion:
+        node, axis = self._direction(prefix, joint, tag)
+        motion: MotionType = "prismatic" if kind == "prismatic" else "revolute"
+        where = anchor if motion == "revolute" else vector(np.zeros(3))
+        laws = laws_of(node, joint, self.report)
+        limits, along = limits_of(node, kind, self.report), direction((link[0].T @ axis).tolist())
+        return Motion(name, motion, node.place, along, where, limits=limits, **laws)
+
+    def _direction(self, prefix: str, joint: Node, tag: str) -> tuple[Node, Array]:
+        """An axis of a joint, and where it points."""
         node = joint.one(tag)
         xyz = None if node is None else node.one("xyz")
         if node is None or xyz is None:
@@ -225,12 +228,8 @@ class _Reader:
         flag = node.one(FLAG)
         in_model = self.in_model_frame if flag is None else is_true(flag.text)
         expressed = xyz.attributes.get("expressed_in") or ("__model__" if in_model else "")
-        R = axes[0] if not expressed else self.frames.pose(full_name(prefix, expressed), xyz.place)[0]
-        along = direction((axes[1].T @ R @ numbers).tolist())
-        motion: MotionType = "prismatic" if kind == "prismatic" else "revolute"
-        where = anchor if motion == "revolute" else vector(np.zeros(3))
-        laws = laws_of(node, joint, self.report)
-        return Motion(name, motion, node.place, along, where, limits=limits_of(node, kind, self.report), **laws)
+        name = full_name(prefix, expressed) if expressed else prefix + joint.text_of("name")
+        return node, self.frames.pose(name, xyz.place)[0] @ numbers
 
     def _root(self, name: str, node: Node) -> Link:
         """A link that no joint carries."""
@@ -239,17 +238,6 @@ class _Reader:
             node.place, "no joint carries this link: it is fixed to the interface (base=floating: free)", "topology"
         )
         return Link(name, None, node.place, vector(r), to_rpy(R), (), self._inertial(node))
-
-    def _link_of(self, name: str) -> str | None:
-        """The link that a frame is attached to, perhaps over other frames; None for the model itself."""
-        chain: dict[str, None] = {}
-        held = ChainMap(self.attached, self.canonical)
-        while name not in self._resolved and name in held and name not in chain:
-            chain[name] = None
-            name = held[name]
-        found = self._resolved.get(name, name if name in self.links else None)
-        self._resolved |= dict.fromkeys(chain, found)
-        return found
 
     def _frame(self, name: str, link: str) -> NamedFrame:
         place = self.frames.given[name].place
@@ -282,11 +270,3 @@ class _Reader:
         six = turned_inertia(six, pose.R)
         judge(own.place, mass, vector(pose.r), six, self.report)
         return Inertial(mass, vector(pose.r), six)
-
-
-def _text(node: Node, tag: str) -> str:
-    found = node.one(tag)
-    name = "" if found is None else found.text.strip() or found.attributes.get("link", "")
-    if not name:
-        raise refuse(node.place, "missing-element", f"<{tag}> is needed")
-    return name
