@@ -127,6 +127,10 @@ class Caller:
 
     def download(self, path: str, target: Path) -> int:
         """Save what is at a path, however large, or nothing; its size in bytes."""
+        if target.exists() and not target.is_file():
+            # a pipe or a device, which nothing may take the place of
+            return self._retries.ask(lambda: self._download(path, target), True)
+        target = target.resolve()
         beside = target.with_name(f".{target.name}.{token_hex(4)}")
         try:
             size = self._retries.ask(lambda: self._download(path, beside), True)
@@ -141,9 +145,7 @@ class Caller:
                 answer.read()
                 check(answer)
             with target.open("wb") as file:
-                for chunk in answer.iter_bytes():
-                    file.write(chunk)
-                return file.tell()
+                return sum(file.write(chunk) for chunk in answer.iter_bytes())
 
     def _page(self, path: str, filters: Mapping[str, Any], made: Callable[[Any], Kind]) -> Page[Kind]:
         """One page, its items made of what was answered."""

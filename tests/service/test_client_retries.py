@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Callable, Iterator
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
@@ -104,6 +105,22 @@ def test_a_download_that_breaks_off_leaves_the_file_that_was_there(client: Clien
     assert [each.read_bytes() for each in tmp_path.iterdir()] == [b"whole"]
     client.job_archive("x", file)
     assert [each.read_bytes()[:1] for each in tmp_path.iterdir()] == [b"{"]
+
+
+def test_pipes_and_links_stay_where_downloads_go(client: Client, tmp_path: Path) -> None:
+    """As devices do: what is there is written to, and nothing takes its place."""
+    pipe, link, file = (tmp_path / name for name in ("pipe", "link", "file"))
+    os.mkfifo(pipe)
+    link.symlink_to(file)
+    found: list[bytes] = []
+    reader = Thread(target=lambda: found.append(pipe.read_bytes()))
+    reader.start()
+    client.job_archive("x", pipe)
+    reader.join(10)
+    assert pipe.is_fifo()
+    client.job_archive("x", link)
+    assert link.is_symlink()
+    assert found == [file.read_bytes()]
 
 
 def test_what_is_sent_again_acts_once(client: Client) -> None:
