@@ -36,9 +36,7 @@ def printed(folder: Path) -> list[str]:
     """What the commands of the README print, line by line."""
     commands = blocks((folder / "README.md").read_text())["sh"]
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    # what cargo keeps of all its runs is not shared: it looks after that on the way
-    cargo = {"CARGO_NET_OFFLINE": "true", "CARGO_HOME": str(folder / "cargo")}
-    environment = {**os.environ, "PATH": path, **cargo}
+    environment = {**os.environ, "PATH": path, "CARGO_NET_OFFLINE": "true"}
     done = subprocess.run(
         [tool("sh"), "-e", "-c", commands], cwd=folder, capture_output=True, text=True, timeout=300, env=environment
     )
