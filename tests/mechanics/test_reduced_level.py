@@ -396,6 +396,15 @@ def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
                 couple({"name": "t", **spec}, {"x": part})
 
 
+@pytest.mark.parametrize("ends", [("end", "tip"), ("end", "coupler"), ("end", "end")])
+def test_closures_that_tell_nothing_are_told(ends: tuple[str, str]) -> None:
+    """Once more the same one, and within one body."""
+    own = {"name": "again", "type": "pin", "from": ends[0], "to": ends[1]}
+    bar = {**NAMES["crank-rocker"], "ranges": {"phi": ["-0.5", "1.5"]}}
+    part = derive(Definition.read({**bar, "closures": [*bar["closures"], own]}))
+    assert closed_form.dependent(part) == "the closure 'again': of the coordinates around it 0 are unknown"
+
+
 def test_rows_that_meet_by_rounding_are_told() -> None:
     """A linkage with more rows than unknown coordinates exists by formulas of its lengths, not by their decimals."""
     text = json.dumps(BENNETT).replace("asin(b*sin(alpha)/a)", repr(math.asin(0.55 * math.sin(0.7) / 0.4)))

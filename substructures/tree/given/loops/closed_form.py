@@ -118,13 +118,15 @@ class _Solver:
         return self.found
 
     def _group(self, closure: PartClosure) -> Group:
-        """A closure that is not met by itself."""
+        """A closure that is not met by itself. Raises NotReduced for one that tells nothing."""
         cut = cut_frames(Scope(self.graph), closure, "", self.graph.symbol)
         ways, ends = self.chains.ways(closure.from_, closure.to, cut)
         A, B = (self.chains.pose(way, end) for way, end in zip(ways, ends, strict=True))
-        rows = rows_of(self.graph, closure.type, cut, A, B).without_what_cancels(self.part.coordinates)
-        unknown = {*self.part.coordinates} - self.found.N.keys()
-        return Group((closure.name,), frozenset(symbols_in(rows.zero) & unknown), rows)
+        rows = rows_of(self.graph, closure.type, cut, A, B)
+        unknown = symbols_in(rows.zero) & ({*self.part.coordinates} - self.found.N.keys())
+        if not unknown:
+            raise NotReduced(f"the closure '{closure.name}': of the coordinates around it 0 are unknown")
+        return Group((closure.name,), frozenset(unknown), rows.without_what_cancels(self.part.coordinates))
 
     def _follow(self, group: Group) -> None:
         """Closures that are met together, by Newton's method. Raises NotReduced."""
