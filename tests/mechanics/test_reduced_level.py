@@ -8,6 +8,7 @@ import json
 import math
 import re
 from dataclasses import replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -29,6 +30,10 @@ from substructures import (
 )
 from substructures.analysis.closed.reduced import reduced_equations
 from substructures.errors import VerificationFailed
+from substructures.expr.graph import Graph
+from substructures.expr.interpret import interpret
+from substructures.expr.operations import Symbol
+from substructures.expr.program import array, program
 from substructures.expr.walk import transfer
 from substructures.quantities import reactions as module
 from substructures.quantities.numbers.evaluation import Sources
@@ -394,6 +399,27 @@ def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
             patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
             with pytest.raises(VerificationFailed, match=r"by the documents|branch"):
                 couple({"name": "t", **spec}, {"x": part})
+
+
+def test_steps_have_no_number_where_they_lead_elsewhere() -> None:
+    """Of cos z = y: at roots of the other slope, at places without a root, and where angles turn round."""
+    graph, y = Graph(), np.linspace(-0.9, 2, 59)
+    row = graph.function("cos", graph.symbol("z")) - graph.symbol("y")
+
+    def found(z: str, at: str, angles: frozenset[str]) -> Any:
+        start = {"z": graph.number(Fraction(z)), "y": graph.number(Fraction(at))}
+        loop = newton.Newton(graph, newton.Rows((row,), (graph.one,)), ("z",), ("y",), start, angles)
+        made = {"z": array((1,), lambda _: loop.values(1, [0])["z"])}
+        return interpret(program(graph, made, {"y": Symbol("y", "parameter", "")}), {"y": y})["z"][:, 0]
+
+    places = found("-0.5", "0.8776", frozenset())
+    there = np.isfinite(places)
+    np.testing.assert_allclose(np.cos(places[there]), y[there], rtol=0, atol=1e-12)
+    assert (np.sin(places[there]) < 0).all()
+    assert there[y <= 1].any()
+    assert not there[y > 1].any()
+    assert (np.abs(found("-0.1", "0.995", frozenset())) > 4).any()
+    assert not (np.abs(found("-0.1", "0.995", frozenset({"z"}))) > 4).any()
 
 
 @pytest.mark.parametrize("ends", [("end", "tip"), ("end", "coupler"), ("end", "end")])
