@@ -13,6 +13,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import tied_combinations
 from closed_trees import tree_model, tree_parts
 from mechanics.reduced_parts import ARM, BENNETT, HEXAPOD, PARTS, WISHBONE, Plain
 
@@ -25,6 +26,7 @@ from substructures import (
     couple,
     derive,
     evaluate,
+    first_integrals,
     sensitivities,
     simulate,
 )
@@ -382,7 +384,7 @@ def test_steps_that_lead_nowhere_are_told(change: Plain, told: str) -> None:
 
 
 def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
-    """Too few of them; another rod; a wrong second derivative."""
+    """Too few of them; another rod; a wrong second derivative; no number anywhere."""
     part, spec = derive(Definition.read(WISHBONE)), {"instances": [{"name": "x", "substructure": "wishbone"}]}
     right = closed_form.dependent(part)
     assert isinstance(right, Dependent)
@@ -394,7 +396,9 @@ def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
         early = closed_form._Solver(part).solve()
     other = {**WISHBONE, "closures": [WISHBONE["closures"][0], {**WISHBONE["closures"][1], "length": "0.33"}]}
     longer = closed_form._Solver(derive(Definition.read(other))).solve()
-    for wrong in (early, longer, replace(right, H=bend)):
+    gone = right.graph.function("asin", right.graph.symbol("l") + 2)
+    nowhere = replace(right, values={q: x + gone for q, x in right.values.items()})
+    for wrong in (early, longer, replace(right, H=bend), nowhere):
         with monkeypatch.context() as patch:
             patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
             with pytest.raises(VerificationFailed, match=r"by the documents|branch"):
@@ -420,6 +424,20 @@ def test_steps_have_no_number_where_they_lead_elsewhere() -> None:
     assert not there[y > 1].any()
     assert (np.abs(found("-0.1", "0.995", frozenset())) > 4).any()
     assert not (np.abs(found("-0.1", "0.995", frozenset({"z"}))) > 4).any()
+
+
+def test_a_loop_on_a_slide_knows_nothing_of_it() -> None:
+    """A rod beside the plane of two pendulums on a cart, whose momentum stays."""
+    seat = {"name": "seat", "body": "deck", "position": [1, "0.3", 0]}
+    rod = {**tied_combinations.BAR, "from": "tip", "to": "seat", "length": "1.05"}
+    more = {"start": {"c": -1}, "ranges": {"a": [-2, 2], "b": ["-0.4", "0.4"]}, "closures": [rod]}
+    cart = {**tied_combinations.LINKAGE, "name": "c", "ports": [tied_combinations.CART["ports"][0], seat], **more}
+    model = tree_model(
+        {"gravity": [0, 0, "-9.81"], "instances": [{"name": "x", "substructure": "cart"}]}, {"cart": cart}
+    )
+    assert model.coordinates == ("x.a", "x.b")
+    assert "x.a" not in model.program.needs(["dependent"])
+    assert "momentum.x.a" in [each.name for each in first_integrals(model).integrals]
 
 
 @pytest.mark.parametrize("ends", [("end", "tip"), ("end", "coupler"), ("end", "end")])
