@@ -25,9 +25,9 @@ from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part
 from substructures.tree.closures import ClosureEnd, ClosureRows, Cut
 from substructures.tree.document import Instance, TreeSpec, misplaced
-from substructures.tree.given.loops.closed_form import dependent
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.given.loops.levels import reduced_instances
+from substructures.tree.given.loops.reduction import dependent
 from substructures.tree.given.ties import require_chains
 from substructures.tree.mounted_part import WORLD, MountedPart, balls_of, friction_of_movers, limits_of_movers
 

@@ -32,7 +32,7 @@ from substructures.part.definition import Parameter, Placement
 from substructures.part.part import Part
 from substructures.part.shape import without_descriptions
 from substructures.tree.document import Instance, TreeSpec
-from substructures.tree.given.loops.closed_form import dependent
+from substructures.tree.given.loops.reduction import dependent
 
 #: a number with more bits stays in the formulas: what is put in does not outgrow the numbers of a graph
 MOST_BITS = 128

@@ -41,7 +41,7 @@ from substructures.quantities import reactions as module
 from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
 from substructures.tree.certificate import certify_tree
-from substructures.tree.given.loops import closed_form, newton
+from substructures.tree.given.loops import newton, reduction
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.shape import shape_digest
 
@@ -264,15 +264,15 @@ def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Another branch than that of the start; a wrong second derivative; a level that the documents do not say."""
     definition, tree = NAMES["rod"], {"name": "t", "instances": [{"name": "x", "substructure": "rod"}]}
     part = derive(Definition.read(definition))
-    spec, right = TreeSpec.read(tree), closed_form.dependent(part)
+    spec, right = TreeSpec.read(tree), reduction.dependent(part)
     assert isinstance(right, Dependent)
     model = couple(spec, {"x": part})
     full = TreeSpec.read({"name": "t", "instances": [{"name": "x", "substructure": "rod", "level": "full"}]})
     with pytest.raises(VerificationFailed, match="reduced"):
         certify_tree(full, {"x": part.definition}, model.described(), model.program)
     bend = {q: {at: x * 2 for at, x in row.items()} for q, row in right.H.items()}
-    mirrored = closed_form._Solver(part)
-    mirrored._gap = lambda found: -closed_form._Solver._gap(mirrored, found)  # type: ignore[method-assign]
+    mirrored = reduction._Solver(part)
+    mirrored._gap = lambda found: -reduction._Solver._gap(mirrored, found)  # type: ignore[method-assign]
     for wrong, told in ((replace(right, H=bend), "christoffel"), (mirrored.solve(), "branch")):
         with monkeypatch.context() as patch:
             patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
@@ -364,7 +364,7 @@ def test_what_does_not_take_it_says_so() -> None:
     assert "'ranges'" in warnings[0]["message"]
     assert len(delta.closures) == 3
     some = {**wide, "ranges": {"q1": [0, "0.1"], "q2": [0, "0.1"]}}
-    assert "'q3', which has no 'ranges'" in str(closed_form.dependent(derive(Definition.read(some))))
+    assert "'q3', which has no 'ranges'" in str(reduction.dependent(derive(Definition.read(some))))
     even = {**NAMES["crank-rocker"], "name": "even", "start": {}}
     told = tree_model({"instances": [{"name": "x", "substructure": "even"}]}, {"even": even}).certificate["warnings"]
     assert "two positions are as near" in told[0]["message"]
@@ -380,22 +380,22 @@ def test_what_does_not_take_it_says_so() -> None:
 )
 def test_steps_that_lead_nowhere_are_told(change: Plain, told: str) -> None:
     part = derive(Definition.read({**WISHBONE, **change}))
-    assert re.search(told, str(closed_form.dependent(part)))
+    assert re.search(told, str(reduction.dependent(part)))
 
 
 def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     """Too few of them; another rod; a wrong second derivative; no number anywhere."""
     part, spec = derive(Definition.read(WISHBONE)), {"instances": [{"name": "x", "substructure": "wishbone"}]}
-    right = closed_form.dependent(part)
+    right = reduction.dependent(part)
     assert isinstance(right, Dependent)
     bend = {q: {at: x * 2 for at, x in row.items()} for q, row in right.H.items()}
     with monkeypatch.context() as patch:
         patch.setattr(newton, "LAST", 0)
         patch.setattr(newton, "SAME", 1.0)
         patch.setattr(newton, "OPEN", 1)
-        early = closed_form._Solver(part).solve()
+        early = reduction._Solver(part).solve()
     other = {**WISHBONE, "closures": [WISHBONE["closures"][0], {**WISHBONE["closures"][1], "length": "0.33"}]}
-    longer = closed_form._Solver(derive(Definition.read(other))).solve()
+    longer = reduction._Solver(derive(Definition.read(other))).solve()
     gone = right.graph.function("asin", right.graph.symbol("l") + 2)
     nowhere = replace(right, values={q: x + gone for q, x in right.values.items()})
     for wrong in (early, longer, replace(right, H=bend), nowhere):
@@ -446,13 +446,13 @@ def test_closures_that_tell_nothing_are_told(ends: tuple[str, str]) -> None:
     own = {"name": "again", "type": "pin", "from": ends[0], "to": ends[1]}
     bar = {**NAMES["crank-rocker"], "ranges": {"phi": ["-0.5", "1.5"]}}
     part = derive(Definition.read({**bar, "closures": [*bar["closures"], own]}))
-    assert closed_form.dependent(part) == "the closure 'again': of the coordinates around it 0 are unknown"
+    assert reduction.dependent(part) == "the closure 'again': of the coordinates around it 0 are unknown"
 
 
 def test_rows_that_meet_by_rounding_are_told() -> None:
     """A linkage with more rows than unknown coordinates exists by formulas of its lengths, not by their decimals."""
     text = json.dumps(BENNETT).replace("asin(b*sin(alpha)/a)", repr(math.asin(0.55 * math.sin(0.7) / 0.4)))
-    assert "to the digits of numbers" in str(closed_form.dependent(derive(Definition.read(json.loads(text)))))
+    assert "to the digits of numbers" in str(reduction.dependent(derive(Definition.read(json.loads(text)))))
 
 
 def test_a_platform_on_six_rods_is_where_they_hold_it() -> None:

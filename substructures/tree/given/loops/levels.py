@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from substructures.loads.scope import Scope
 from substructures.part.part import Part
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.loops.closed_form import dependent
+from substructures.tree.given.loops.reduction import dependent
 
 
 def reduced_instances(spec: TreeSpec, parts: Mapping[str, Part], scope: Scope) -> frozenset[str]:
