@@ -89,9 +89,15 @@ class Differences:
         self._moved = {name: x for name, x in box.items() if name not in kept}
         one = Interval(Fraction(-1), Fraction(1))
         self._balls = {name: between(x.low, x.high) for name, x in {**box, **dict.fromkeys(self._moved, one)}.items()}
+        self._known: dict[str, dict[Index, AngleSums]] = {}
 
     def of(self, other: Program) -> dict[Index, AngleSums]:
         """full - other by element; elements in which they are equal are left out."""
+        if other.digest not in self._known:
+            self._known[other.digest] = self._of(other)
+        return self._known[other.digest]
+
+    def _of(self, other: Program) -> dict[Index, AngleSums]:
         graph = Graph()
         bindings = {n: graph.number(x.middle) + graph.number(x.half) * graph.symbol(n) for n, x in self._moved.items()}
         (ours,), (others,) = (replay(p, graph, bindings).values() for p in (self.full, other))
