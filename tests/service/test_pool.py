@@ -263,10 +263,8 @@ def test_a_work_whose_runner_is_killed_is_computed_again(pool: WorkerPool) -> No
 
     thread = threading.Thread(target=ask)
     thread.start()
-    engine = pool._engine
-    assert engine is not None
-    until(lambda: engine._running)
-    (process,) = engine._running.values()
+    until(lambda: pool._engine and pool._engine._running)
+    (process,) = pool._engine._running.values()
     os.kill(process.pid, signal.SIGKILL)
     thread.join(SECONDS)
     assert found[0].summary["dof"] == 12
