@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import chain
 from typing import TypeVar
 
 import numpy as np
@@ -196,8 +197,9 @@ class _Search:
             field = Field([self.program])
             symbols = {name: field.draw() for name in self.fixed}
             with suppress(TooLarge):
-                self._random(field, symbols)
-                return Functions(self.f.n, angular, field, partial(self._random, field, symbols), self._exact, symbols)
+                sample = partial(self._random, field, symbols)
+                samples = chain([sample()], iter(sample, None))
+                return Functions(self.f.n, angular, field, partial(next, samples), self._exact, symbols)
         raise TooLarge("the search for a field with all square roots (in primes)", FIELDS + 1, FIELDS)
 
     @cached_property

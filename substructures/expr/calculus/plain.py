@@ -39,7 +39,8 @@ class PlainFormulas:
         known = self._plain
         for node in reachable([expr], known.__contains__):
             if node not in known:
-                known[node] = all(known[a] for a in node.args) and _is_plain(node)
+                args = node.args
+                known[node] = not args or (known[args[0]] and known[args[-1]] and _is_plain(node))
         return known[expr]
 
     def varies(self, expr: Expr, names: frozenset[str]) -> bool:
@@ -53,12 +54,12 @@ class PlainFormulas:
 
 def _is_plain(node: Expr) -> bool:
     """Whether an operation on plain formulas makes one of them."""
+    if node.op in RATIONAL:
+        return True
     if node.op in ("cos", "sin"):
         terms, turns = linear_form(node.args[0])
         return not turns and all(atom.op == "sym" and factor.denominator == 1 for atom, factor in terms.items())
-    if node.op == "sqrt":
-        return node.args[0].op == "int" and square_root(node.args[0].value) is not None
-    return not node.args or node.op in RATIONAL
+    return node.op == "sqrt" and node.args[0].op == "int" and square_root(node.args[0].value) is not None
 
 
 def _value(node: Expr, values: Mapping[Expr, int], names: frozenset[str]) -> int:
