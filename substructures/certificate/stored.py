@@ -59,18 +59,19 @@ class Pruned:
 def pruned(program: Stored, names: Iterable[str]) -> Pruned:
     """The program with the outputs of these names that it has, and what they need."""
     outputs = {name: program.outputs[name] for name in names if name in program.outputs}
-    pending = [entry for output in outputs.values() for entry in output.entries]
-    needed: set[int] = set()
-    while pending:
-        i = pending.pop()
-        if i not in needed:
-            needed.add(i)
-            pending += operands(program.operations[i])
-    place = {i: k for k, i in enumerate(sorted(needed))}
-    operations = []
-    for i in place:
-        op, count = program.operations[i], len(operands(program.operations[i]))
-        operations.append((op[0], *(place[k] for k in op[1 : 1 + count]), *op[1 + count :]))
+    needed = bytearray(len(program.operations))
+    for output in outputs.values():
+        for entry in output.entries:
+            needed[entry] = 1
+    for i in range(len(needed) - 1, -1, -1):
+        if needed[i]:
+            for k in operands(program.operations[i]):
+                needed[k] = 1
+    place, operations = dict[int, int](), list[Operation]()
+    for i, operation in enumerate(program.operations):
+        if needed[i]:
+            place[i], used = len(place), operands(operation)
+            operations.append((operation[0], *[place[k] for k in used], *operation[1 + len(used) :]))
     moved = {name: replace(x, entries=tuple(place[entry] for entry in x.entries)) for name, x in outputs.items()}
     return Pruned(program.symbols, tuple(operations), moved)
 

@@ -173,7 +173,7 @@ class _Builder:
             operation = self.ops[i]
             if operation[0] in LEAVES:
                 continue
-            at = max(level.get(x, 0) for x in operands(operation))
+            at = max([level.get(x, 0) for x in operands(operation)])
             is_batched = batch_name(operation) is not None
             level[i] = at + is_batched
             if level[i] == len(levels):

@@ -123,7 +123,7 @@ class MachineKernel(Kernel):
 
     def _bound(self, request: KernelCall) -> Callable[[], None]:
         job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
-        return BoundCall((self, job, request), self.runtime.call, self._prepared(job, False), job.counter)
+        return BoundCall((self, job, request), self.runtime, self._prepared(job, False), job.counter)
 
     def _job(
         self,
@@ -221,13 +221,14 @@ class MachineKernel(Kernel):
 
 
 class BoundCall:
-    """A prepared call; ``context``: what the driver is called with."""
+    """A prepared call; ``words``: addresses of the driver and of the context that it is called with."""
 
     def __init__(
-        self, alive: Any, call: Callable[[Any], None], prepared: _Prepared, counter: ctypes.Array[ctypes.c_int64]
+        self, alive: Any, runtime: VectorRuntime, prepared: _Prepared, counter: ctypes.Array[ctypes.c_int64]
     ) -> None:
-        self.alive, self.call, self.counter = (alive, prepared), call, counter
+        self.alive, self.call, self.counter = (alive, prepared), runtime.call, counter
         self.context = WORDS(*prepared.words)
+        self.words = runtime.loaded.names["drive"], ctypes.addressof(self.context)
 
     def __call__(self) -> None:
         """Once more."""

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.compile import target
-from substructures.compile.engine import Scratch, address, assembled, shared_runtime
+from substructures.compile.engine import Scratch, address, assembled
 from substructures.compile.machine import BoundCall
 from substructures.compile.stepping import FAILED, FINISHED, HEAD, NUMBERS, RUN, RUNNING, WORDS, Tableau, stepping
 from substructures.compile.tables import TimeTables
@@ -128,8 +128,7 @@ class CompiledRun:
         most: int = 1,
     ) -> None:
         """``tolerances``: relative and absolute; ``longest``: step; ``most``: steps that are tried in a call."""
-        runtime, size = shared_runtime(target.host().width, rates.folder), rates.size
-        width = runtime.width
+        width, size = target.host().width, rates.size
         rows = -(-size // width) * width
         # vectors that are filled up: what is behind a state stays zero
         self._rows = Scratch.zeros(tableau.stages + 3, rows)
@@ -138,17 +137,17 @@ class CompiledRun:
         self._memory = np.zeros(len(NUMBERS) + len(WORDS))
         self._words = self._memory[len(NUMBERS) :].view(np.int64)
         self._memory[3:6] = longest, *tolerances
-        calls = np.array([ctypes.addressof(call.context) for call in rates.calls], dtype=np.int64)
+        calls = np.array([call.words for call in rates.calls], dtype=np.int64)
         row = [self._rows.address + 8 * rows * k for k in range(3)]
         power = 0 if rates.power is None else address(rates.power)
-        own = [runtime.loaded.names["drive"], address(calls), len(calls)]
+        own = [address(calls), len(calls)]
         sizes = [rates.x.size - rates.written.size, rates.written.size, size, rows]
         own += [address(rates.t), address(rates.x), address(rates.written), power, *sizes]
         own += [target.math_library()["pow"], address(self._memory), row[0], row[2], row[1], address(self._steps)]
         saddle = None if rates.saddle is None else rates.saddle.words(width)
         own.append(0 if saddle is None else address(saddle[0]))
         own += [0, 0] if rates.tables is None else [address(rates.tables.words), len(rates.tables.words)]
-        self._alive = rates, calls, runtime, saddle
+        self._alive = rates, calls, saddle
         self._run = _Words(*own, 0)
         self._loaded, self._advance = _loaded(tableau, width, rates.folder)
 

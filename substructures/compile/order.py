@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from substructures.expr.operations import BINARY
 from substructures.expr.program import Operation, Program, operands
 
 #: stage by kind of symbol
@@ -51,8 +52,11 @@ def stage_of(program: Program, needed: Iterable[int]) -> bytearray:
     result = bytearray(len(program))
     for i in needed:
         operation = program.operations[i]
-        if operation[0] == "sym":
+        if operation[0] in BINARY:
+            a, b = result[operation[1]], result[operation[2]]
+            result[i] = a if a > b else b
+        elif operation[0] == "sym":
             result[i] = STAGE[program.symbols[operation[1]].kind]
         else:
-            result[i] = max((result[x] for x in operands(operation)), default=0)
+            result[i] = max([result[x] for x in operands(operation)], default=0)
     return result

@@ -18,7 +18,7 @@ from substructures.compile.tables import tables_at
 
 #: words of a run: addresses, sizes, and how many steps are tried at most
 RUN = (
-    *("drive", "calls", "n_calls", "time", "state", "written", "power", "n_copied", "n_written", "size", "rows"),
+    *("calls", "n_calls", "time", "state", "written", "power", "n_copied", "n_written", "size", "rows"),
     *("pow", "numbers", "y", "stages", "new", "steps", "saddle", "tables", "n_tables", "most"),
 )
 #: squares of the two errors, summed up
@@ -67,17 +67,18 @@ def _rates(width: int) -> str:
     """
     w = AssemblyWriter(width)
     c = w.words("%run", RUN)
-    at = {name: w.pointer(c[name]) for name in ("drive", "calls", "time", "state", "written", "power")}
+    at = {name: w.pointer(c[name]) for name in ("calls", "time", "state", "written", "power")}
     w.put(f"store double %t, ptr {at['time']}, align 8")
     width_of_x = w.arithmetic("add", c["n_copied"], c["n_written"])
     with w.loop("0", width_of_x) as i:
         _copy(w, w.offset("%x", i, "double"), w.offset(at["state"], i, "double"))
     w.put(f"call void @tables_at(ptr {w.pointer(c['tables'])}, i64 {c['n_tables']}, double %t)")
     with w.loop("0", c["n_calls"]) as k:
-        context = w.pointer(w.do(f"load i64, ptr {w.offset(at['calls'], k, 'i64')}, align 8"))
+        words = w.words(w.offset(at["calls"], w.arithmetic("mul", k, 16)), ("drive", "context"))
+        drive, context = w.pointer(words["drive"]), w.pointer(words["context"])
         place = w.offset(context, CONTEXT.index("counter"), "i64")
         w.put(f"store i64 0, ptr {w.pointer(w.do(f'load i64, ptr {place}, align 8'))}, align 8")
-        w.put(f"call void {at['drive']}(ptr {context})")
+        w.put(f"call void {drive}(ptr {context})")
     with w.when(w.do(f"icmp ne i64 {c['saddle']}, 0")):
         w.put(f"call void @saddle_point(ptr {w.pointer(c['saddle'])}, ptr {at['written']})")
     with w.loop("0", c["n_copied"]) as i:

@@ -12,8 +12,11 @@ from typing import Any
 
 from substructures.compile.setting import NONE, setting
 
-#: of LLVM's code generator: 1 gives the same code as 2 and 3 for straight lines, in half of the time
-LEVEL = 1
+#: of LLVM's code generator: 1 gives the same code as 2 and 3 for straight lines, in half of the time; 0 in a quarter of
+#: that, by code that takes a third longer, and the same bits
+LEVEL, QUICK = 1, 0
+#: at level 0 LLVM would select instructions without contracting products and sums
+SELECTION = ("-fast-isel=false", "-global-isel=false")
 
 
 @cache
@@ -64,6 +67,8 @@ def host() -> Host:
     llvm = library()
     llvm.initialize_native_target()
     llvm.initialize_native_asmprinter()
+    for option in SELECTION:
+        llvm.set_option("", option)
     try:
         features = llvm.get_host_cpu_features()
     except RuntimeError:  # LLVM does not know them on this platform: what every such CPU has
@@ -78,25 +83,25 @@ def host() -> Host:
     return Host(triple, llvm.get_host_cpu_name(), features.flatten(), compiler, width, wanted.contraction)
 
 
-def new_machine() -> Any:
+def new_machine(level: int = LEVEL) -> Any:
     """A target machine for the host; an engine takes its own over."""
     target = library().Target.from_triple(host().triple)
     return target.create_target_machine(
-        cpu=host().cpu, features=host().features, opt=LEVEL, reloc="pic", codemodel="small", jit=True
+        cpu=host().cpu, features=host().features, opt=level, reloc="pic", codemodel="small", jit=True
     )
 
 
 machine = cache(new_machine)
 
 
-def assemble(text: str) -> bytes:
+def assemble(text: str, level: int = LEVEL) -> bytes:
     """Object code of a module in LLVM assembly."""
     if not host().contraction:  # the word is a flag only: names and numbers of the assembly do not contain it
         text = text.replace(" contract ", " ")
     llvm = library()
     with llvm.create_context() as context, llvm.parse_assembly(text, context) as module:
         module.triple = host().triple
-        return bytes(machine().emit_object(module))
+        return bytes(machine(level).emit_object(module))
 
 
 @dataclass(frozen=True)

@@ -43,9 +43,9 @@ def compiled(monkeypatch: pytest.MonkeyPatch) -> list[str]:
     asked: list[str] = []
     assemble = target.assemble
 
-    def noted(text: str) -> bytes:
+    def noted(text: str, *level: int) -> bytes:
         asked.append(text)
-        return assemble(text)
+        return assemble(text, *level)
 
     monkeypatch.setattr(target, "assemble", noted)
     return asked
@@ -92,6 +92,17 @@ def test_other_programs_outputs_and_hosts_have_other_entries(
     monkeypatch.setattr(package.target, "machine", target.machine)
     compile_program(spring, ["force"], tmp_path)
     assert len(files(tmp_path)) == 5
+
+
+def test_kernels_for_one_state_are_found_again(
+    spring: Program, tmp_path: Path, compiled: list[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for _ in range(2):
+        compile_program(spring, ["force"], tmp_path, single=True)
+        compile_program(spring, ["force"], tmp_path, width=2)
+        forget(monkeypatch)
+    assert len(compiled) == 3
+    assert len(files(tmp_path)) == 3
 
 
 def damaged(data: bytes) -> dict[str, bytes]:

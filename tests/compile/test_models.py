@@ -53,6 +53,19 @@ def test_vectors_of_other_hosts(name: str, width: int, tree: Any, states: Any, d
     assert deviation(model.program, values, kernel.evaluate(values)) < FEW
 
 
+@pytest.mark.parametrize("name", ["acrobot", "ur5", "kuka-iiwa-14", "two-arms"])
+def test_one_state_at_a_time_gives_the_bits_of_vectors(name: str, tree: Any, states: Any) -> None:
+    """By code that is made more quickly, which contracts the same products with the same sums."""
+    model = tree(*TREES[name])
+    values, names = states(model, 5), ["metric", "christoffel", "bias", "forces"]
+    whole = compile_program(model.program, names).evaluate(values)
+    single = compile_program(model.program, names, single=True)
+    for k in range(5):
+        one = single.evaluate({name: x[k : k + 1] if np.ndim(x) else x for name, x in values.items()})
+        for name in names:
+            np.testing.assert_array_equal(one[name][0], whole[name][k])
+
+
 @pytest.mark.skipif(platform.machine() not in ("x86_64", "AMD64"), reason="older CPUs of this family")
 @pytest.mark.parametrize(("cpu", "needs"), [("x86-64", "+sse2"), ("haswell", "+fma"), ("skylake-avx512", "+avx512dq")])
 def test_code_for_other_cpus(

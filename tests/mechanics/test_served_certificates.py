@@ -24,6 +24,7 @@ from substructures.analysis.equations.nonholonomic.quasi_equations import QuasiE
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Closed, KnifeEdge, Linear, Rolling
 from substructures.analysis.identification import base_parameters as base
 from substructures.analysis.motion import parameter_sensitivity, right_hand_side, variation
+from substructures.certificate import compare
 from substructures.documents import read_json
 from substructures.errors import VerificationFailed
 from substructures.expr.differentiate import in_directions
@@ -280,6 +281,15 @@ def test_what_is_called_constant_is(monkeypatch: pytest.MonkeyPatch) -> None:
     with pytest.raises(VerificationFailed, match="changes along the motion"):
         first_integrals.first_integrals(model())
     clear()
+
+
+def test_a_power_of_zero_needs_no_further_digits(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It is small beside the power of gravity, which is what the potential energy loses."""
+    spec = TreeSpec.read({"name": "heavy", "gravity": [1, 2, -9], "instances": MOUNTS})
+    heavy = couple(spec, tree(free=True)[1])
+    monkeypatch.setattr(compare, "PRECISIONS", (128, None))
+    right_hand_side.forward_dynamics(heavy)
+    assert first_integrals.first_integrals(heavy).integrals[0].rule == "constant"
 
 
 def slides_and_hinges(*joints: str) -> list[Plain]:

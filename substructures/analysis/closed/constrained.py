@@ -361,7 +361,7 @@ def _compiled(
 ) -> tuple[Program, Kernel]:
     """Outputs of a model with their POWER, once for the same model."""
     source = with_power(known.source, outputs, inputs)
-    return source, compile_program(source, [*outputs, POWER], folder)
+    return source, compile_program(source, [*outputs, POWER], folder, single=True)
 
 
 def require_fixed(model: Model, fixed: Sequence[str]) -> None:

@@ -74,7 +74,7 @@ class Prescribed:
         p = program(graph, {"motion": motion, "meeting": array((len(meeting),), lambda k: meeting[k])}, {"t": TIME})
         self._meeting = np.ones((1, len(meeting)))
         out = {"motion": self._found, "meeting": self._meeting}
-        run = compile_program(p, list(out)).bind(out, {"t": self._time})
+        run = compile_program(p, list(out), single=True).bind(out, {"t": self._time})
         run()
         self.values[self._places] = self._found[0]
         return run if p.symbols else None
@@ -86,7 +86,7 @@ class Prescribed:
         if self._tables or self._meeting.size:
             return None
         p = program(self._graph, {"c": array((len(self.index),), lambda k: -self._rows[k][2])}, {"t": TIME})
-        return (compile_program(p, ["c"]).bind({"c": c}, {"t": t}),)
+        return (compile_program(p, ["c"], single=True).bind({"c": c}, {"t": t}),)
 
     def at(self, t: float) -> Array:
         """``values`` at a time; the array is used again by the next call."""

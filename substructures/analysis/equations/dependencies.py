@@ -64,10 +64,10 @@ class Dependencies:
 
 def dependencies(functions: Functions) -> Dependencies:
     """All dependencies. Raises TooLarge where MAX_SAMPLES exact points do not suffice for a coefficient."""
-    echelon, idle = _Echelon(functions.field.prime), 0
-    while idle < 2:
-        found = [echelon.add(row) for row in functions.random()]
-        idle = 0 if any(found) else idle + 1
+    echelon = _Echelon(functions.field.prime)
+    # rows of another random point that are in the span of those before tell that all are
+    while sum(echelon.add(row) for row in functions.random()):
+        pass
     reduced = echelon.reduced()
     expected = {
         j: {b: row[j] for b, row in sorted(reduced.items()) if j in row}

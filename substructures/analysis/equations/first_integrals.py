@@ -12,15 +12,15 @@ B q' + b = 0 with B for G, but for the energy where b is not 0. Zero: :mod:`subs
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
-from functools import lru_cache
+from functools import cached_property, lru_cache
 from itertools import chain
 from typing import Literal
 
 from substructures.analysis.equations.energy import constraints_in, depends_on, judged_energy
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.analysis.equations.free_motion import FreeMotion
+from substructures.analysis.equations.free_motion import FreeMotion, kept_axes
 from substructures.analysis.equations.generators import Generators
 from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
@@ -28,14 +28,14 @@ from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.subsystems import subsystems
-from substructures.analysis.equations.symmetries import Direction, directions
+from substructures.analysis.equations.symmetries import Direction, directions, varied
 from substructures.certificate.derived.integrals import constant
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.calculus.corners import VanishingOnAllSides, corners
-from substructures.expr.differentiate import directional, gradient
+from substructures.expr.differentiate import directional
 from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
-from substructures.expr.program import Entries, Formulas, array, program
+from substructures.expr.program import Formulas, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
@@ -111,7 +111,15 @@ class _Search:
         self.f, self.zero, self.vanishes = f, f.graph.zero, VanishingOnAllSides(f.graph)
         self.found: list[tuple[Integral, Expr]] = []
         self.cyclic_names: list[str] = []
-        self.generators = Generators(f)
+
+    @cached_property
+    def generators(self) -> Generators:
+        """What the momenta found by now make, as others are compared with it."""
+        result = Generators(self.f)
+        for integral, value in self.found:
+            if integral.rule == "constant" and integral.kind != "energy":
+                result.add(value)
+        return result
 
     def energy(self, given: frozenset[str]) -> None:
         """H = T + V, unless a varying input is part of V."""
@@ -123,9 +131,6 @@ class _Search:
         """Those beside the momenta that are no combinations of them and of their products; none at given motions."""
         if freely is None:
             return
-        for integral, value in self.found:
-            if integral.rule == "constant" and integral.kind != "energy":
-                self.generators.add(value)
         blocks = subsystems(self.f, self.vanishes, given) if self.f.is_scleronomic else ()
         for integral, value in chain(freely.spin(), blocks):
             self._note_new(integral, value)
@@ -135,10 +140,11 @@ class _Search:
         why = not_searched(self.f)
         if why is not None:
             return 1, f"symmetries, momenta and subsystems only: {why}"
+        generators = self.generators
         for integral, value in self.found:
             if integral.kind == "energy" and integral.rule == "constant":
-                self.generators.add(value)
-        search = IntegralSearch(self.f, self.generators, self.vanishes)
+                generators.add(value)
+        search = IntegralSearch(self.f, generators, self.vanishes)
         self.found += search.found(degree)
         return degree, search.told
 
@@ -147,23 +153,29 @@ class _Search:
             self.found.append((integral, value))
             self.generators.add(value)
 
+    @cached_property
+    def varied(self) -> set[int]:
+        """The coordinates on which anything depends."""
+        return varied(self.f, self.vanishes)
+
+    @cached_property
+    def free(self) -> list[int]:
+        """The other ones, where no force acts on them."""
+        forces = self.f.vector("forces")
+        return [c for c in range(self.f.n) if c not in self.varied and self.vanishes(forces[c])]
+
     def cyclic(self) -> None:
         """p_c for every coordinate c that neither metric nor forces depend on."""
         f = self.f
-        forces, slopes = f.vector("forces"), f.metric_slopes
-        # d_c g_ab, dphi_k/dq^c = G_kc or B_kc, and derivatives of what motions are given: one that is not 0 is enough
-        by = [(index[-1], x) for some in (slopes, f.constraint_rows) for index, x in some.items()]
-        by += [pair for row in gradient(f.drives, f.model.coordinates) for pair in enumerate(row)]
-        varied = {c for c in range(f.n) if any(e == c and not self.vanishes(x) for e, x in by)}
-        for c, name in enumerate(f.model.coordinates):
-            if c not in varied and self.vanishes(forces[c]):
-                self.cyclic_names.append(name)
-                unit = "N m s" if f.model.joints[c] == "R" else "N s"
-                where = ", in the axes of its body" * (name not in f.model.positions)
-                reason = f"the metric does not depend on '{name}'{where} and no generalised force acts on it"
-                reason += f"; {constraints_in(f.model)} do not depend on it" if f.multipliers else ""
-                self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
-        moving = {i: x for i, x in slopes.items() if i[2] in varied}
+        for c in self.free:
+            name = f.model.coordinates[c]
+            self.cyclic_names.append(name)
+            unit = "N m s" if f.model.joints[c] == "R" else "N s"
+            where = ", in the axes of its body" * (name not in f.model.positions)
+            reason = f"the metric does not depend on '{name}'{where} and no generalised force acts on it"
+            reason += f"; {constraints_in(f.model)} do not depend on it" if f.multipliers else ""
+            self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
+        moving = {i: x for i, x in f.metric_slopes.items() if i[2] in self.varied}
         cyclic = [f.model.coordinates.index(name) for name in self.cyclic_names]
         for direction in () if f.model.given else directions(f, moving, cyclic, self.vanishes):
             self._symmetry(direction)
@@ -194,7 +206,7 @@ class _Search:
         """Of the whole along, and about, axes of the world and a constant force; what moves freely, if it may."""
         # p = sum_a p_a q'^a, L = sum_a L_a q'^a and their derivatives along the equations of motion
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
-        rates = self.f.rate([*linear, *angular])
+        rates = self._rates([*linear, *angular])
         constant = [self._constant(x) for x in rates[:3]]
         pull = [x or self.zero for x in constant]
         kinds: list[IntegralKind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
@@ -211,6 +223,13 @@ class _Search:
         for integral, value in freely.with_time():
             self._note(integral, value)
         return freely
+
+    def _rates(self, momenta: Sequence[Expr]) -> list[Expr]:
+        """Their derivatives along the equations of motion, without a formula where one is +-p_c of a free c."""
+        kept = {x.fp for c in self.free for x in (self.f.momenta[c], -self.f.momenta[c])}
+        moving = [x for x in momenta if x.fp not in kept]
+        found = dict(zip(moving, self.f.rate(moving), strict=True))
+        return [found.get(x, self.zero) for x in momenta]
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""
@@ -249,29 +268,9 @@ class _Search:
         except ZeroDivisionError:
             return None
 
-    def _axes(self) -> Iterator[tuple[str, list[Expr]]]:
-        """Axes of joints that keep a direction other than x, y, z in the world: coordinate and direction."""
-        f = self.f
-        rotation = f.elements("rotation")
-        for a, name in enumerate(f.model.coordinates):
-            columns = f.elements("Omega" if f.model.joints[a] == "R" else "U")
-            frame = min((k for k, b, _ in columns if b == a), default=None)
-            if frame is None:
-                continue
-            world = [self._turned(rotation, columns, frame, a, j) for j in range(3)]
-            axis = [x for x in map(self._constant, world) if x is not None]
-            if len(axis) == 3 and sum(not self.vanishes(x) for x in axis) > 1:
-                yield name, axis
-
-    def _turned(self, rotation: Entries, columns: Entries, k: int, a: int, j: int) -> Expr:
-        """Component j in the world of column a of frame k."""
-        # (R_k)_ji (column a of frame k)_i
-        pairs = [((k, j, i), (k, a, i)) for i in range(3)]
-        return self.f.graph.sum(rotation[r] * columns[c] for r, c in pairs if r in rotation and c in columns)
-
     def _along_axes(self, linear: Sequence[Expr], angular: Sequence[Expr]) -> None:
         """Along and about the axes of joints that keep their direction, through the origin."""
-        for name, axis in self._axes():
+        for name, axis in kept_axes(self.f, self._constant, self.vanishes):
             for kind, some in zip(UNITS, (linear, angular), strict=True):
                 # p . e, L . e
                 value = self.f.graph.sum(x * e for x, e in zip(some, axis, strict=True))

@@ -16,7 +16,7 @@ from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.integral import Integral, IntegralKind
 from substructures.expr.calculus.integrate import potential
 from substructures.expr.graph import Expr
-from substructures.expr.program import Symbol
+from substructures.expr.program import Entries, Symbol
 from substructures.mechanics.balls import turned_by
 
 AXES = "xyz"
@@ -112,3 +112,27 @@ class FreeMotion:
                 return self.constant(g[a, a])
         at = f.model.coordinates.index(floating[0]) if floating else -1
         return self.constant(g[at, at]) if (at, at) in g else None
+
+
+def kept_axes(
+    f: ModelFormulas, constant: Callable[[Expr], Expr | None], vanishes: Callable[[Expr], bool]
+) -> Iterator[tuple[str, list[Expr]]]:
+    """Axes of joints that keep a direction other than x, y, z in the world: coordinate and direction."""
+    rotation = f.elements("rotation")
+    for a, name in enumerate(f.model.coordinates):
+        columns = f.elements("Omega" if f.model.joints[a] == "R" else "U")
+        frame = min((k for k, b, _ in columns if b == a), default=None)
+        if frame is None:
+            continue
+        world = [_turned(f, rotation, columns, (frame, a, j)) for j in range(3)]
+        axis = [x for x in map(constant, world) if x is not None]
+        if len(axis) == 3 and sum(not vanishes(x) for x in axis) > 1:
+            yield name, axis
+
+
+def _turned(f: ModelFormulas, rotation: Entries, columns: Entries, place: tuple[int, int, int]) -> Expr:
+    """Component j in the world of column a of frame k."""
+    # (R_k)_ji (column a of frame k)_i
+    k, a, j = place
+    pairs = [((k, j, i), (k, a, i)) for i in range(3)]
+    return f.graph.sum(rotation[r] * columns[c] for r, c in pairs if r in rotation and c in columns)

@@ -46,7 +46,6 @@ FREE, SMALL = 1e-9, 1e-7
 
 def not_searched(f: ModelFormulas) -> str | None:
     """Why a model is not searched."""
-    size = len(f.model.program.select(NEEDED))
     if f.model.balls:
         return "rates of ball and floating joints are no derivatives of coordinates"
     if f.multipliers or f.model.given:
@@ -54,6 +53,7 @@ def not_searched(f: ModelFormulas) -> str | None:
         return held if f.multipliers else "motions are given"
     if f.n > MOST:
         return f"{f.n} coordinates; the limit is {MOST}"
+    size = len(f.model.program.select(NEEDED))
     if size > LIMIT:
         return f"{size:,} operations; the limit is {LIMIT:,}"
     return "a formula has corners (|x|, sign x)" if corners([f.power, *f.vector("forces")]) else None

@@ -15,6 +15,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
+from itertools import chain
 from typing import TypeVar
 
 import numpy as np
@@ -23,6 +24,7 @@ from substructures.analysis.equations.dependencies import Functions, dependencie
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.errors import TooLarge
 from substructures.expr.calculus.corners import corners
+from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Entries, Formulas, Program, program
@@ -58,6 +60,14 @@ class Direction:
         acting = [a for a in self.components if a in known]
         c = transfer([self.components[a] for a in acting], graph, {})
         return graph.sum(x * values[a] for x, a in zip(c, acting, strict=True))
+
+
+def varied(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> set[int]:
+    """The coordinates on which the metric, what holds the motion, or drives depend."""
+    # d_c g_ab, dphi_k/dq^c = G_kc or B_kc, and derivatives of what motions are given: one that is not 0 is enough
+    by = [(index[-1], x) for some in (f.metric_slopes, f.constraint_rows) for index, x in some.items()]
+    by += [pair for row in gradient(f.drives, f.model.coordinates) for pair in enumerate(row)]
+    return {c for c in range(f.n) if any(e == c and not vanishes(x) for e, x in by)}
 
 
 def directions(
@@ -159,13 +169,11 @@ class _Search:
 
     def __init__(self, f: ModelFormulas, rows: Sequence[Mapping[int, Expr]]) -> None:
         entries: Entries = {(r, e): x for r, row in enumerate(rows) for e, x in row.items()}
-        self.f, self.size = f, (len(rows), f.n)
+        self.f, self.rows, self.size = f, rows, (len(rows), f.n)
         self.program: Program = program(f.graph, {"rows": Formulas(self.size, entries)}, f.symbols)
         # whatever varies along a motion counts as a coordinate here
         self.fixed = [s.name for s in self.program.symbols if s.kind == "parameter"]
         self.varied = [s.name for s in self.program.symbols if s.kind != "parameter"]
-        # a corner |x| has two sides, and a field none: floats may rule a direction out, nothing proves it
-        self.has_corners = bool(corners(x for row in rows for x in row.values()))
 
     def may_be_free(self, left: Sequence[int]) -> bool:
         """Whether floats leave a direction among these columns free, or cannot tell."""
@@ -175,7 +183,8 @@ class _Search:
         rows = interpret(self.program, values | more | {"_batch": np.zeros(STATES)}, ["rows"])["rows"]
         stacked = rows[..., left].reshape(-1, len(left))
         if not np.isfinite(stacked).all():
-            return not self.has_corners
+            # a corner |x| has two sides, and a field none: floats may rule a direction out, nothing proves it
+            return not corners(x for row in self.rows for x in row.values())
         # columns of one size, so that units do not matter
         sizes = np.abs(stacked).max(axis=0, initial=0)
         singular = np.linalg.svd(stacked / np.where(sizes > 0, sizes, 1), compute_uv=False)
@@ -188,8 +197,9 @@ class _Search:
             field = Field([self.program])
             symbols = {name: field.draw() for name in self.fixed}
             with suppress(TooLarge):
-                self._random(field, symbols)
-                return Functions(self.f.n, angular, field, partial(self._random, field, symbols), self._exact, symbols)
+                sample = partial(self._random, field, symbols)
+                samples = chain([sample()], iter(sample, None))
+                return Functions(self.f.n, angular, field, partial(next, samples), self._exact, symbols)
         raise TooLarge("the search for a field with all square roots (in primes)", FIELDS + 1, FIELDS)
 
     @cached_property

@@ -82,13 +82,22 @@ def equations_in_rates(model: Model, zero: Iterable[str] = ()) -> Program:
 
 @lru_cache(maxsize=16)
 @without_collections
-def _kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
-    return compile_program(equations_in_rates(model.source, zero), OUTPUTS, folder)
+def _program(model: Known, zero: frozenset[str]) -> Program:
+    return equations_in_rates(model.source, zero)
 
 
-def kernel_in_rates(model: Model, zero: frozenset[str] = frozenset(), folder: Path | None = None) -> Kernel:
-    """The compiled equations_in_rates(model, zero), with the outputs OUTPUTS; the same object for the same model."""
-    return _kernel(Known(model.program.digest, model), zero, folder)
+@lru_cache(maxsize=16)
+def _kernel(model: Known, zero: frozenset[str], folder: Path | None, single: bool) -> Kernel:
+    return compile_program(_program(model, zero), OUTPUTS, folder, single=single)
+
+
+def kernel_in_rates(
+    model: Model, zero: frozenset[str] = frozenset(), folder: Path | None = None, single: bool = False
+) -> Kernel:
+    """The compiled equations_in_rates(model, zero), with the outputs OUTPUTS, ``single``: for one state at a time; the
+    same object for the same model.
+    """
+    return _kernel(Known(model.program.digest, model), zero, folder, single)
 
 
 class BallRates:
@@ -101,7 +110,7 @@ class BallRates:
         self.inputs = VaryingInputs(conditions, self._t, [(state_names(model), self._x)], folder)
         self._rates, self._power, self._folder = np.zeros((1, self.m + self.n)), np.zeros(1), folder
         parts = self._rates[:, : self.m], self._rates[:, self.m :], self._power
-        kernel = kernel_in_rates(model, conditions.zero, folder)
+        kernel = kernel_in_rates(model, conditions.zero, folder, single=True)
         columns = [(state_names(model), self._x), *self.inputs.columns]
         outputs = dict(zip(OUTPUTS, parts, strict=True))
         self._run = kernel.bind(outputs, conditions.values | {"t": self._t}, columns=columns)

@@ -86,8 +86,9 @@ def _kernels(source: Known, moving: tuple[str, ...], folder: Path | None) -> tup
     found = sided(source.source, moving)
     if found is None:
         return None
-    outputs = tuple(found.on_sides.outputs)
-    return compile_program(found.on_sides, outputs, folder), compile_program(found.places, (CORNERS,), folder), found
+    pairs = (found.on_sides, tuple(found.on_sides.outputs)), (found.places, (CORNERS,))
+    on_sides, places = (compile_program(some, outputs, folder, single=True) for some, outputs in pairs)
+    return on_sides, places, found
 
 
 def kernels(source: Program, moving: Sequence[str], folder: Path | None) -> tuple[Kernel, Kernel, Sided] | None:

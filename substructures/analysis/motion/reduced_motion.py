@@ -41,12 +41,12 @@ class ReducedMotion:
         self._out = {name: np.zeros((1, *equations.program.outputs[name].shape)) for name in wanted}
         values = self.conditions.values | {"t": self._t}
         columns = [(self.columns, self._y)]
-        rates = compile_program(equations.program, ["rates"], folder)
+        rates = compile_program(equations.program, ["rates"], folder, single=True)
         self._move = rates.bind({"rates": self._rates}, values, columns=columns)
-        kernel = compile_program(equations.program, wanted, folder)
+        kernel = compile_program(equations.program, wanted, folder, single=True)
         self._work = None
         if "constraint_power" in equations.program.outputs:
-            rate = compile_program(equations.program, ["constraint_power"], folder)
+            rate = compile_program(equations.program, ["constraint_power"], folder, single=True)
             moving = [*columns, ([f"{name}'" for name in equations.velocities], self._dv), *self.inputs.columns]
             self._work = rate.bind({"constraint_power": self._power}, values, columns=moving)
         source = equations.program.select(wanted)

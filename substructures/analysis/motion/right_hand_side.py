@@ -53,13 +53,15 @@ def _forward_program(model: Known, zero: frozenset[str]) -> Program:
 
 @lru_cache(maxsize=32)
 @without_collections
-def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None) -> Kernel:
-    return compile_program(_forward_program(model, zero), (ACCELERATION, PIVOTS, POWER), folder)
+def _forward_kernel(model: Known, zero: frozenset[str], folder: Path | None, single: bool) -> Kernel:
+    return compile_program(_forward_program(model, zero), (ACCELERATION, PIVOTS, POWER), folder, single=single)
 
 
-def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None) -> Kernel:
-    """The compiled forward_dynamics(model, zero); the same object for the same model. Raises as forward_dynamics."""
-    return _forward_kernel(Known(model.program.digest, model), frozenset(zero), folder)
+def forward_kernel(model: Model, zero: Iterable[str] = (), folder: Path | None = None, single: bool = False) -> Kernel:
+    """The compiled forward_dynamics(model, zero), ``single``: for one state at a time; the same object for the same
+    model. Raises as forward_dynamics.
+    """
+    return _forward_kernel(Known(model.program.digest, model), frozenset(zero), folder, single)
 
 
 class RightHandSide:
@@ -84,7 +86,7 @@ class RightHandSide:
         n = model.dof
         self._names = state_names(model)
         known = model.of_shape  # whose kernel may be there
-        self.kernel = forward_kernel(known, zero, folder)
+        self.kernel = forward_kernel(known, zero, folder, single=True)
         self.has_power = bool(self.kernel.outputs[POWER].entries)
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * n))
         self._out = np.zeros((1, n)), np.zeros((1, n)), np.zeros(1)

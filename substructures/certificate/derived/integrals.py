@@ -15,7 +15,7 @@ from flint import arb, arb_mat
 
 from substructures.certificate.derived.displaced import BallRows, motion
 from substructures.certificate.derived.model_at import Index, ModelAt, dot, solve, total
-from substructures.certificate.derived.model_formulas import Expectation, power, symmetric_of, vector_of
+from substructures.certificate.derived.model_formulas import Expectation, power_of, symmetric_of, vector_of
 from substructures.certificate.linear import Ball, Matrix
 from substructures.certificate.numbers import Numbers
 from substructures.certificate.outputs import Outputs
@@ -85,7 +85,7 @@ def _constant(given: _Held, integrals: Sequence[Mapping[str, Any]], m: ModelAt) 
         else:
             value = _component(m, found, kind, name.removeprefix(f"{kind}."), balls)
         result.scalar(name, value)
-    result.scalar("power", power(m, balls))
+    power_of(result, "power", m, balls)
     held = [each for each in integrals if each["rule"] == "constant"]
     _require_constant(given, held, m)
     return result

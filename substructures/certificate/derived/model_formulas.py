@@ -226,7 +226,7 @@ def simulated(m: ModelAt) -> Outputs:
     result = Outputs()
     vector_of(result, "forward_dynamics", m.accelerations())
     vector_of(result, "pivots", pivots(m.matrix("metric")))
-    result.scalar("power", power(m))
+    power_of(result, "power", m)
     return result
 
 
@@ -239,7 +239,7 @@ def _simulated_in_rates(positions: Sequence[str], balls: BallRows, m: ModelAt) -
     result, changes = Outputs(), moved(m, balls, m.rates)
     vector_of(result, "position_rates", [changes[name] for name in positions])
     vector_of(result, "forward_dynamics", m.accelerations())
-    result.scalar("power", power(m, balls))
+    power_of(result, "power", m, balls)
     return result
 
 
@@ -254,12 +254,15 @@ def _with_power(names: Sequence[str], m: ModelAt) -> Outputs:
         output = m.program.outputs[name]
         entries = result.array(name, tuple(output.shape), output.symmetry)
         entries |= {i: m.found[entry] for i, entry in zip(output.index, output.entries, strict=True)}
-    result.scalar("lost_power", power(m))
+    power_of(result, "lost_power", m)
     return result
 
 
-def power(m: ModelAt, balls: BallRows = ()) -> Ball:
-    """Q_a q'^a + V' - d_t T at fixed inputs; the metric depends on the time where motions are given."""
+def power_of(result: Outputs, name: str, m: ModelAt, balls: BallRows = ()) -> None:
+    """Q_a q'^a + V' - d_t T at fixed inputs; the metric depends on the time where motions are given. A power of zero is
+    small beside the Q_a q'^a, which cancel V'.
+    """
     along = m.along(m.time() | moved(m, balls, m.rates))
-    work = total(Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)) + along.scalar("potential_energy")
-    return work - m.kinetic_change(m.time())
+    work = [Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)]
+    result.scalar(name, total(work) + along.scalar("potential_energy") - m.kinetic_change(m.time()))
+    result[name].scale = total(map(abs, work)).abs_lower()

@@ -108,8 +108,8 @@ class VanishingOnAllSides:
 
     def __call__(self, expr: Expr) -> bool:
         """True for the zero function; False where it is not, or cannot be told."""
-        if expr.is_zero:
-            return True
+        if expr.is_zero or self.smooth.plain.has(expr):
+            return expr.is_zero
         nodes = reachable([expr], self._plain.__contains__)
         found = [node for node in nodes if _inner(node) is not None]
         if not found:

@@ -1,9 +1,10 @@
 """Whether a formula is the zero function, decided at random points in ball arithmetic: yes, no, or unknown.
 
-Fingerprints do not know that sqrt(11)^2 = 11 or atan2(0, 1) = 0; the value at a point does. A ball without zero proves
-that the formula is not zero. Balls with zero are evidence that it is, where they are small against the terms that make
-them up, at points of both signs and of all magnitudes, and stay so with many more digits; less than that is unknown,
-unless the canonical form (:mod:`substructures.expr.rings.expand`) proves it.
+Fingerprints tell it of formulas that are :mod:`plain <.plain>`. They do not know that sqrt(11)^2 = 11 or
+atan2(0, 1) = 0; the value at a point does. A ball without zero proves that the formula is not zero. Balls with zero are
+evidence that it is, where they are small against the terms that make them up, at points of both signs and of all
+magnitudes, and stay so with many more digits; less than that is unknown, unless the canonical form
+(:mod:`substructures.expr.rings.expand`) proves it.
 
 >>> graph = Graph()
 >>> x = graph.symbol("x")
@@ -23,6 +24,7 @@ from typing import Any
 import flint
 
 from substructures.errors import TooLarge
+from substructures.expr.calculus.plain import PlainFormulas
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.rings.expand import is_zero
 from substructures.expr.walk import reachable
@@ -55,6 +57,7 @@ class Vanishing:
 
     def __init__(self, graph: Graph) -> None:
         self.graph, self.random = graph, Random()  # noqa: S311 -- seeded by the system; no point is told
+        self.plain = PlainFormulas()
         self.symbols: list[dict[Expr, flint.fmpq]] = [{} for _ in range(POINTS)]
         self.values: dict[tuple[int, int], dict[Expr, Any]] = {}
         self.sizes: dict[tuple[int, int], dict[Expr, Any]] = {}
@@ -62,8 +65,8 @@ class Vanishing:
 
     def __call__(self, expr: Expr) -> bool | None:
         """True for the zero function, False for another one, None where neither is known."""
-        if expr.is_zero:
-            return True
+        if expr.is_zero or self.plain.has(expr):
+            return expr.is_zero
         seen: list[dict[Expr, flint.fmpq]] = []
         looks = [PRECISION]
         for point in range(POINTS):
@@ -80,6 +83,8 @@ class Vanishing:
 
     def varies(self, expr: Expr, names: frozenset[str]) -> bool:
         """Whether some symbols are proven to change the value: it differs at two points that differ in them alone."""
+        if self.plain.has(expr):
+            return self.plain.varies(expr, names)
         with flint.ctx.workprec(PRECISION):
             first = self._value(expr, self.values.setdefault((0, PRECISION), {}), self.symbols[0])
             there = {x: self.symbols[1 if str(x.value) in names else 0][x] for x in self.symbols[0]}

@@ -80,10 +80,17 @@ class Field:
 
     def evaluate(self, program: Program, values: Mapping[str, int], name: str) -> dict[tuple[int, ...], int]:
         """The independent elements of an output. Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol."""
-        run = _Run(self, program, values)
+        run, output = _Run(self, program, values), program.outputs[name]
+        known, operations, p = run.values, program.operations, self.prime
         for i in program.reachable([name]):
-            run.step(i, program.operations[i])
-        output = program.outputs[name]
+            operation = operations[i]
+            op = operation[0]
+            if op == "mul":
+                known[i] = known[operation[1]] * known[operation[2]] % p
+            elif op == "add":
+                known[i] = (known[operation[1]] + known[operation[2]]) % p
+            else:
+                run.step(i, operation)
         return {index: run.values[e] for index, e in zip(output.index, output.entries, strict=True)}
 
 
@@ -112,7 +119,7 @@ class _Run:
             self.values[i] = {"sin": s, "cos": c}[op] if op != "tan" else s * self.field.inverse(c) % p
         elif op == "sqrt":
             self.values[i] = self.field.root(self.values[operation[1]])
-        elif op in ("add", "sub", "mul", "neg", "div"):
+        elif op in ("sub", "neg", "div"):
             self._rational(i, operation)
         else:
             self._other(i, operation)
@@ -120,14 +127,7 @@ class _Run:
     def _rational(self, i: int, operation: Operation) -> None:
         op, p = operation[0], self.field.prime
         a, b = self.values[operation[1]], self.values[operation[-1]]
-        if op == "add":
-            result = a + b
-        elif op == "sub":
-            result = a - b
-        elif op == "mul":
-            result = a * b
-        else:
-            result = -a if op == "neg" else a * self.field.inverse(b)
+        result = a - b if op == "sub" else -a if op == "neg" else a * self.field.inverse(b)
         self.values[i] = result % p
 
     def _other(self, i: int, operation: Operation) -> None:

@@ -45,6 +45,8 @@ class Workspace:
             for name, given in declared.items():
                 self.symbols.setdefault(name, Symbol(name, kind, str(given.get("unit", ""))))
         self._found: dict[str, Entries] = {}
+        #: operations of the model as they are here
+        self._known: dict[int, Expr] = {}
 
     @cached_property
     def scope(self) -> Scope:
@@ -193,7 +195,7 @@ class Workspace:
         require_stored(self.model.program, names)
         bound = dict.fromkeys(self.zero, self.graph.zero) | dict(bindings or {})
         try:
-            return replay(self.model.program, self.graph, bound, names)
+            return replay(self.model.program, self.graph, bound, names, None if bindings else self._known)
         except ZeroDivisionError:
             if not self.zero:
                 raise
