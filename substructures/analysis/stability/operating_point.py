@@ -11,11 +11,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.analysis.arguments import NumberOrExpression, exact
+from substructures.analysis.arguments import NumberOrExpression, exact, real
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
-from substructures.analysis.given import StateArray, require_known
+from substructures.analysis.given import StateArray, numbers, require_known
 from substructures.array import Array
 from substructures.expr.differentiate import gradient, in_directions
 from substructures.expr.graph import Expr
@@ -73,6 +73,23 @@ class OperatingPoint:
         zero = [name for name, value in self.parameters.items() if not np.any(value)]
         at = {name: float(np.ravel(x)[0]) for name, x in values.items()}
         return has_even_dissipation(self.model, at, driven, zero)
+
+
+@dataclass(frozen=True)
+class RestConditions:
+    """What holds at rest: the time [s], ``parameters`` in place of their defaults, constant ``inputs`` [N m, N].
+
+    Raises InvalidArgument.
+    """
+
+    t: float
+    parameters: Mapping[str, float]
+    inputs: Mapping[str, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "t", real(self.t, "/t"))
+        object.__setattr__(self, "parameters", numbers(self.parameters, "parameters"))
+        object.__setattr__(self, "inputs", numbers(self.inputs, "inputs"))
 
 
 def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> Program:

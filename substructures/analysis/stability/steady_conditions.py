@@ -13,7 +13,8 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.precession import BallRequest
 from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
-from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
+from substructures.analysis.stability.equilibrium_search import SearchRange
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.stability.steady_result import Held
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.array import Array

@@ -16,13 +16,8 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.steady import steady_formulas
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.stability.closed_search import is_met, multiplier_units
-from substructures.analysis.stability.equilibrium_search import (
-    STEPS,
-    TOLERANCES,
-    RestConditions,
-    RestSearch,
-    SearchRange,
-)
+from substructures.analysis.stability.equilibrium_search import STEPS, TOLERANCES, RestSearch, SearchRange
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
