@@ -165,14 +165,17 @@ def _is_constant(model: Model, result: BallLinearisation, q: Array, values: Mapp
     """Whether M, D, K and what is left over are the same wherever constant rates lead, as they are at states in general
     position there.
     """
-    source, names, scale = perturbation(model), ["metric", "damping", "stiffness", "residual"], np.abs(result.qd).max()
-    if "t" in source.needs(names):
+    source, scale = perturbation(model), float(np.abs(result.qd).max())
+    # M w^2, D w, K and residuals are of one size
+    size = max(float(np.abs(x).max()) for x in (result.M * scale**2, result.D * scale, result.K))
+    parts = {"metric": (result.M, scale**2), "damping": (result.D, scale)}
+    parts |= {"stiffness": (result.K, 1.0), "residual": (result.residual, 1.0)}
+    if "t" in source.needs(parts):
         return False
     for t in LATER:
         place = moved_on(model.positions, model.coordinates, model.balls, q, result.qd * (t / scale))
         there = {**values, **dict(zip(model.positions, place.tolist(), strict=True))}
-        found = interpret(source, {name: float(np.ravel(x)[0]) for name, x in there.items()}, names)
-        for name, x in zip(names, (result.M, result.D, result.K, result.residual), strict=True):
-            if np.abs(found[name] - x).max() > STEADY * max(1.0, float(np.abs(x).max())):
-                return False
+        found = interpret(source, {name: float(np.ravel(x)[0]) for name, x in there.items()}, list(parts))
+        if any(np.abs(found[name] - x).max() * unit > STEADY * size for name, (x, unit) in parts.items()):
+            return False
     return True
