@@ -16,6 +16,7 @@ from substructures import (
     ClosedMotion,
     ConstrainedMotion,
     Definition,
+    Event,
     FixedStep,
     Geodesic,
     Integrator,
@@ -51,6 +52,8 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: Outputs(times=[0, 1], count=5), "/times", "one of 'times', 'step' and 'count'"),
     (lambda: Outputs(times=[1, 0]), "/times", "increase"),
     (lambda: Outputs(count=1), "/count", "found 1"),
+    (lambda: Event("top", "p.q1", count=0), "/count", "found 0"),
+    (lambda: Event("top", "p.q1", count=1.5), "/count", "1.5"),  # type: ignore[arg-type]
     (lambda: TreeMotion("loaded"), "/friction", "'bearings'"),
     (lambda: TreeMotion(bearings=object()), "/bearings", "'regularised'"),  # type: ignore[arg-type]
     (lambda: TreeMotion("dry"), "/friction", "'dry'"),  # type: ignore[arg-type]
