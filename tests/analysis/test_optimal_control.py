@@ -171,6 +171,12 @@ def test_jacobian_against_finite_differences() -> None:
         ({"end": End({"x.z": 1})}, "/end/q/x.z", "unknown-coordinate"),
         ({"bounds": {"tau.x.s": [1, -1]}}, "/bounds/tau.x.s", "empty"),
         ({"bounds": {"u": [1, -1]}}, "/bounds/u", "unknown-input"),
+        ({"bounds": {"tau.x.s": ["a", 1]}}, "/bounds/tau.x.s/0", "number-expected"),
+        ({"bounds": {"tau.x.s": 5}}, "/bounds/tau.x.s", "wrong-length"),
+        ({"free_horizon": [1]}, "/free_horizon", "wrong-length"),
+        ({"path": {"x.s": [0]}}, "/path/x.s", "wrong-length"),
+        ({"end": End([[1]])}, "/end/q", "number-expected"),
+        ({"end": End(1)}, "/end/q", "list-expected"),  # type: ignore[arg-type]
         ({"guess": {"tau.x.s": [1]}}, "/guess/tau.x.s", "wrong-length"),
         ({"intervals": 9000}, "/intervals", "too-large"),
         ({"guess": {"u": [1]}}, "/guess/u", "unknown-guess"),
