@@ -117,9 +117,8 @@ def identify(
     ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
     IEEE ICRA 1997.
     """
-    given = parameters or {}
-    motion = _Motion(q, qd, qdd, _of_base(base, given, model, closed))
-    data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
+    given, names = parameters or {}, (REGRESSOR,) if model is None else (REGRESSOR, OWN)
+    data = _stacked(base, _Motion(q, qd, qdd, _of_base(base, given, model, closed)), names)
     force = _forces(base, tau, data)
     limit, kept = positive(error_limit, "error_limit"), _fitted_samples(len(force), held_out)
     inertial, W = force if model is None else force - _known(model, given, data), data.outputs[REGRESSOR]
@@ -243,12 +242,11 @@ def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
         raise InvalidArgument.at("/tau", "missing", "actuator forces 'tau' are needed")
     if isinstance(given, Mapping):
         given = by_name(_view(base), given, "tau")
-    tau = np.atleast_1d(numeric(given, "/tau"))
+    tau = numeric(given, "/tau")
     # of one coordinate one number for each state, as of the state itself
     tau = tau.reshape(data.qd.shape) if tau.ndim == 1 and tau.size == data.qd.size else tau
     if tau.shape != data.qd.shape:
-        message = f"shape {tau.shape} found, {data.qd.shape} expected"
-        raise InvalidArgument.at("/tau", "wrong-length", message)
+        raise InvalidArgument.at("/tau", "wrong-length", f"shape {tau.shape} found, {data.qd.shape} expected")
     return tau
 
 
