@@ -207,3 +207,13 @@ def test_failures_are_values() -> None:
     assert seen == [1, 2]
     assert few.status == "failed"
     assert len(few.history) >= 2
+
+
+def test_a_control_of_a_nanonewton_has_bounds_of_its_own() -> None:
+    """1 nkg is held by up to 1 nN: that the search does not move is not called optimal."""
+    body = {"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": "1/10^9"}
+    problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, q=[1], cost=Cost("1/10^9*x.s^2"))
+    bounds = {"tau.x.s": (-1e-9, 1e-9)}
+    found = optimal_control(model_of({"name": "x", "bodies": [body]}, (0, 0, 0)), problem, Demands(bounds=bounds))
+    assert found.cost > 0.9e-9  # the least is 0.72e-9
+    assert (found.status, found.is_right) == ("feasible", False)
