@@ -11,7 +11,7 @@ from closed_trees import four_bar, resized
 from in_depth import deep, seeds
 from random_trees import Plain, model_of
 
-from substructures import InvalidInput, Model
+from substructures import InvalidInput, Model, linearise
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.quantities.numbers.evaluation import evaluate
@@ -218,3 +218,27 @@ def test_a_small_pendulum_is_as_determined_as_a_large_one() -> None:
     """m g l = 1e-10 N m: K is small, M^-1 K = g/l is not."""
     found = equilibria(catalogue_model("simple-pendulum", m="1e-8", l="0.001"))
     assert [len(e.free) for e in found.found] == [0, 0]
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_gravity_along_an_axis_in_decimals_holds_nothing(sign: int) -> None:
+    """A pendulum about the vertical, in a world that is turned: K is rounding, neither restoring nor repelling."""
+    axis = np.array([0.1, 0.2, 0.3])
+    joint = {"type": "revolute", "coordinate": "a", "placement": {"position": [0, 0, 0]}, "axis": axis.tolist()}
+    body = {"name": "b", "parent": "base", "mass": 1, "com": [0.3, 0.4, 0.5], "joint": joint}
+    gravity = sign * 9.81 * axis / np.linalg.norm(axis)
+    model = model_of({"name": "door", "bodies": [body]}, tuple(gravity.tolist()))
+    for q in (0.3, 1.0, 2.0):
+        told = linearise(model, [q]).stability
+        assert told is not None
+        assert told.verdict == "undecided"
+    found = equilibria(model)
+    assert (found.held, len(found.found)) == (("x.a",), 1)
+
+
+def test_what_hardly_draws_back_still_does() -> None:
+    """1 kg on 1e-14 N/m."""
+    joint: Plain = {"type": "prismatic", "coordinate": "s", "stiffness": "1/10^14"}
+    model = model_of({"name": "slide", "bodies": [SLIDE | {"mass": 1, "joint": joint}]}, (0, 0, 0))
+    (found,) = equilibria(model).found
+    assert (found.verdict, found.at.modes[0].frequency) == ("stable", pytest.approx(1e-7))

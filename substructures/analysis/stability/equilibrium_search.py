@@ -16,7 +16,7 @@ from substructures.analysis.arguments import positive, whole
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.stability.operating_point import RestConditions
+from substructures.analysis.stability.operating_point import RestConditions, forces_that_are
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
@@ -76,7 +76,7 @@ class RestSearch:
         outputs, columns = self._also()
         outputs |= {"residual": self.F, "stiffness": self.K}
         columns.append((list(model.positions), self.q))
-        self.run = program_kernel(perturbation(model)).bind(outputs, values, columns=columns)
+        self.run, self._values = program_kernel(perturbation(model)).bind(outputs, values, columns=columns), values
         self._sized([model.state_units["q"][name] for name in model.positions])
 
     def _sized(self, units: Sequence[str]) -> None:
@@ -91,9 +91,17 @@ class RestSearch:
             F, K = self.at(q)
             there = np.abs(np.column_stack((F, K * self.length)))
             sizes = np.maximum(sizes, np.where(np.isfinite(there), there, 0).max(axis=1, initial=0))
+        sizes = self._without_rounding(sizes)
         largest = float(sizes.max(initial=0)) or 1.0
         self.unit = np.where(sizes > NOTHING * largest, sizes, largest)
         self.turning = np.array([x == "rad" and self._is_periodic(a) for a, x in enumerate(units)], dtype=bool)
+
+    def _without_rounding(self, sizes: Array) -> Array:
+        """Sizes (n,) of forces, 0 of all where they are nothing but rounding, as of gravity along an axis."""
+        if self.model.closures:
+            return sizes
+        place = dict(zip(self.model.positions, self._anywhere()[0].tolist(), strict=True))
+        return forces_that_are(perturbation(self.model), {**self._values, **place}, sizes, self.length)
 
     def _anywhere(self) -> Array:
         """Places in general position (PLACES, n)."""
@@ -145,7 +153,7 @@ class RestSearch:
         places = np.concatenate((starts[:: max(1, len(starts) // PLACES)], self._anywhere()))
         found = np.array([np.abs(self._slopes(q)).max(axis=0) for q in places])
         # what is not finite depends on something
-        least = NOTHING * np.max(found, where=np.isfinite(found), initial=0)
+        least = NOTHING * np.max(found, where=np.isfinite(found), initial=1)
         return np.flatnonzero((found <= least).all(axis=0)).tolist()
 
     def _slopes(self, q: Array) -> Array:

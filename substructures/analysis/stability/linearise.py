@@ -21,7 +21,14 @@ from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.linearise_constrained import linearise_constrained
-from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
+from substructures.analysis.stability.operating_point import (
+    AT_REST,
+    MATRICES,
+    OperatingPoint,
+    fault_of,
+    is_small,
+    rounding,
+)
 from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_order, input_matrix, modes, stability
 from substructures.array import Array
 from substructures.expr.interpret import interpret, interpret_in_blocks
@@ -156,9 +163,19 @@ def _judged(point: OperatingPoint, states: States, result: Linearisation, values
             return result
         found = modes(result.M, result.D, result.K, result.R)
         return replace(result, modes=found, stability=stability(found, result.D, result.K, has_potential=False))
-    found, minimum = modes(result.M, result.D, result.K), ROUTH if point.model.ignored else DIRICHLET
-    told = stability(found, result.D, result.K, point.has_potential(values), minimum)
+    K, minimum = _without_rounding(point.model, result, values), ROUTH if point.model.ignored else DIRICHLET
+    found = modes(result.M, result.D, K)
+    told = stability(found, result.D, K, point.has_potential(values), minimum)
     return replace(result, modes=found, stability=told)
+
+
+def _without_rounding(model: Model, result: Linearisation, values: Mapping[str, Any]) -> Array:
+    """K, with zeros for what is nothing but rounding in coordinates that hardly anything draws back."""
+    rows = np.abs(np.linalg.solve(result.M, result.K)).max(axis=1, initial=0)
+    if not ((rows > 0) & (rows <= AT_REST)).any():
+        return result.K
+    noise = rounding(perturbation(model), values, ["stiffness"])["stiffness"]
+    return np.where(np.abs(result.K) <= noise, 0.0, result.K)
 
 
 def _is_constant(model: Model, result: BallLinearisation, q: Array, values: Mapping[str, Any]) -> bool:

@@ -70,6 +70,9 @@ class SteadySearch(RestSearch):
     def _of_all(self, rows: Array) -> Array:
         return rows[:, self.still]
 
+    def _without_rounding(self, sizes: Array) -> Array:
+        return sizes
+
     def put(self, name: str, value: float) -> None:
         """Another value of a parameter, or of what is wanted of a moving coordinate."""
         if name in self.model.coordinates:
