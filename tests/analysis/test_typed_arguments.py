@@ -32,6 +32,7 @@ from substructures import (
     simulate,
 )
 from substructures.analysis.from_fields import motion_arguments
+from substructures.analysis.orbits.orbit import Shooting
 
 TREE = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
 ROD = Linear("rod", "p.q1'")
@@ -60,6 +61,7 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: ClosedMotion(friction="loaded"), "/friction", "'loaded'"),  # type: ignore[arg-type]
     (lambda: ClosedMotion(reduction="none"), "/reduction", "'none'"),  # type: ignore[arg-type]
     (lambda: ConstrainedMotion([]), "/constraints", "none"),
+    (lambda: Shooting(1.0, turns={"p.q1": 0.5}), "/turns/p.q1", "0.5"),  # type: ignore[dict-item]
     (lambda: ConstrainedMotion([ROD], form="lagrange"), "/form", "'lagrange'"),  # type: ignore[arg-type]
 ]
 
@@ -69,6 +71,16 @@ def test_what_is_wrong_is_not_made(make: Callable[[], Any], pointer: str, text: 
     where, message = fault(make)
     assert where == pointer
     assert text in message
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"), [("kind", Geodesic), ("kind", "geodesic"), ("integrator", "RK45"), ("outputs", {"count": 5})]
+)
+def test_what_is_no_value_of_its_class_is_not_passed_over(argument: str, value: Any) -> None:
+    """Geodesic is none, Geodesic() is one."""
+    where, message = fault(lambda: simulate(catalogue_model("simple-pendulum"), [1], (0, 1), **{argument: value}))
+    assert where == f"/{argument}"
+    assert repr(value)[:80] in message
 
 
 def test_a_model_moves_as_it_can() -> None:

@@ -67,7 +67,10 @@ def periodic_orbits(
 
 
 def _range(model: Model, vary: str, values: Sequence[float], between: tuple[float, float]) -> tuple[float, float]:
-    first, last = reals(between, "/between")
+    ends = reals(between, "/between")
+    if len(ends) != 2:
+        raise InvalidArgument.at("/between", "wrong-length", "two values are needed: the first and the last")
+    first, last = ends
     if len(values):
         message = "'values' says which orbits, 'between' from where to where: give one of them"
         raise InvalidArgument.at("/between", "contradiction", message)
