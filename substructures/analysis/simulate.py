@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
-from typing import Any
+from typing import Any, get_args
 
 from substructures.analysis.closed.simulation import ClosedProblem, simulate_closed
 from substructures.analysis.equations.geodesics import without_forces
@@ -102,6 +102,9 @@ def simulate(
     (0.509, True)
     """
     kind = kind or _usual(model)
+    _require_types(
+        kind=(kind, get_args(MotionKind)), integrator=(integrator, (Integrator,)), outputs=(outputs, (Outputs,))
+    )
     _require_kind(model, kind)
     if isinstance(kind, Geodesic):
         _refuse("no forces", inputs=inputs, reactions=outputs.reactions, powers=outputs.powers)
@@ -157,6 +160,14 @@ def _usual(model: Model) -> MotionKind:
     if model.velocity_constraints:
         return ConstrainedMotion(constraints_of(model))
     return ClosedMotion() if model.closures else TreeMotion()
+
+
+def _require_types(**given: tuple[Any, tuple[type, ...]]) -> None:
+    """Raises InvalidArgument for arguments that are no values of their classes, as a class itself."""
+    for name, (value, classes) in given.items():
+        if not isinstance(value, classes):
+            wanted = " or ".join(f"{each.__name__}(...)" for each in classes)
+            raise InvalidArgument.at(f"/{name}", "wrong-type", f"{wanted} is needed, found {repr(value)[:80]}")
 
 
 def _require_kind(model: Model, kind: MotionKind) -> None:

@@ -277,3 +277,17 @@ def test_satellites_are_regulated_and_answer() -> None:
     )
     weighted = regulator(model, turned, weights={"x.w_b_x": 4, "x.w_b_x'": 1, "x.w_b_y": 1, "x.w_b_z": 1})
     np.testing.assert_allclose(weighted.gain[0, [0, 3]], [2, np.sqrt(1 + 4 * J1)], atol=1e-9)
+
+
+@pytest.mark.parametrize("size", [1, 1e-3])
+def test_a_spring_that_pulls_at_the_centre_now_alone_makes_no_steady_motion(size: float) -> None:
+    """However small: of 1 m, or 1 mm with 1e-6 of the mass and 1e-4 of the stiffness."""
+    J = {name: f"{x}*{size**4:.0e}*{size:.0e}" for name, x in {"xx": J1, "yy": J2, "zz": J3}.items()}
+    joint = {"type": "ball", "coordinate": ["w", "x", "y", "z"]}
+    body = {"name": "b", "parent": "base", "mass": f"{size**2:.0e}", "joint": joint, "inertia": J}
+    ends = {"from": {"body": "base", "at": [f"2*{size}", 0, 0]}, "to": {"body": "b", "at": [f"{size}", 0, 0]}}
+    spring = {"type": "spring", **ends, "stiffness": f"{10 * size**1.5:.0e}", "length": 0}
+    model = model_of({"name": "spun", "bodies": [body], "loads": [spring]}, (0, 0, 0))
+    found = linearise(model, [1, 0, 0, 0], qd=[0, 0, 1])
+    np.testing.assert_allclose(found.qdd, 0, atol=1e-12)
+    assert found.stability is None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -75,3 +76,13 @@ def test_what_is_not_known_says_so() -> None:
     model = model_of(top())
     with pytest.raises(InvalidInput, match="no cyclic rate; there are: x"):
         steady_motions(model, rates={"x.w_b_x": 1})
+
+
+@pytest.mark.parametrize("length", ["1/1000", "1000"])
+def test_a_top_of_any_size_sleeps_when_it_is_fast(length: str) -> None:
+    """C^2 w^2 > 4 A m g l, of mass l^3."""
+    across, along = (f"{x}*({length})^5" for x in (0.32, 0.2))
+    body: Plain = {"name": "b", "parent": "base", "mass": f"2*({length})^3", "com": [0, 0, f"3/10*({length})"]}
+    model = model_of(body | {"inertia": {"xx": across, "yy": across, "zz": along}, "joint": {"type": "ball"}})
+    slowest = np.sqrt(4 * 0.5 * 2 * G * 0.3 / float(Fraction(length))) / 0.2
+    assert verdicts(model, {"x.w_b_z": 1.1 * slowest})[UPRIGHT].verdict == "stable"

@@ -11,7 +11,7 @@ from closed_trees import four_bar, resized
 from in_depth import deep, seeds
 from random_trees import Plain, model_of
 
-from substructures import InvalidInput, Model
+from substructures import InvalidInput, Model, linearise
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.quantities.numbers.evaluation import evaluate
@@ -172,3 +172,73 @@ def test_equilibria_do_not_depend_on_the_unit_of_length(make: Callable[[], Model
     for one, two in zip(found.found, other.found, strict=True):
         np.testing.assert_allclose(two.q, one.q, atol=1e-7)
         assert one.verdict == two.verdict
+
+
+def test_a_locus_begins_at_the_equilibrium_near_its_start_on_either_side_of_a_full_turn() -> None:
+    """-pi and pi are one place, upright; hanging is farther away."""
+    model = catalogue_model("simple-pendulum")
+    for start in (-np.pi, np.nextafter(np.pi, 4), 3 * np.pi):
+        found = root_locus(model, "x.m", [1, 2], [start])
+        assert found.stability == ("unstable", "unstable")
+        np.testing.assert_allclose(np.abs(found.q), np.pi)
+
+
+def test_an_equilibrium_that_meets_another_one_ends_the_locus() -> None:
+    """V' = s (k - 2 s^2 + s^4) = 0: s^2 = 1 + sqrt(1 - k) up to the fold at k = 1, and s = 0 at every k."""
+    loads = [{"type": "potential", "potential": "k*s^2/2 - h*s^4/(2*l^2) + h*s^6/(6*l^4)"}]
+    numbers = {"k": {"value": 0, "unit": "N/m"}, "h": {"value": 1, "unit": "N/m"}, "l": {"value": 1, "unit": "m"}}
+    model = model_of(
+        {"name": "mass", "bodies": [SLIDE | {"mass": 1}], "loads": loads, "parameters": numbers}, (0, 0, 0)
+    )
+    for values in ([0.8, 0.99, 0.9999, 1.01, 1.05], [0.8, 1.2, 2]):
+        found = root_locus(model, "k", values, [1.2])
+        kept = [k for k in values if k < 1]
+        assert (found.status, len(found.values)) == ("failed", len(kept))
+        np.testing.assert_allclose(found.q[:, 0] ** 2, 1 + np.sqrt(1 - np.array(kept)), rtol=1e-6)
+
+
+def test_a_locus_goes_on_where_a_body_leaves_a_stiff_support() -> None:
+    """A mass on a stop of 10^6 N/m that is lifted by a soft spring: far away, but the only equilibrium there is."""
+    loads = [{"type": "joint", "coordinate": "s", "force": "F + 10^6*(sqrt(s^2 + (1/10^9)^2) - s)/2 - s"}]
+    numbers = {"F": {"value": 0}}
+    model = model_of({"name": "mass", "bodies": [SLIDE], "loads": loads, "parameters": numbers}, (0, 0, 0))
+    found = root_locus(model, "F", [-2, -1, 1, 2], [0])
+    np.testing.assert_allclose(found.q[:, 0], [-2 / 1000001, -1 / 1000001, 1, 2], rtol=1e-5)
+
+
+def test_few_starts_hold_no_coordinate_that_forces_depend_on() -> None:
+    """In horizontal gravity the torque of a pendulum is stationary at zero, where the search alone begins."""
+    model = catalogue_model("simple-pendulum", ("9.81", 0, 0))
+    found = equilibria(model, count=0)
+    assert (found.held, found.found) == ((), ())
+    assert "no equilibrium was found" in found.message
+
+
+def test_a_small_pendulum_is_as_determined_as_a_large_one() -> None:
+    """m g l = 1e-10 N m: K is small, M^-1 K = g/l is not."""
+    found = equilibria(catalogue_model("simple-pendulum", m="1e-8", l="0.001"))
+    assert [len(e.free) for e in found.found] == [0, 0]
+
+
+@pytest.mark.parametrize("sign", [-1, 1])
+def test_gravity_along_an_axis_in_decimals_holds_nothing(sign: int) -> None:
+    """A pendulum about the vertical, in a world that is turned: K is rounding, neither restoring nor repelling."""
+    axis = np.array([0.1, 0.2, 0.3])
+    joint = {"type": "revolute", "coordinate": "a", "placement": {"position": [0, 0, 0]}, "axis": axis.tolist()}
+    body = {"name": "b", "parent": "base", "mass": 1, "com": [0.3, 0.4, 0.5], "joint": joint}
+    gravity = sign * 9.81 * axis / np.linalg.norm(axis)
+    model = model_of({"name": "door", "bodies": [body]}, tuple(gravity.tolist()))
+    for q in (0.3, 1.0, 2.0):
+        told = linearise(model, [q]).stability
+        assert told is not None
+        assert told.verdict == "undecided"
+    found = equilibria(model)
+    assert (found.held, len(found.found)) == (("x.a",), 1)
+
+
+def test_what_hardly_draws_back_still_does() -> None:
+    """1 kg on 1e-14 N/m."""
+    joint: Plain = {"type": "prismatic", "coordinate": "s", "stiffness": "1/10^14"}
+    model = model_of({"name": "slide", "bodies": [SLIDE | {"mass": 1, "joint": joint}]}, (0, 0, 0))
+    (found,) = equilibria(model).found
+    assert (found.verdict, found.at.modes[0].frequency) == ("stable", pytest.approx(1e-7))

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 from identified_motions import IN_PLANE, base_of, motion, tree
 
-from substructures import Definition, InvalidInput, couple, derive
+from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
+from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.consistent import consistent_inertia
 from substructures.analysis.identification.findings import ConsistentInertia, Identification, pseudo_inertia
 from substructures.analysis.identification.fit import identify
@@ -19,7 +20,7 @@ from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_numbers
-from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor import RegressorModel, regressor
 
 ARM = ("planar-3r", IN_PLANE)
 
@@ -99,3 +100,45 @@ def test_what_is_not_excited_is_refused() -> None:
     with pytest.raises(InvalidInput, match="move more joints") as error:
         consistent_inertia(base, regressor(*tree(*ARM)), found)
     assert error.value.faults[0].code == "not-excited"
+
+
+MASS = {"name": "b", "parent": "base", "mass": 2, "joint": {"type": "prismatic", "coordinate": "s"}}
+
+
+def of_a_mass(force: str) -> tuple[Model, RegressorModel, BaseParameters]:
+    """On a slide without gravity, under a force of its own."""
+    loads = [{"type": "joint", "coordinate": "s", "force": force}]
+    part = {"name": "m", "bodies": [MASS], "loads": loads, "parameters": {"k": {"value": 1, "unit": "N/m"}}}
+    spec = TreeSpec.read({"name": "t", "gravity": [0, 0, 0], "instances": [{"name": "x", "substructure": "m"}]})
+    parts = {"x": derive(part)}
+    Y = regressor(spec, parts)
+    return couple(spec, parts), Y, base_parameters(Y)
+
+
+def test_what_is_known_has_the_parameters_that_are_given() -> None:
+    """tau = m q'' + k q, also as one number for each state; k is no parameter of the base parameters."""
+    model, _, base = of_a_mass("-k*s")
+    q, qdd = np.array([0.1, 0.5, -0.2, 0.3]), np.array([1.0, -2, 3, 1])
+    for tau in (2 * qdd + 5 * q, (2 * qdd + 5 * q)[:, None]):
+        found = identify(base, q, None, qdd, tau, model=model, parameters={"x.k": 5})
+        np.testing.assert_allclose(found.values, [2], rtol=1e-14)
+    with pytest.raises(InvalidInput, match=r"unknown parameter 'x\.c'"):
+        identify(base, q, None, qdd, qdd, model=model, parameters={"x.c": 5})
+    with pytest.raises(InvalidInput, match=r"unknown parameter 'x\.k'"):
+        identify(base, q, None, qdd, qdd, parameters={"x.k": 5})
+
+
+def test_known_loads_do_not_depend_on_a_time_that_samples_lack() -> None:
+    model, _, base = of_a_mass("-k*s*sin(t)")
+    with pytest.raises(InvalidInput, match="depend on the time"):
+        identify(base, [0, 1], None, [1, 2], [2, 4], model=model)
+
+
+def test_a_force_that_is_explained_to_the_last_bit_has_consistent_inertia() -> None:
+    """Deviations are 0 then."""
+    _, Y, base = of_a_mass("-k*s")
+    found = identify(base, [0, 1], None, [1, 2], [2, 4])
+    assert found.deviations == [0]
+    inertia = consistent_inertia(base, Y, found)
+    assert inertia.is_right
+    assert inertia.values[0] == pytest.approx(2, rel=1e-3)

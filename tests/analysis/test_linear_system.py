@@ -77,6 +77,15 @@ def test_frequencies_by_default_span_the_poles(pendulum: Model) -> None:
     assert np.isfinite(found.response).all()
 
 
+def test_frequencies_by_default_span_slow_poles() -> None:
+    """A spring of 1e-14 N/m on 1 kg: 1e-7 rad/s."""
+    joint = {"type": "prismatic", "stiffness": "1/10^14"}
+    found = frequency_response(
+        alone({"name": "m", "bodies": [{**OSCILLATOR["bodies"][0], "joint": joint}]}, (0, 0, 0)), [0]
+    )
+    np.testing.assert_allclose(found.frequencies[[0, -1]], np.sqrt(0.5) * np.array([1e-8, 1e-6]))
+
+
 def test_a_pole_is_told() -> None:
     free = alone({**OSCILLATOR, "bodies": [{**OSCILLATOR["bodies"][0], "joint": {"type": "prismatic"}}]}, (0, 0, 0))
     found = frequency_response(free, [0], frequencies=[1.0, 0.0])
@@ -184,6 +193,7 @@ def test_a_wrong_solution_is_seen(pendulum: Model, monkeypatch: pytest.MonkeyPat
     [
         ({"weights": {"p.q9": 1}}, "/weights/p.q9"),
         ({"weights": {"p.q1": -1}}, "/weights/p.q1"),
+        ({"weights": {"p.q1": "1"}}, "/weights/p.q1"),
         ({"efforts": {"tau.p.q1": 0}}, "/efforts/tau.p.q1"),
         ({"efforts": {"tau": 1}}, "/efforts/tau"),
         ({"q": [0.3]}, "/q"),
@@ -202,7 +212,12 @@ def test_bad_input(given: Any, pointer: str, pendulum: Model) -> None:
 
 
 def test_bad_frequencies(pendulum: Model) -> None:
-    for given in ([], [-1.0], [np.nan], [[1.0]]):
-        with pytest.raises(InvalidInput) as caught:
-            frequency_response(pendulum, [0.0], frequencies=given)
-        assert caught.value.faults[0].pointer == "/frequencies"
+    wrong: dict[str, list[Any]] = {
+        "/frequencies": [[], [-1.0], np.ones((1, 1))],
+        "/frequencies/0": [[np.nan], ["fast"]],
+    }
+    for pointer, each in wrong.items():
+        for given in each:
+            with pytest.raises(InvalidInput) as caught:
+                frequency_response(pendulum, [0.0], frequencies=given)
+            assert caught.value.faults[0].pointer == pointer

@@ -291,3 +291,18 @@ def test_a_metric_that_is_singular_but_for_rounding_fails_with_advice(moment: fl
     assert found.status == "failed"
     assert "the metric is singular" in found.message
     assert [place.verdict for place in equilibria(model, count=1).found] == ["failed"]
+
+
+def test_a_soft_direction_beside_a_stiff_one_is_as_definite() -> None:
+    """1e8 N/m beside m g l = 0.1 N m."""
+    slide = {"type": "prismatic", "coordinate": "s", "stiffness": "10^8"}
+    hinge = {"type": "revolute", "coordinate": "a", "placement": {"position": [0, 0, 0]}, "axis": [0, 1, 0]}
+    bodies = [
+        {"name": "frame", "parent": "base", "mass": 1000, "joint": slide},
+        {"name": "bob", "parent": "frame", "mass": "1/100", "com": [0, 0, -1], "joint": hinge},
+    ]
+    model = model_of({"name": "stand", "bodies": bodies}, (0, 0, "-9.81"))
+    verdicts = [
+        linearise(model, [s, a]).stability for s, a in ((-9.81 * 1000.01 / 1e8, 0), (-9.81 * 1000.01 / 1e8, np.pi))
+    ]
+    assert [told and told.verdict for told in verdicts] == ["stable", "unstable"]

@@ -171,6 +171,12 @@ def test_jacobian_against_finite_differences() -> None:
         ({"end": End({"x.z": 1})}, "/end/q/x.z", "unknown-coordinate"),
         ({"bounds": {"tau.x.s": [1, -1]}}, "/bounds/tau.x.s", "empty"),
         ({"bounds": {"u": [1, -1]}}, "/bounds/u", "unknown-input"),
+        ({"bounds": {"tau.x.s": ["a", 1]}}, "/bounds/tau.x.s/0", "number-expected"),
+        ({"bounds": {"tau.x.s": 5}}, "/bounds/tau.x.s", "wrong-length"),
+        ({"free_horizon": [1]}, "/free_horizon", "wrong-length"),
+        ({"path": {"x.s": [0]}}, "/path/x.s", "wrong-length"),
+        ({"end": End([[1]])}, "/end/q", "number-expected"),
+        ({"end": End(1)}, "/end/q", "list-expected"),  # type: ignore[arg-type]
         ({"guess": {"tau.x.s": [1]}}, "/guess/tau.x.s", "wrong-length"),
         ({"intervals": 9000}, "/intervals", "too-large"),
         ({"guess": {"u": [1]}}, "/guess/u", "unknown-guess"),
@@ -201,3 +207,13 @@ def test_failures_are_values() -> None:
     assert seen == [1, 2]
     assert few.status == "failed"
     assert len(few.history) >= 2
+
+
+def test_a_control_of_a_nanonewton_has_bounds_of_its_own() -> None:
+    """1 nkg is held by up to 1 nN: that the search does not move is not called optimal."""
+    body = {"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": "1/10^9"}
+    problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, q=[1], cost=Cost("1/10^9*x.s^2"))
+    bounds = {"tau.x.s": (-1e-9, 1e-9)}
+    found = optimal_control(model_of({"name": "x", "bodies": [body]}, (0, 0, 0)), problem, Demands(bounds=bounds))
+    assert found.cost > 0.9e-9  # the least is 0.72e-9
+    assert (found.status, found.is_right) == ("feasible", False)

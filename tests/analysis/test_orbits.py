@@ -274,3 +274,20 @@ def test_bad_input(pendulum: Model, shooting: Shooting, given: Any, pointer: str
     with pytest.raises(InvalidInput) as caught:
         periodic_orbits(pendulum, [0.1], shooting, **given)
     assert caught.value.faults[0].pointer == pointer
+
+
+@pytest.mark.parametrize("rates", [[0.3], {"p.q1": 0.3}])
+def test_orbits_over_a_held_state_begin_where_the_start_is(rates: Any, pendulum: Model) -> None:
+    """As a list, or by name, it is the start that it is as an array."""
+    given, array = (
+        periodic_orbits(pendulum, [0.5], Shooting(2.1), qd=qd, vary="p.q1", values=[0.5]).found[0]
+        for qd in (rates, np.array([0.3]))
+    )
+    np.testing.assert_array_equal(given.qd, array.qd)
+    assert given.qd[0] > 0.1
+
+
+def test_a_transient_is_a_time_that_passes(pendulum: Model) -> None:
+    for wrong in (-1.0, "1"):
+        with pytest.raises(InvalidInput, match="/transient"):
+            lyapunov_exponents(pendulum, [0.5], 10.0, transient=wrong)  # type: ignore[arg-type]

@@ -238,3 +238,11 @@ def test_the_simplest_walker_walks_as_published() -> None:
     assert first.after is not None
     assert first.t == pytest.approx(3.88, abs=0.01)
     assert (first.after[0][0], first.after[1][0]) == pytest.approx(START, abs=3e-6)
+
+
+def test_an_event_that_acts_has_its_name_alone(ball: Model) -> None:
+    """Else it would act where the other one stops the motion."""
+    half = Event("floor", "b.z-1/2", direction="falling")
+    for events in ([FLOOR, half], [half, FLOOR]):
+        with pytest.raises(InvalidArgument, match="/events/1/name: a second event 'floor'"):
+            simulate(ball, [1], (0, 3), outputs=Outputs(events=events))

@@ -388,3 +388,15 @@ def test_in_a_world_that_is_turned_by_decimals(number: int) -> None:
     leaning = tree | {"gravity": [1e-6, 0, -G]}
     with pytest.raises(InvalidInput, match="no cyclic coordinate"):
         steady_motions(tree_model(leaning, {"conical": definition}), rates={"x.turn": 6.0})
+
+
+def test_a_door_turns_steadily_however_its_world_is_turned() -> None:
+    """Gravity along its axis in decimals: what is left of its torque is rounding."""
+    axis = np.array([0.1, 0.2, 0.3])
+    joint = {"type": "revolute", "coordinate": "a", "placement": {"position": [0, 0, 0]}, "axis": axis.tolist()}
+    body = {"name": "b", "parent": "base", "mass": 1, "com": [0.3, 0.4, 0.5], "joint": joint}
+    gravity = -9.81 * axis / np.linalg.norm(axis)
+    for size in (1, 0):
+        model = model_of({"name": "door", "bodies": [body]}, tuple((size * gravity).tolist()))
+        (found,) = steady_motions(model, rates={"x.a": 2.0}).found
+        assert (found.moving, found.verdict, found.rates.tolist()) == (("x.a",), "stable", [2.0])

@@ -16,6 +16,7 @@ from substructures import (
     ClosedMotion,
     ConstrainedMotion,
     Definition,
+    Event,
     FixedStep,
     Geodesic,
     Integrator,
@@ -31,6 +32,7 @@ from substructures import (
     simulate,
 )
 from substructures.analysis.from_fields import motion_arguments
+from substructures.analysis.orbits.orbit import Shooting
 
 TREE = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
 ROD = Linear("rod", "p.q1'")
@@ -51,12 +53,15 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: Outputs(times=[0, 1], count=5), "/times", "one of 'times', 'step' and 'count'"),
     (lambda: Outputs(times=[1, 0]), "/times", "increase"),
     (lambda: Outputs(count=1), "/count", "found 1"),
+    (lambda: Event("top", "p.q1", count=0), "/count", "found 0"),
+    (lambda: Event("top", "p.q1", count=1.5), "/count", "1.5"),  # type: ignore[arg-type]
     (lambda: TreeMotion("loaded"), "/friction", "'bearings'"),
     (lambda: TreeMotion(bearings=object()), "/bearings", "'regularised'"),  # type: ignore[arg-type]
     (lambda: TreeMotion("dry"), "/friction", "'dry'"),  # type: ignore[arg-type]
     (lambda: ClosedMotion(friction="loaded"), "/friction", "'loaded'"),  # type: ignore[arg-type]
     (lambda: ClosedMotion(reduction="none"), "/reduction", "'none'"),  # type: ignore[arg-type]
     (lambda: ConstrainedMotion([]), "/constraints", "none"),
+    (lambda: Shooting(1.0, turns={"p.q1": 0.5}), "/turns/p.q1", "0.5"),  # type: ignore[dict-item]
     (lambda: ConstrainedMotion([ROD], form="lagrange"), "/form", "'lagrange'"),  # type: ignore[arg-type]
 ]
 
@@ -66,6 +71,16 @@ def test_what_is_wrong_is_not_made(make: Callable[[], Any], pointer: str, text: 
     where, message = fault(make)
     assert where == pointer
     assert text in message
+
+
+@pytest.mark.parametrize(
+    ("argument", "value"), [("kind", Geodesic), ("kind", "geodesic"), ("integrator", "RK45"), ("outputs", {"count": 5})]
+)
+def test_what_is_no_value_of_its_class_is_not_passed_over(argument: str, value: Any) -> None:
+    """Geodesic is none, Geodesic() is one."""
+    where, message = fault(lambda: simulate(catalogue_model("simple-pendulum"), [1], (0, 1), **{argument: value}))
+    assert where == f"/{argument}"
+    assert repr(value)[:80] in message
 
 
 def test_a_model_moves_as_it_can() -> None:

@@ -53,6 +53,15 @@ def test_a_part_of_it_has_the_view_of_any(client: TestClient) -> None:
     VersionView.model_validate(made.json())
 
 
+def test_reports_of_it_are_refused(satellite: TestClient) -> None:
+    """Of the part, too."""
+    made = satellite.post("/v1/substructures", json=TREE["instances"][0]["definition"])
+    assert made.status_code in (200, 201), made.text
+    for path in ("trees/satellite", f"substructures/{made.json()['name']}"):
+        answer = satellite.get(f"/v1/{path}/report")
+        assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, "has-balls"), answer.text
+
+
 def test_it_is_shown_and_printed(satellite: TestClient) -> None:
     assert satellite.get("/trees/satellite").status_code == 200
     for name in ("metric", "christoffel", "forces", "potential_energy", "bias", "position_rates"):

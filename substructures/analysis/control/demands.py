@@ -12,12 +12,11 @@ import numpy as np
 from substructures.analysis.arguments import real, whole
 from substructures.analysis.control.adjoint import HORIZON
 from substructures.analysis.control.closed_start import Demand
-from substructures.analysis.control.path_limits import Limits, limits_of
+from substructures.analysis.control.path_limits import Limits, limits_of, pair
 from substructures.analysis.control.problem import ControlProblem
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument, among
-from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.quaternions import (
     at_zero,
     by_displacements,
@@ -79,9 +78,9 @@ class Demands:
             message = f"'tolerance' must lie between 0 and 1, found {self.tolerance:g}"
             raise InvalidArgument.at("/tolerance", code, message)
         if self.free_horizon is not None:
-            least, most = (real(x, f"/free_horizon/{i}") for i, x in enumerate(self.free_horizon))
-            if not 0 < least < most:
-                message = f"two rising times above zero are needed, found {least:g} and {most:g}"
+            least, most = pair(self.free_horizon, "/free_horizon")
+            if least is None or most is None or not 0 < least < most:
+                message = f"two rising times above zero are needed, found {least} and {most}"
                 raise InvalidArgument.at("/free_horizon", "empty", message)
 
 
@@ -109,6 +108,9 @@ def demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[in
     """(index in (q, q'), value) of every demand. Raises InvalidArgument."""
     pointer, names = f"/end/{field}", model.positions if field == "q" else model.coordinates
     if not isinstance(given, Mapping):
+        if not isinstance(given, list | tuple | np.ndarray):
+            message = f"numbers by coordinate, or a list of them, are needed, found {repr(given)[:80]}"
+            raise InvalidArgument.at(pointer, "list-expected", message)
         if len(given) != len(names):
             raise InvalidArgument.at(pointer, "wrong-length", f"{len(given)} values for {len(names)} coordinates")
         given = dict(zip(names, given, strict=True))
@@ -117,7 +119,7 @@ def demanded(model: Model, given: Any, field: str, offset: int) -> list[tuple[in
             message = f"unknown coordinate '{name[:80]}'{among(name, names)}"
             raise InvalidArgument.at(f"{pointer}/{escape(name)}", "unknown-coordinate", message)
     pairs = ((a, given.get(name)) for a, name in enumerate(names))
-    return [(offset + a, float(numeric(x, pointer))) for a, x in pairs if x is not None]
+    return [(offset + a, real(x, pointer)) for a, x in pairs if x is not None]
 
 
 def rows_of(model: Model, demands: Sequence[Demand]) -> tuple[Array, Array]:

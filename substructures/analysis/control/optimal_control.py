@@ -204,7 +204,7 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     cost, gradient = search.cost(z)
     A = search.jacobian(z)
     low, high = search.limits()
-    margin = 1e-9 * (1 + np.abs(z))
+    margin = 1e-9 * np.minimum(1 + np.abs(z), high - low)
     below, above = z <= low + margin, z >= high - margin
     free = ~(below | above)
     # A^T nu = -dJ/dz in the free variables, and dJ/dz + A^T nu is what is left (Karush, Kuhn and Tucker)
@@ -213,7 +213,7 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
         nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
     # without demands dJ/dz itself vanishes: the cost over the size of the variables is the measure then
     typical = abs(cost) / (1 + float(np.abs(z).max(initial=0)))
-    size = max(float(np.abs(gradient).max(initial=0)), typical, 1e-12)
+    size = max(float(np.abs(gradient).max(initial=0)), typical) or 1.0
     largest = _left(gradient + A.T @ nu, below, above) / size
     values, by = search.on_path(z)
     reached = by[values <= REACHED * max(float(np.abs(values).max(initial=0)), 1.0)]
@@ -257,4 +257,4 @@ def _motion(search: ShootingProgram, shooting: Shooting, run: Rollout, nu: Array
         pairs = zip(motion.q, motion.qd, strict=True)
         moved = np.array([np.linalg.pinv(by_displacements(*states, q)) @ v for q, v in pairs])
     terms = (motion.series["costates"][:, : shooting.m] * moved).sum(axis=1)
-    return motion, float(np.ptp(H) / max(float(np.abs(H).max()), float(np.abs(terms).max()), 1e-12))
+    return motion, float(np.ptp(H) / (max(float(np.abs(H).max()), float(np.abs(terms).max())) or 1.0))

@@ -7,10 +7,13 @@ algorithm for direct solution of optimal control problems, IFAC World Congress 1
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
+from substructures.analysis.arguments import real
 from substructures.analysis.control.problem import declared
 from substructures.analysis.control.shooting import Shooting
 from substructures.array import Array
@@ -65,10 +68,21 @@ class PathLimits:
         return np.nan_to_num(np.maximum(np.maximum(self.low - value, value - self.high), 0.0), nan=np.inf)
 
 
+def pair(given: Any, pointer: str) -> tuple[float | None, float | None]:
+    """A least and a largest number, None (or infinite) for none. Raises InvalidArgument."""
+    if not isinstance(given, list | tuple | np.ndarray) or len(given) != 2:
+        message = f"a least and a largest number are needed, found {repr(given)[:80]}"
+        raise InvalidArgument.at(pointer, "wrong-length", message)
+    ends = zip(given, (-math.inf, math.inf), strict=True)
+    least, most = (None if x is None or x == none else real(x, f"{pointer}/{i}") for i, (x, none) in enumerate(ends))
+    return least, most
+
+
 def limits_of(limits: Limits, field: str) -> tuple[Array, Array]:
     """Least and largest values as arrays, infinite where there is none. Raises InvalidArgument."""
     low, high = np.full(len(limits), -np.inf), np.full(len(limits), np.inf)
-    for i, (name, (least, most)) in enumerate(limits.items()):
+    for i, (name, given) in enumerate(limits.items()):
+        least, most = pair(given, f"/{field}/{escape(name)}")
         low[i], high[i] = -np.inf if least is None else least, np.inf if most is None else most
         if not low[i] <= high[i]:
             message = f"no number lies between {least} and {most}"

@@ -87,7 +87,9 @@ class _Problem:
             self.X_0.append(inverse @ P[k] @ inverse)
         # R = L^-1 D^-1 of the correlations C = L L^T
         deviations = np.maximum(found.deviations, EXACT * (np.abs(found.values) + np.abs(found.values).max(initial=0)))
-        correlation = found.covariance / np.outer(found.deviations, found.deviations)
+        known = np.where(found.deviations > 0, found.deviations, 1.0)
+        correlation = found.covariance / np.outer(known, known)
+        np.fill_diagonal(correlation, 1.0)
         self.R = np.linalg.solve(np.linalg.cholesky(correlation), np.diag(1 / deviations))
         count = len(Y.names)
         fixed = before.copy()

@@ -23,14 +23,14 @@ import numpy as np
 
 from substructures.analysis.arguments import positive, real
 from substructures.analysis.equations.formulas import require_moving
-from substructures.analysis.given import StateArray
+from substructures.analysis.given import StateArray, require_known
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.findings import LIMIT, Excitation, Identification
 from substructures.analysis.identification.on_closures import Loops
 from substructures.analysis.identification.on_constraints import Rolled
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.errors import InvalidArgument
+from substructures.errors import InvalidArgument, InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.evaluation import evaluate
@@ -82,7 +82,7 @@ def excitation(
     InvalidInput (``/q``, ``/qdd``, ``/parameters/name``, ...) and MissingValue. Source: J. Swevers et al., IEEE
     Transactions on Robotics and Automation 13(5), 1997.
     """
-    data = _stacked(base, _Motion(q, qd, qdd, parameters or {}))
+    data = _stacked(base, _Motion(q, qd, qdd, _of_base(base, parameters or {}, closed)))
     if closed is None:
         return _excitation(base.names, data.outputs[REGRESSOR])
     loops = _tied(closed).of(closed, base, data.q, parameters or {})
@@ -106,28 +106,36 @@ def identify(
     """Base parameters beta from a measured motion: beta = argmin |D^-1 (W beta - tau + known)|^2 (see above).
 
     ``q``, ``qd``, ``qdd``, ``tau`` (N, n) [rad, m, s, N m, N], or columns by coordinate; ``qd`` None: at rest.
-    ``parameters``: kinematic ones, in place of their defaults. ``model``: whose springs, dampers, loads and armature
-    are known (its masses do not matter, drives are found as differences to its own); without one ``tau`` is explained
-    by the base parameters alone. ``closed``: the tree, where it has closures or velocity constraints: ``base`` are
-    those without them, of which motions with them tell ``combinations``, from what forces do along the independent
-    coordinates. ``held_out``: part of the samples, the last ones, that is predicted and not fitted. Checks: the normal
-    equations hold; the force that is not explained, and the force that any one standard deviation of a parameter makes,
-    are parts of the force of every joint (root mean squares) that may reach ``error_limit``. A motion that does not
-    excite all of them is a result with status ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...;
-    ``too-few``) and MissingValue. Source: M. Gautier, IEEE ICRA 1997.
+    ``parameters``: kinematic ones, and those of the models, in place of their defaults. ``model``: whose springs,
+    dampers, loads and armature are known, and do not depend on the time (its masses do not matter, drives are found as
+    differences to its own); without one ``tau`` is explained by the base parameters alone. ``closed``: the tree, where
+    it has closures or velocity constraints: ``base`` are those without them, of which motions with them tell
+    ``combinations``, from what forces do along the independent coordinates. ``held_out``: part of the samples, the last
+    ones, that is predicted and not fitted. Checks: the normal equations hold; the force that is not explained, and the
+    force that any one standard deviation of a parameter makes, are parts of the force of every joint (root mean
+    squares) that may reach ``error_limit``. A motion that does not excite all of them is a result with status
+    ``failed``. Raises InvalidInput (``/q``, ``/tau``, ``/qdd``, ...; ``too-few``) and MissingValue. Source: M. Gautier,
+    IEEE ICRA 1997.
     """
-    motion = _Motion(q, qd, qdd, parameters or {})
-    data = _stacked(base, motion, (REGRESSOR,) if model is None else (REGRESSOR, OWN))
+    given, names = parameters or {}, (REGRESSOR,) if model is None else (REGRESSOR, OWN)
+    data = _stacked(base, _Motion(q, qd, qdd, _of_base(base, given, model, closed)), names)
     force = _forces(base, tau, data)
     limit, kept = positive(error_limit, "error_limit"), _fitted_samples(len(force), held_out)
-    inertial, W = force if model is None else force - _known(model, motion, data), data.outputs[REGRESSOR]
+    inertial, W = force if model is None else force - _known(model, given, data), data.outputs[REGRESSOR]
     told: dict[str, Any] = {}
     if closed is not None:
-        loops = _tied(closed).of(closed, base, data.q, motion.parameters)
+        loops = _tied(closed).of(closed, base, data.q, given)
         told = {"independent": loops.independent, "combinations": loops.combinations(base)}
         base, W, inertial = loops.reduced(base, data.q, W, inertial)
     found = replace(_fitted(base, W[:kept], inertial[:kept], limit), **told)
     return found if kept == len(W) else _predicted(found, W[kept:], inertial[kept:], limit)
+
+
+def _of_base(base: BaseParameters, given: Mapping[str, Any], *models: Model | None) -> dict[str, Any]:
+    """The parameters that the base parameters depend on. Raises InvalidArgument for those that none of all knows."""
+    known = {*base.parameters, *(name for model in models if model is not None for name in model.parameters)}
+    require_known("parameters", "parameter", given, known)
+    return {name: x for name, x in given.items() if name in base.parameters}
 
 
 def _tied(model: Model) -> type[Loops]:
@@ -234,16 +242,20 @@ def _forces(base: BaseParameters, given: Any, data: _Data) -> Array:
         raise InvalidArgument.at("/tau", "missing", "actuator forces 'tau' are needed")
     if isinstance(given, Mapping):
         given = by_name(_view(base), given, "tau")
-    tau = np.atleast_2d(numeric(given, "/tau"))
+    tau = numeric(given, "/tau")
+    # of one coordinate one number for each state, as of the state itself
+    tau = tau.reshape(data.qd.shape) if tau.ndim == 1 and tau.size == data.qd.size else tau
     if tau.shape != data.qd.shape:
-        message = f"shape {tau.shape} found, {data.qd.shape} expected"
-        raise InvalidArgument.at("/tau", "wrong-length", message)
+        raise InvalidArgument.at("/tau", "wrong-length", f"shape {tau.shape} found, {data.qd.shape} expected")
     return tau
 
 
-def _known(model: Model, motion: _Motion, data: _Data) -> Array:
+def _known(model: Model, parameters: Mapping[str, Any], data: _Data) -> Array:
     """Inverse dynamics of the model without its inertial forces: less Y_B beta of its own values."""
-    own = {name: x for name, x in motion.parameters.items() if name in model.parameters}
+    if any(symbol.kind == "time" for symbol in model.program.select(["inverse_dynamics"]).symbols):
+        message = "the model's loads depend on the time, which samples do not have: take it without these loads"
+        raise InvalidDocument.at("", "not-steady", message)
+    own = {name: x for name, x in parameters.items() if name in model.parameters}
     answer = evaluate(model, "inverse_dynamics", data.q, data.qd, data.qdd, parameters=own)
     # ID(q, q', q'') - Y_B beta
     inertial = np.einsum("nab,nb->na", data.outputs[REGRESSOR], data.outputs[OWN])

@@ -59,7 +59,7 @@ class Resets:
                 if name not in names:
                     message = f"'{name[:80]}' is no coordinate or velocity{among(name, names)}"
                     raise InvalidArgument.at(f"/events/{i}/reset/{escape(name)}", "unknown-coordinate", message)
-            if event.reset and any(other.name == event.name for other in problem.events[:i]):
+            if any(other.name == event.name for other in problem.events[:i]):
                 raise InvalidArgument.at(f"/events/{i}/name", "duplicate-name", f"a second event '{event.name}'")
             self._places[i] = [names.index(name) for name in event.reset]
             pointers = (f"/events/{i}/reset/{escape(name)}" for name in event.reset)

@@ -14,7 +14,7 @@ from typing import Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import positive, whole
+from substructures.analysis.arguments import in_range, positive, whole
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
@@ -81,7 +81,7 @@ def lyapunov_exponents(
     ``inputs``: numbers, tables or expressions in t alone. Raises InvalidInput (pointers start with names of arguments)
     and MissingValue.
     """
-    duration = positive(duration, "duration")
+    duration, transient = positive(duration, "duration"), in_range(transient, "transient", 0, math.inf)
     count = max(PARTS, whole(intervals, "intervals", PARTS, 1_000_000) // PARTS * PARTS)
     start = Start(q, qd, parameters or {}, inputs or {})
     end = transient + duration

@@ -8,12 +8,13 @@ from typing import Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import positive
+from substructures.analysis.arguments import positive, whole
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.documents import escape
 from substructures.documents.units import read_unit
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
@@ -26,6 +27,8 @@ Stability = Literal["stable", "unstable", "neutral", "unknown"]
 BifurcationKind = Literal["fold", "branch-point", "period-doubling", "torus"]
 #: |multiplier| - 1 that says something: multipliers of a double eigenvalue 1 are only known to the root of their errors
 NOISE = 1e-4
+#: turns of a coordinate in a period
+MOST = 1_000_000
 
 
 @dataclass(frozen=True)
@@ -93,7 +96,7 @@ class Shooting:
     """What is looked for. ``period`` [s], a number or an expression in parameters (``2*pi/w``): a guess, of forced
     motions the period, or None: the time of return to the ``section`` that the start is near; ``is_fixed``: it stays
     as it is; ``hold``: components of the state (``arm.q1``, ``arm.q1'``) that stay as they are; ``turns``: whole turns
-    that revolute coordinates make in a period.
+    that revolute coordinates make in a period. Raises InvalidArgument.
     """
 
     period: float | str | None
@@ -101,6 +104,10 @@ class Shooting:
     hold: tuple[str, ...] = ()
     turns: Mapping[str, int] | None = None
     section: Section | None = None
+
+    def __post_init__(self) -> None:
+        for name, turns in (self.turns or {}).items():
+            whole(turns, f"turns/{escape(name)}", -MOST, MOST)
 
     def period_at(self, model: Model, parameters: Mapping[str, float]) -> float | None:
         """The period [s] as a number, at these ``parameters`` and the defaults of others. Raises InvalidArgument (for a

@@ -10,8 +10,6 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 
-import numpy as np
-
 from substructures.analysis.arguments import reals, whole
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
@@ -25,7 +23,7 @@ from substructures.analysis.orbits.returns import Section
 from substructures.analysis.orbits.search import Search
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
-from substructures.quantities.numbers.quaternions import at_zero
+from substructures.quantities.numbers.states import read_states
 from substructures.tree.model import Model
 
 DEFAULT = Integrator(relative_tolerance=1e-11, absolute_tolerance=1e-13)
@@ -69,7 +67,10 @@ def periodic_orbits(
 
 
 def _range(model: Model, vary: str, values: Sequence[float], between: tuple[float, float]) -> tuple[float, float]:
-    first, last = reals(between, "/between")
+    ends = reals(between, "/between")
+    if len(ends) != 2:
+        raise InvalidArgument.at("/between", "wrong-length", "two values are needed: the first and the last")
+    first, last = ends
     if len(values):
         message = "'values' says which orbits, 'between' from where to where: give one of them"
         raise InvalidArgument.at("/between", "contradiction", message)
@@ -121,10 +122,8 @@ def _check(model: Model, shooting: Shooting, vary: str | None, values: Sequence[
 
 
 def _with(model: Model, start: Start, place: int, value: float) -> Start:
-    m = len(model.positions)
-    zero = (at_zero(model.positions, model.balls), np.zeros(model.dof))
-    given = zip((start.q, start.qd), zero, strict=True)
-    q, qd = (np.array(x if isinstance(x, np.ndarray) else none, dtype=np.float64) for x, none in given)
+    m, states = len(model.positions), read_states(model, {"q": start.q, "qd": start.qd}, 1)
+    q, qd = states.q[0].copy(), states.qd[0].copy()
     (q if place < m else qd)[place if place < m else place - m] = value
     return replace(start, q=q, qd=qd)
 

@@ -35,6 +35,7 @@ from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.numbers.limits import joint_limits
 from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.regressor import RegressorModel
+from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 
 #: what is printed, and what it is called
@@ -208,16 +209,13 @@ def report(
 
     Statements count the elements of arrays from 1 in words (g[1,2]) and from 0 in lists. Sizes of terms and rest are at
     the default values of the parameters, sizes over states in the limits of the joints. Formulas are printed when they
-    are asked for. Raises TooLarge then.
+    are asked for. Raises TooLarge then, InvalidDocument for ball joints and velocity constraints.
     """
+    require_untied(model, "report")
     quantities = [name for name in QUANTITIES if name in model.program.outputs]
     whole = model.program.select(quantities)
-    known = {s.name: s for s in whole.symbols}
-    known |= {
-        name: Symbol(name, "coordinate", model.state_units["q"][name])
-        for name in model.coordinates
-        if name not in known
-    }
+    known, units = {s.name: s for s in whole.symbols}, model.state_units["q"]
+    known |= {name: Symbol(name, "coordinate", units[name]) for name in model.coordinates if name not in known}
     called = dict(zip(known, short_names(list(known.values())), strict=True))
     shown = {name: _renamed(hoisted(whole.select([name])), called) for name in quantities}
     marked = {name: f"{MARK}{short}{MARK}" for name, short in called.items()}

@@ -23,7 +23,7 @@ from substructures.analysis.equations.nonholonomic.linearised import linearised
 from substructures.analysis.equations.nonholonomic.quasi_choice import quasi_velocity_rows
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of, row_values
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
-from substructures.analysis.stability.equilibrium_search import RESIDUAL, SAME, RestConditions, SearchRange
+from substructures.analysis.stability.equilibrium_search import RESIDUAL, SAME, SearchRange
 from substructures.analysis.stability.linearisation_result import ConstrainedLinearisation
 from substructures.analysis.stability.linearise_constrained import (
     MATRICES,
@@ -32,7 +32,7 @@ from substructures.analysis.stability.linearise_constrained import (
     linearise_constrained,
     values_at,
 )
-from substructures.analysis.stability.operating_point import OperatingPoint
+from substructures.analysis.stability.operating_point import OperatingPoint, RestConditions
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.interpret import interpret
@@ -282,4 +282,5 @@ def _starts(model: Model, within: SearchRange) -> tuple[Array, Array]:
     given = np.zeros((0, n)) if within.starts is None else np.atleast_2d(numeric(within.starts, "/starts"))
     if given.ndim != 2 or given.shape[1] != n:
         raise InvalidArgument.at("/starts", "wrong-length", f"shape {given.shape} found, (N, {n}) expected")
-    return np.concatenate((given, np.zeros((1, n)))), rng.uniform(-1, 1, (within.count + 1, n)) * size
+    given = np.concatenate((given, np.zeros((int(within.from_zero), n))))
+    return given, rng.uniform(-1, 1, (within.count + 1, n)) * size

@@ -53,6 +53,7 @@ def bounded_by_integrals(
     found = interpret(source, {s.name: values[s.name] for s in source.symbols}, ["first", "second"])
     if not all(np.isfinite(x).all() for x in found.values()):
         return None
+    found = _sized(found)
     # z = (x, q'): without the shifts s
     z = scipy.linalg.null_space(shifts) if len(shifts) else np.eye(shifts.shape[1])
     H = names.index("energy")
@@ -107,6 +108,12 @@ def shifts_along(model: Model, values: Mapping[str, float], displacements: Array
     states = model.positions, model.coordinates, model.balls
     displaced = np.linalg.pinv(by_displacements(*states, np.array([values[name] for name in model.positions])))
     return np.concatenate((displacements @ displaced.T, np.zeros((len(displacements), model.dof))), axis=1)
+
+
+def _sized(found: Mapping[str, Array]) -> dict[str, Array]:
+    """Derivatives (k, ...) of each integral over the largest of it, whatever the masses and lengths."""
+    sizes = np.fmax(*(np.abs(x).reshape(len(x), -1).max(axis=1, initial=0) for x in found.values()))
+    return {name: (x.T / np.where(sizes > 0, sizes, 1.0)).T for name, x in found.items()}
 
 
 def _is_invariant(first: Array, shifts: Array) -> bool:

@@ -12,7 +12,7 @@ import numpy as np
 from substructures.analysis.equations.formulas import require_moving, unsteady
 from substructures.analysis.stability.closed_search import ClosedSearch
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
-from substructures.analysis.stability.equilibrium_search import BallSearch, RestConditions, RestSearch, SearchRange
+from substructures.analysis.stability.equilibrium_search import BallSearch, RestSearch, SearchRange
 from substructures.analysis.stability.found_places import FoundPlaces, confirmed, still
 from substructures.analysis.stability.linearisation_result import (
     BallLinearisation,
@@ -21,6 +21,7 @@ from substructures.analysis.stability.linearisation_result import (
     Linearisation,
 )
 from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidDocument
@@ -28,7 +29,7 @@ from substructures.quantities.numbers.states import with_input_defaults
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 
-#: singular values of K below this share of the largest leave a direction undetermined
+#: singular values of M^-1 K below this share of the largest leave a direction undetermined
 SINGULAR = 1e-9
 
 
@@ -102,13 +103,17 @@ def equilibria(
     Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative,
     ``not-steady`` for given motions that make them vary) and MissingValue. Source: notation.md, section 7.
     """
-    require_moving(model, "equilibria")
     conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))
+    return equilibria_within(model, SearchRange(starts, count, reach, seed), conditions)
+
+
+def equilibria_within(model: Model, within: SearchRange, conditions: RestConditions) -> Equilibria:
+    """The same, from the starts of a range."""
+    require_moving(model, "equilibria")
     if model.closures:
         require_undriven(model.driven, "take simulations, or loop states")
     if why := unsteady(model, conditions.inputs):
         raise InvalidDocument.at("", "not-steady", f"{why}: nothing stays at rest; use periodic orbits, or simulations")
-    within = SearchRange(starts, count, reach, seed)
     if model.velocity_constraints:
         return _constrained(ConstrainedSearch(model, within, conditions, None))
     kind = ClosedSearch if model.closures else BallSearch if model.balls else RestSearch
@@ -127,14 +132,19 @@ def _constrained(search: ConstrainedSearch) -> Equilibria:
     places = []
     for state in search.found():
         at = state.at
-        # K dq = 0 for dq = T dv, up to rounding
-        _, sizes, rows = np.linalg.svd(at.K @ at.T)
-        free = rows[sizes <= SINGULAR * max(1.0, float(np.abs(at.K).max(initial=0)))] @ at.T.T
+        # K dq = 0 for dq = T dv
+        free = _free(at.M, at.K @ at.T) @ at.T.T
         free = free / np.linalg.norm(free, axis=1, keepdims=True)
         places.append(Equilibrium(at.q, free, at))
     results, message = confirmed(places)
     advice = "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"
     return Equilibria(results, search.named(search.ignorable), message=message if results or message else advice)
+
+
+def _free(M: Array, K: Array) -> Array:
+    """Directions (k, r) in which M^-1 K is nothing beside its largest, or 1 [1/s^2], up to rounding."""
+    _, sizes, rows = np.linalg.svd(np.linalg.solve(M, K))
+    return np.asarray(rows[sizes <= SINGULAR * max(1.0, float(sizes.max(initial=0)))])
 
 
 def _described(model: Model, conditions: RestConditions, q: Array) -> Equilibrium:
@@ -144,9 +154,7 @@ def _described(model: Model, conditions: RestConditions, q: Array) -> Equilibriu
         q = at.q
     if at.status == "failed" or not len(at.K):
         return Equilibrium(q, np.zeros((0, model.dof)), at)
-    # K dq = 0 up to rounding
-    _, sizes, rows = np.linalg.svd(at.K)
-    free = rows[sizes <= SINGULAR * max(1.0, float(sizes.max(initial=0)))]
+    free = _free(at.M, at.K)
     if isinstance(at, ClosedLinearisation):
         # dq = N dy
         free = free @ at.tangent.T

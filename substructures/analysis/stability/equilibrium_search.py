@@ -12,11 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from substructures.analysis.arguments import positive, real, whole
+from substructures.analysis.arguments import positive, whole
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.given import numbers
+from substructures.analysis.stability.operating_point import RestConditions, forces_that_are
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.quantities.measured import numeric
@@ -44,36 +44,20 @@ TOLERANCES = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
 
 @dataclass(frozen=True)
 class SearchRange:
-    """Where positions of rest are looked for: ``starts`` (N, n) that are given, zero, and ``count`` random ones in
-    +-pi for angles, +-``reach`` [m] for distances. Raises InvalidArgument.
+    """Where positions of rest are looked for: ``starts`` (N, n) that are given, zero (``from_zero``), and ``count``
+    random ones in +-pi for angles, +-``reach`` [m] for distances. Raises InvalidArgument.
     """
 
     starts: Sequence[float] | Sequence[Sequence[float]] | Array | None = None
     count: int = 32
     reach: float = 1.0
     seed: int = 0
+    from_zero: bool = True
 
     def __post_init__(self) -> None:
         whole(self.count, "count", 0, MAX_STARTS)
         object.__setattr__(self, "reach", positive(self.reach, "reach"))
         whole(self.seed, "seed", 0, MAX_SEED)
-
-
-@dataclass(frozen=True)
-class RestConditions:
-    """What holds at rest: the time [s], ``parameters`` in place of their defaults, constant ``inputs`` [N m, N].
-
-    Raises InvalidArgument.
-    """
-
-    t: float
-    parameters: Mapping[str, float]
-    inputs: Mapping[str, float]
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "t", real(self.t, "/t"))
-        object.__setattr__(self, "parameters", numbers(self.parameters, "parameters"))
-        object.__setattr__(self, "inputs", numbers(self.inputs, "inputs"))
 
 
 class RestSearch:
@@ -92,7 +76,7 @@ class RestSearch:
         outputs, columns = self._also()
         outputs |= {"residual": self.F, "stiffness": self.K}
         columns.append((list(model.positions), self.q))
-        self.run = program_kernel(perturbation(model)).bind(outputs, values, columns=columns)
+        self.run, self._values = program_kernel(perturbation(model)).bind(outputs, values, columns=columns), values
         self._sized([model.state_units["q"][name] for name in model.positions])
 
     def _sized(self, units: Sequence[str]) -> None:
@@ -103,13 +87,25 @@ class RestSearch:
         self.turning, self.unit = np.zeros(self.n, dtype=bool), np.ones(1)
         # |Q_a| and |K_ab| times a unit of q^b; a force that is rounding has no size of its own
         sizes = np.zeros(1)
-        for q in np.random.default_rng(5).uniform(-1, 1, (PLACES, self.n)) * self.size:
+        for q in self._anywhere():
             F, K = self.at(q)
             there = np.abs(np.column_stack((F, K * self.length)))
             sizes = np.maximum(sizes, np.where(np.isfinite(there), there, 0).max(axis=1, initial=0))
+        sizes = self._without_rounding(sizes)
         largest = float(sizes.max(initial=0)) or 1.0
         self.unit = np.where(sizes > NOTHING * largest, sizes, largest)
         self.turning = np.array([x == "rad" and self._is_periodic(a) for a, x in enumerate(units)], dtype=bool)
+
+    def _without_rounding(self, sizes: Array) -> Array:
+        """Sizes (n,) of forces, 0 of all where they are nothing but rounding, as of gravity along an axis."""
+        if self.model.closures:
+            return sizes
+        place = dict(zip(self.model.positions, self._anywhere()[0].tolist(), strict=True))
+        return forces_that_are(perturbation(self.model), {**self._values, **place}, sizes, self.length)
+
+    def _anywhere(self) -> Array:
+        """Places in general position (PLACES, n)."""
+        return np.asarray(np.random.default_rng(5).uniform(-1, 1, (PLACES, self.n)) * self.size)
 
     def _also(self) -> tuple[dict[str, Array], list[tuple[list[str], Array]]]:
         """Further outputs and columns of the kernel."""
@@ -128,7 +124,8 @@ class RestSearch:
     def starts(self) -> Array:
         """Those given, zero, and random ones, (N, n)."""
         rng = np.random.default_rng(self.within.seed)
-        rows = [np.zeros((1, self.n)), rng.uniform(-1, 1, (self.within.count, self.n)) * self.size]
+        some = int(self.within.from_zero)
+        rows = [np.zeros((some, self.n)), rng.uniform(-1, 1, (self.within.count, self.n)) * self.size]
         if self.within.starts is not None:
             n, given = len(self.model.positions), np.atleast_2d(numeric(self.within.starts, "/starts"))
             if given.ndim != 2 or given.shape[1] != n:
@@ -152,9 +149,12 @@ class RestSearch:
         return {"F": self.F[0].copy(), "K": self.K[0].copy()}
 
     def held(self, starts: Array) -> list[int]:
-        """Coordinates on which nothing depends."""
-        sizes = np.array([np.abs(self._slopes(q)).max(axis=0) for q in starts[:: max(1, len(starts) // 8)]]).max(axis=0)
-        return np.flatnonzero(sizes <= NOTHING * sizes.max(initial=0)).tolist()
+        """Coordinates on which nothing depends, at starts and at places in general position."""
+        places = np.concatenate((starts[:: max(1, len(starts) // PLACES)], self._anywhere()))
+        found = np.array([np.abs(self._slopes(q)).max(axis=0) for q in places])
+        # what is not finite depends on something
+        least = NOTHING * np.max(found, where=np.isfinite(found), initial=1)
+        return np.flatnonzero((found <= least).all(axis=0)).tolist()
 
     def _slopes(self, q: Array) -> Array:
         """Derivatives of what must be zero."""
@@ -237,10 +237,8 @@ class RestSearch:
     def advice(self, q: Array, held: Sequence[int]) -> str:
         """Why there is none."""
         F, _ = self.at(q)
-        constant, rest = (
-            dict(zip(self.model.coordinates, np.abs(F), strict=True)),
-            [self.model.positions[a] for a in held],
-        )
+        constant = dict(zip(self.model.coordinates, np.abs(F), strict=True))
+        rest = [self.model.positions[a] for a in held]
         if names := ", ".join(f"'{name}'" for name in rest if constant.get(name, 0) > RESIDUAL):
             return f"nothing balances the constant force on {names}: change gravity or inputs, or add a spring"
         return "no equilibrium was found: give 'starts' near one, or raise 'count' and 'reach'"

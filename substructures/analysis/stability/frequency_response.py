@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.arguments import NumberOrExpression
+from substructures.analysis.arguments import NumberOrExpression, reals
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linear_system import eigenvalues, linear_system
 from substructures.array import Array, ComplexArray
@@ -87,10 +87,10 @@ def frequency_response(
 
 def _frequencies(given: Sequence[float] | Array | None, poles: ComplexArray) -> Array:
     if given is None:
-        sizes = np.abs(poles)[np.abs(poles) > 1e-6 * max(1.0, float(np.abs(poles).max(initial=0)))]
+        sizes = np.abs(poles)[np.abs(poles) > 1e-6 * np.abs(poles).max(initial=0)]
         slowest, fastest = (float(sizes.min()), float(sizes.max())) if len(sizes) else (1.0, 1.0)
         return np.geomspace(slowest / BEYOND, fastest * BEYOND, COUNT)
-    found = np.asarray(given, dtype=float)
-    if found.ndim != 1 or not len(found) or not np.isfinite(found).all() or (found < 0).any():
+    found = np.array(reals(given, "/frequencies"))
+    if not len(found) or (found < 0).any():
         raise InvalidArgument.at("/frequencies", "out-of-range", "a list of frequencies in rad/s that are not negative")
     return found

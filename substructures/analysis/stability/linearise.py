@@ -21,7 +21,14 @@ from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.linearise_closed import linearise_closed
 from substructures.analysis.stability.linearise_constrained import linearise_constrained
-from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
+from substructures.analysis.stability.operating_point import (
+    AT_REST,
+    MATRICES,
+    OperatingPoint,
+    fault_of,
+    is_small,
+    rounding,
+)
 from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_order, input_matrix, modes, stability
 from substructures.array import Array
 from substructures.expr.interpret import interpret, interpret_in_blocks
@@ -156,23 +163,36 @@ def _judged(point: OperatingPoint, states: States, result: Linearisation, values
             return result
         found = modes(result.M, result.D, result.K, result.R)
         return replace(result, modes=found, stability=stability(found, result.D, result.K, has_potential=False))
-    found, minimum = modes(result.M, result.D, result.K), ROUTH if point.model.ignored else DIRICHLET
-    told = stability(found, result.D, result.K, point.has_potential(values), minimum)
+    K, minimum = _without_rounding(point.model, result, values), ROUTH if point.model.ignored else DIRICHLET
+    found = modes(result.M, result.D, K)
+    told = stability(found, result.D, K, point.has_potential(values), minimum)
     return replace(result, modes=found, stability=told)
+
+
+def _without_rounding(model: Model, result: Linearisation, values: Mapping[str, Any]) -> Array:
+    """K, with zeros for what is nothing but rounding in coordinates that hardly anything draws back."""
+    rows = np.abs(np.linalg.solve(result.M, result.K)).max(axis=1, initial=0)
+    if not ((rows > 0) & (rows <= AT_REST)).any():
+        return result.K
+    noise = rounding(perturbation(model), values, ["stiffness"])["stiffness"]
+    return np.where(np.abs(result.K) <= noise, 0.0, result.K)
 
 
 def _is_constant(model: Model, result: BallLinearisation, q: Array, values: Mapping[str, Any]) -> bool:
     """Whether M, D, K and what is left over are the same wherever constant rates lead, as they are at states in general
     position there.
     """
-    source, names, scale = perturbation(model), ["metric", "damping", "stiffness", "residual"], np.abs(result.qd).max()
-    if "t" in source.needs(names):
+    source, scale = perturbation(model), float(np.abs(result.qd).max())
+    # M w^2, D w, K and residuals are of one size
+    size = max(float(np.abs(x).max()) for x in (result.M * scale**2, result.D * scale, result.K))
+    parts = {"metric": (result.M, scale**2), "damping": (result.D, scale)}
+    parts |= {"stiffness": (result.K, 1.0), "residual": (result.residual, 1.0)}
+    if "t" in source.needs(parts):
         return False
     for t in LATER:
         place = moved_on(model.positions, model.coordinates, model.balls, q, result.qd * (t / scale))
         there = {**values, **dict(zip(model.positions, place.tolist(), strict=True))}
-        found = interpret(source, {name: float(np.ravel(x)[0]) for name, x in there.items()}, names)
-        for name, x in zip(names, (result.M, result.D, result.K, result.residual), strict=True):
-            if np.abs(found[name] - x).max() > STEADY * max(1.0, float(np.abs(x).max())):
-                return False
+        found = interpret(source, {name: float(np.ravel(x)[0]) for name, x in there.items()}, list(parts))
+        if any(np.abs(found[name] - x).max() * unit > STEADY * size for name, (x, unit) in parts.items()):
+            return False
     return True

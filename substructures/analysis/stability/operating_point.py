@@ -9,17 +9,19 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+from flint import arb, ctx
 from numpy.typing import NDArray
 
-from substructures.analysis.arguments import NumberOrExpression, exact
+from substructures.analysis.arguments import NumberOrExpression, exact, real
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
-from substructures.analysis.given import StateArray, require_known
+from substructures.analysis.given import StateArray, numbers, require_known
 from substructures.array import Array
+from substructures.certificate.stored import operations_in_balls
 from substructures.expr.differentiate import gradient, in_directions
 from substructures.expr.graph import Expr
-from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.expr.program import Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.numbers.workspace import Workspace
@@ -27,6 +29,8 @@ from substructures.tree.model import Model
 
 #: accelerations of an equilibrium, relative to the accelerations that its forces would cause one by one
 AT_REST = 1e-8
+#: bits of doubles
+DOUBLE = 53
 #: outputs of the perturbation equations
 MATRICES = ("metric", "damping", "stiffness", "input", "residual")
 
@@ -75,6 +79,23 @@ class OperatingPoint:
         return has_even_dissipation(self.model, at, driven, zero)
 
 
+@dataclass(frozen=True)
+class RestConditions:
+    """What holds at rest: the time [s], ``parameters`` in place of their defaults, constant ``inputs`` [N m, N].
+
+    Raises InvalidArgument.
+    """
+
+    t: float
+    parameters: Mapping[str, float]
+    inputs: Mapping[str, float]
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "t", real(self.t, "/t"))
+        object.__setattr__(self, "parameters", numbers(self.parameters, "parameters"))
+        object.__setattr__(self, "inputs", numbers(self.inputs, "inputs"))
+
+
 def output_jacobian(model: Model, source: Program, inputs: tuple[str, ...]) -> Program:
     """C (k, 2n) = dy/d(q, q') and D (k, m) = dy/du of the output ``output`` (k,); of ball joints by displacements."""
     workspace = Workspace(model)
@@ -114,6 +135,32 @@ def fault_of(coordinates: Sequence[str], qdd: Array, D: Array, K: Array, A: Arra
             "bodies have no inertia); add rotor inertias, or move the state away from there"
         )
     return ""
+
+
+def rounding(source: Program, values: Mapping[str, Any], names: Sequence[str]) -> dict[str, Array]:
+    """What rounding may make of outputs at one state: radii of balls (F. Johansson, Arb, 2017) at the precision of
+    doubles, twice for that of decimals.
+    """
+    some = source.select(list(names))
+    with ctx.workprec(DOUBLE):
+        given = {symbol.name: arb(float(np.ravel(values[symbol.name])[0])) for symbol in some.symbols}
+        radii = [2 * float(x.rad()) for x in operations_in_balls(some, given)]
+    found = {name: np.zeros(output.shape) for name, output in some.outputs.items()}
+    for name, output in some.outputs.items():
+        for index, entry in zip(output.index, output.entries, strict=True):
+            found[name][tuple(index)] = radii[entry]
+    return found
+
+
+def forces_that_are(source: Program, values: Mapping[str, Any], sizes: Array, length: Array) -> Array:
+    """Sizes (n,) of forces, or of their changes over a ``length`` of each coordinate (m,); 0 where all accelerate
+    hardly and are nothing but rounding at a place in general position. ``source``: the perturbation equations.
+    """
+    if (sizes > AT_REST * np.diag(interpret(source, values, ["metric"])["metric"])).any():
+        return sizes
+    noise = rounding(source, values, ["residual", "stiffness"])
+    most = np.column_stack((noise["residual"], noise["stiffness"] * length)).max(axis=1, initial=0)
+    return sizes if (sizes > most).any() else np.zeros_like(sizes)
 
 
 def is_small(qdd: NDArray[Any], K: Array, M: Array) -> bool:

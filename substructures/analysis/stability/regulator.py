@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
+from substructures.analysis.arguments import real
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linear_system import SURE, Reach, eigenvalues, is_complete, linear_system, reach
 from substructures.analysis.stability.linearisation_result import (
@@ -190,7 +191,7 @@ def _diagonal(
         if name not in names:
             message = f"there is no '{name[:80]}'{among(name, names)}"
             faults.append(Fault(f"/{field}/{escape(name)}", "unknown-name", message))
-        elif not np.isfinite(x) or x < 0 or (positive and x == 0):
+        elif (number := real(x, f"/{field}/{escape(name)}")) < 0 or (positive and number == 0):
             message = f"a number {'above' if positive else 'of at least'} 0 is needed"
             faults.append(Fault(f"/{field}/{escape(name)}", "out-of-range", message))
     if faults:

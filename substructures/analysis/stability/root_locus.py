@@ -12,21 +12,26 @@ import scipy
 
 from substructures.analysis.arguments import Numbers, reals
 from substructures.analysis.given import StateArray, numbers
-from substructures.analysis.stability.equilibria import equilibria
+from substructures.analysis.stability.equilibria import Equilibrium, equilibria_within
+from substructures.analysis.stability.equilibrium_search import FREE, SAME, SearchRange
 from substructures.analysis.stability.linearisation_result import (
     ClosedLinearisation,
     ConstrainedLinearisation,
     Linearisation,
 )
+from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
 from substructures.quantities.numbers.quaternions import by_displacements, with_unit_quaternions
-from substructures.quantities.numbers.states import read_states
+from substructures.quantities.numbers.states import read_states, with_input_defaults
 from substructures.tree.model import Model
 
 #: of a parameter
 MAX_VALUES = 10_000
+#: how many first steps of Newton's method lead to an equilibrium that is the same one: at a fold it is two
+FARTHER = 3.0
 
 
 @dataclass(frozen=True, repr=False)
@@ -73,21 +78,23 @@ def root_locus(
     if not 0 < len(at) <= MAX_VALUES:
         message = f"{len(at):,} values; 1 to {MAX_VALUES:,} are needed"
         raise InvalidArgument.at("/values", "too-short" if not at else "too-long", message)
-    others, constant = numbers(parameters, "parameters"), numbers(inputs, "inputs")
+    others = numbers(parameters, "parameters")
+    constant = numbers(with_input_defaults(model, inputs or {}), "inputs")
     if parameter not in model.parameters:
         message = f"unknown parameter '{str(parameter)[:80]}'{among(parameter, model.parameters)}"
         raise InvalidArgument.at("/parameter", "unknown-parameter", message)
-    near = _start(model, q)
+    near, before = _start(model, q), None
     rows: list[tuple[Array, ComplexArray, str]] = []
     status, message = "finished", ""
     for value in at:
-        found = _nearest(model, near, others | {parameter: value}, constant)
-        if found is None or (rows and len(found[1]) != len(rows[-1][1])):
+        conditions = RestConditions(0.0, others | {parameter: value}, constant)
+        found = _nearest(model, near, conditions)
+        if found is None or (before is not None and _is_lost(model, (near, before), (found, conditions), rows[-1][1])):
             status = "failed"
             message = f"there is no equilibrium near the last one at {parameter} = {value:g}: take smaller steps"
             break
-        near, roots, verdict = found
-        rows.append((near, _followed(rows[-1][1], roots) if rows else roots, verdict))
+        near, before, roots = found.q, conditions, _eigenvalues(found.at)
+        rows.append((near, _followed(rows[-1][1], roots) if rows else roots, found.verdict))
     return RootLocus(np.array(at[: len(rows)]), *_branches(rows, model), status, message)
 
 
@@ -112,18 +119,48 @@ def _start(model: Model, q: Any) -> Array:
     return with_unit_quaternions(model.positions, model.balls, start[None])[0]
 
 
-def _nearest(
-    model: Model, q: Array, parameters: Mapping[str, float], inputs: Mapping[str, float]
-) -> tuple[Array, ComplexArray, str] | None:
-    """The equilibrium that Newton's method finds from q, its eigenvalues, and the verdict."""
-    found = equilibria(model, starts=q, count=0, parameters=parameters, inputs=inputs).found
-    if not found:
-        return None
-    moved = by_displacements(model.positions, model.coordinates, model.balls, q)
-    near = min(found, key=lambda e: float(np.abs(moved @ (e.q - q)).max(initial=0)))
-    if near.at.stability is None:
-        return None
-    return near.q, _eigenvalues(near.at), near.at.stability.verdict
+def _nearest(model: Model, q: Array, conditions: RestConditions) -> Equilibrium | None:
+    """The equilibrium with a verdict that Newton's method finds from q."""
+    found = equilibria_within(model, SearchRange(q[None], count=0, from_zero=False), conditions).found
+    return found[0] if found and found[0].at.stability is not None else None
+
+
+def _is_lost(
+    model: Model, last: tuple[Array, RestConditions], new: tuple[Equilibrium, RestConditions], roots: ComplexArray
+) -> bool:
+    """Whether an equilibrium is another one than the ``last``: it has another number of eigenvalues than ``roots``, or
+    is farther away than Newton's first step leads, and the way back does not lead to the last one.
+    """
+    (q, before), (found, now) = last, new
+    if len(_eigenvalues(found.at)) != len(roots):
+        return True
+    step = _first_step(linearise(model, q, parameters=now.parameters, inputs=now.inputs))
+    way = _way(model, q, found.q)
+    if not np.linalg.norm(way) > FARTHER * np.linalg.norm(step) + SAME:
+        return False
+    back = _nearest(model, found.q, before)
+    return back is None or bool(np.linalg.norm(_way(model, q, back.q)) > np.linalg.norm(way) / 2)
+
+
+def _first_step(at: Linearisation) -> Array:
+    """dq of K dq = M q'' (n,), on closures and constraints; not finite where there is none."""
+    if at.status == "failed":
+        return np.full(len(at.coordinates), np.inf)
+    if isinstance(at, ConstrainedLinearisation):
+        K, accelerations, ways = at.K @ at.T, at.vd, at.T
+    elif isinstance(at, ClosedLinearisation):
+        free = [at.coordinates.index(name) for name in at.independent]
+        K, accelerations, ways = at.K, at.qdd[free], at.tangent
+    else:
+        K, accelerations, ways = at.K, at.qdd, np.eye(len(at.K))
+    return np.asarray(ways @ np.linalg.lstsq(K, at.M @ accelerations, rcond=FREE)[0])
+
+
+def _way(model: Model, q: Array, other: Array) -> Array:
+    """From one place to another one (n,), of angles the shorter way, of ball joints by displacements."""
+    way = by_displacements(model.positions, model.coordinates, model.balls, q) @ (other - q)
+    turning = [kind == "R" for kind in model.joints]
+    return np.where(turning, np.mod(way + np.pi, 2 * np.pi) - np.pi, way)
 
 
 def _eigenvalues(at: Linearisation | ClosedLinearisation | ConstrainedLinearisation) -> ComplexArray:

@@ -11,16 +11,9 @@ import numpy as np
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.precession import Turning
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
-from substructures.analysis.stability.equilibrium_search import (
-    NEEDS,
-    NOTHING,
-    RESIDUAL,
-    SAME,
-    BallSearch,
-    RestConditions,
-    SearchRange,
-)
+from substructures.analysis.stability.equilibrium_search import NEEDS, NOTHING, RESIDUAL, SAME, BallSearch, SearchRange
 from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.stability.steady_result import BallSteadyMotion
 from substructures.analysis.stability.vibrations import Stability, modes, stability
 from substructures.array import Array

@@ -21,8 +21,9 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.equations.precession import BallRequest
-from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
+from substructures.analysis.stability.equilibrium_search import SearchRange
 from substructures.analysis.stability.found_places import confirmed
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.stability.steady_ball_search import (
     Linearised,
     TurningSearch,

@@ -13,7 +13,8 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.precession import BallRequest
 from substructures.analysis.equations.steady import require_free
 from substructures.analysis.given import numbers
-from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
+from substructures.analysis.stability.equilibrium_search import SearchRange
+from substructures.analysis.stability.operating_point import AT_REST, RestConditions, rounding
 from substructures.analysis.stability.steady_result import Held
 from substructures.analysis.stability.steady_search import ClosedSteadySearch, SteadySearch
 from substructures.array import Array
@@ -179,6 +180,15 @@ def nearly_cyclic(model: Model, conditions: RestConditions) -> list[str]:
     return found
 
 
+def _is_rounding(model: Model, given: Mapping[str, Any], found: Mapping[str, Array]) -> bool:
+    """Whether forces accelerate hardly, and are nothing but rounding at the first state."""
+    g, Q = np.einsum("naa->na", found["metric"]), found["forces"]
+    if not Q.any() or (np.abs(Q) > AT_REST * g).any():
+        return False
+    first = {name: np.ravel(x)[:1] for name, x in given.items()}
+    return bool((np.abs(Q[0]) <= rounding(model.program, first, ["forces"])["forces"]).all())
+
+
 def _sized(model: Model, conditions: RestConditions, q: Array, qd: Array) -> dict[str, Array]:
     """Metric (N, n, n), forces (N, n) and the Jacobian of closures (N, m, n) over their sizes; not a number where there
     is none.
@@ -190,7 +200,7 @@ def _sized(model: Model, conditions: RestConditions, q: Array, qd: Array) -> dic
     g, Q, G = found["metric"], found["forces"], found.get("closure.jacobian", np.zeros((len(q), 0, model.dof)))
     with np.errstate(invalid="ignore", divide="ignore"):
         root = np.sqrt(np.einsum("naa->na", g))
-        forces = Q / root
+        forces = np.zeros_like(Q) if _is_rounding(model, given, found) else Q / root
         return {
             "metric": g / (root[:, :, None] * root[:, None, :]),
             "forces": forces / (np.abs(forces).max(initial=0) or 1.0),

@@ -29,10 +29,11 @@ from substructures.analysis.given import numbers
 from substructures.analysis.stability.constrained_families import constrained_motions
 from substructures.analysis.stability.constrained_search import ConstrainedSearch
 from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
-from substructures.analysis.stability.equilibrium_search import RestConditions, SearchRange
+from substructures.analysis.stability.equilibrium_search import SearchRange
 from substructures.analysis.stability.found_places import confirmed
 from substructures.analysis.stability.linearisation_result import Linearisation
 from substructures.analysis.stability.linearise import linearise
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.stability.steady_balls import steady_with_balls
 from substructures.analysis.stability.steady_conditions import (
     SteadyConditions,

@@ -16,13 +16,8 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.steady import steady_formulas
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.stability.closed_search import is_met, multiplier_units
-from substructures.analysis.stability.equilibrium_search import (
-    STEPS,
-    TOLERANCES,
-    RestConditions,
-    RestSearch,
-    SearchRange,
-)
+from substructures.analysis.stability.equilibrium_search import STEPS, TOLERANCES, RestSearch, SearchRange
+from substructures.analysis.stability.operating_point import RestConditions
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
@@ -74,6 +69,9 @@ class SteadySearch(RestSearch):
 
     def _of_all(self, rows: Array) -> Array:
         return rows[:, self.still]
+
+    def _without_rounding(self, sizes: Array) -> Array:
+        return sizes
 
     def put(self, name: str, value: float) -> None:
         """Another value of a parameter, or of what is wanted of a moving coordinate."""

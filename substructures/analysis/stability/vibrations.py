@@ -189,10 +189,16 @@ def stability(found: tuple[Mode, ...], D: Array, K: Array, has_potential: bool, 
         return Stability("unstable", f"the eigenvalue {_text(worst.eigenvalue)} 1/s has a positive real part")
     if worst.eigenvalue.real < -NEUTRAL * scale:
         return Stability("asymptotically stable", "all eigenvalues have negative real parts")
-    if has_potential and is_symmetric(K) and _least(K) > NEUTRAL and _least(D) >= -SYMMETRIC:
+    if has_potential and is_symmetric(K) and _is_definite(K) and _least(D) >= -SYMMETRIC:
         return Stability("stable", minimum)
     where = "0" if abs(worst.eigenvalue) <= NEUTRAL * scale else f"{_text(worst.eigenvalue)} 1/s on the imaginary axis"
     return Stability("undecided", f"the eigenvalue {where} leaves the decision to terms of higher order")
+
+
+def _is_definite(K: Array) -> bool:
+    """Whether K is positive definite beyond doubt, whatever the units of its coordinates; nothing is of rounding."""
+    sizes = np.diag(K)
+    return bool((sizes > SYMMETRIC * sizes.max()).all()) and _least(K / np.sqrt(np.outer(sizes, sizes))) > NEUTRAL
 
 
 def _least(x: Array) -> float:

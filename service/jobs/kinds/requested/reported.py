@@ -26,7 +26,6 @@ from substructures.pictures.tree import picture
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
-from substructures.tree.given.ties import require_untied
 from substructures.tree.glossary import glossary
 from substructures.tree.model import Model
 
@@ -83,7 +82,6 @@ def _part(item: ItemDocument, blobs: Blobs) -> _Subject:
 def _tree(item: ItemDocument, blobs: Blobs) -> _Subject:
     """A revision of a tree."""
     model, (spec, parts) = model_of(item, blobs), tree_parts(item["parts"], blobs)
-    require_untied(model, "report")
     notes = [f"Instances: {', '.join(f'{name} ({part.name})' for name, part in parts.items())}."]
     if model.closures:
         closed = ", ".join(rows.name for rows in model.closures)

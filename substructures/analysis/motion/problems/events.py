@@ -6,11 +6,13 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Literal
 
-from substructures.analysis.arguments import NumberOrExpression, one_of, real
+from substructures.analysis.arguments import NumberOrExpression, one_of, real, whole
 
 #: sign of the slope at the zeros that count; 0: any
 DIRECTIONS = {"rising": 1, "falling": -1, "both": 0}
 ACTIONS = ("stop", "record")
+#: crossings that are waited for
+MOST = 1_000_000_000
 
 
 @dataclass(frozen=True)
@@ -35,3 +37,4 @@ class Event:
         object.__setattr__(self, "level", real(self.level, "/level"))
         one_of(self.direction, "direction", tuple(DIRECTIONS))
         one_of(self.action, "action", ACTIONS)
+        object.__setattr__(self, "count", whole(self.count, "count", 1, MOST))
