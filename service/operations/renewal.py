@@ -58,7 +58,7 @@ def here(kind: str, item: ItemDocument, blobs: Mapping[str, bytes]) -> Outcome:
 
 def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES, compute: Compute = here) -> PartContent:
     """What has to be stored of a part, derived of its stored definition. Raises ValueError, Refused for a definition
-    that is gone or damaged, and as :func:`substructures.part.part.derive`.
+    that is gone or damaged, and as :func:`substructures.part.derive.derive`.
     """
     definition = content.get_definition(connection, digest)
     if definition is None:

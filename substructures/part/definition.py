@@ -1,7 +1,7 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
 Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.part.topology`,
-:mod:`substructures.part.applied_forces`, physics by :mod:`substructures.part.physics`.
+:mod:`substructures.part.forces.applied_forces`, physics by :mod:`substructures.part.physics`.
 """
 
 from __future__ import annotations

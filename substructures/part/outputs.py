@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from substructures.certificate.compare import compare
 from substructures.certificate.rebuilt import own_outputs
 from substructures.certificate.states import states_between
+from substructures.certificate.written import defaults_of, plain
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
@@ -15,7 +16,6 @@ from substructures.expr.replay import replay
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, packed
-from substructures.part.certificate import defaults_of, plain
 from substructures.part.part import Part
 
 #: outputs with the own inertia of all carriers

@@ -15,7 +15,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
 from substructures.expr.replay import replay
 from substructures.loads.pairs import wrench_forces
-from substructures.part.load_forces import load_forces, wrench_counts
+from substructures.part.forces.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.of_parts import OfParts, formed

@@ -18,8 +18,8 @@ from substructures.mechanics.cut_joints import ROWS
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import ZERO, Matrix, Vector
 from substructures.part.definition import PartClosure, Placement
+from substructures.part.forces.joint_laws import friction_of
 from substructures.part.frames import cut_frames
-from substructures.part.mechanism import friction_of
 from substructures.part.outputs import over_formulas
 from substructures.part.parameters import described, described_inputs
 from substructures.part.part import Part

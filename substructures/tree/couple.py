@@ -8,13 +8,13 @@ from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
+from substructures.certificate.agreement import not_judged
 from substructures.errors import TooLarge, VerificationFailed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.units.unit_check import UnitCheck
 from substructures.mechanics.state_names import ball_rows
-from substructures.part.certificate import not_judged
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.topology import entries_of, expected_operations

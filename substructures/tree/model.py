@@ -8,10 +8,10 @@ from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
+from substructures.certificate.agreement import not_judged, told_agreement
 from substructures.errors import listed
 from substructures.expr.program import Program
 from substructures.mechanics.state_names import effort_units, positions_of, state_units
-from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.part import told_operations
 from substructures.tree.closures import ClosureRows, Reduction
 from substructures.tree.plausibility import Plausibility

@@ -37,10 +37,10 @@ from substructures.mechanics.linear3 import (
 )
 from substructures.mechanics.newton_euler import Wrench
 from substructures.mechanics.ratios import Ratios
+from substructures.part.forces.wrenches import wrench_about_origin
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.part.relations import MULTIPLIER, OFFSET
-from substructures.part.wrenches import wrench_about_origin
 
 #: the host of what is not mounted on a part
 WORLD = -1

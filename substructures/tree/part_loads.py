@@ -11,7 +11,7 @@ from substructures.loads.document import LoadFormulas
 from substructures.loads.names import End, Names
 from substructures.loads.pairs import Acting, Place, Reach
 from substructures.mechanics.linear3 import Vector
-from substructures.part.wrenches import acts_on_host
+from substructures.part.forces.wrenches import acts_on_host
 from substructures.tree.assembly import Assembly
 from substructures.tree.frame_points import place_of
 from substructures.tree.loads import LoadNames

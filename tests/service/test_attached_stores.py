@@ -31,7 +31,7 @@ from substructures.documents import write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
-from substructures.part.part import derive, recheck
+from substructures.part.derive import derive, recheck
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
 from .seals import seal_again

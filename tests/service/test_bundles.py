@@ -26,8 +26,8 @@ from service.store import keys
 from service.store.store import Store
 from substructures.certificate.part_outputs import part_symbols
 from substructures.certificate.states import draws
+from substructures.certificate.written import plain
 from substructures.documents import write_json
-from substructures.part.certificate import plain
 from substructures.part.definition import Definition
 
 from .conftest import PENDULUM, SLIDER, copied, make_client
