@@ -29,7 +29,7 @@ g_a0, ...      what given motions of coordinates make of these (Gamma_ab0, Gamma
 ignored_rates  velocities that given momenta of cyclic coordinates make (Routh's reduced system): tree.given.ignored
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
                (loads.kinds), summed in part.forces.applied_forces (own forces of a part), tree.coupling (gravity, and
-               wrenches on what others carry) and tree.loads (between parts)
+               wrenches on what others carry) and tree.forces.loads (between parts)
 =============  ================================================================================================
 
 What leaves as functions of other languages is made by export, on one calling convention (export.interface). Beside

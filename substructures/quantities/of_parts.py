@@ -8,13 +8,14 @@ from typing import Any, ClassVar
 
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, program
-from substructures.part.outputs import over_formulas
+from substructures.mechanics.linear3 import Scalar
+from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
 from substructures.tree.couple import loaded_outputs
-from substructures.tree.coupling import couple_parts
+from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec, require_unignored
 from substructures.tree.given.driven import all_coordinates, put_in
 from substructures.tree.given.ignored import at_momenta
@@ -23,6 +24,11 @@ from substructures.tree.given.ignored import at_momenta
 REDUCED, OF_EQUATIONS = ("reactions", "powers"), frozenset(("metric", "bias", "forces", "potential_energy", "friction"))
 #: outputs, and the names of their rows
 Rows = tuple[Mapping[str, Formulas], Sequence[str]]
+#: outputs that do not take part in kinematics; emptied before coupling
+DYNAMIC = (
+    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("subtree.m", "subtree.s", "subtree.J", "load.at", "load.vector", *OWN),
+)
 
 
 @dataclass(frozen=True)
@@ -82,3 +88,14 @@ def formed(
     level = [instance.name for instance in assembly.instances if instance.name in assembly.reduced]
     result = certify_rows(what, spec, definitions, result, rows, expected, multipliers, level)
     return result, tuple(rows), assembly.parameters
+
+
+def bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
+    """Parts without these outputs: without masses and loads coupling gives the kinematics, the rest is zero at once."""
+
+    def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+        """Outputs of a part, those of its masses empty."""
+        found = run(part, bindings, [name for name in names if name not in left_out])
+        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in left_out}})
+
+    return massless

@@ -19,11 +19,11 @@ from substructures.part.forces.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.of_parts import OfParts, formed
-from substructures.tree.applied_wrenches import part_symbols
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.loads import loads_apart
+from substructures.tree.forces.applied_wrenches import part_symbols
+from substructures.tree.forces.loads import loads_apart
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
 

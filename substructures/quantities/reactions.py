@@ -30,13 +30,12 @@ from substructures.mechanics.newton_euler import Wrench, inertial_load
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.relations import of_coordinates
-from substructures.quantities.of_parts import OfParts, formed
-from substructures.quantities.regressor import DYNAMIC, bare
-from substructures.tree.applied_wrenches import applied_wrenches
+from substructures.quantities.of_parts import DYNAMIC, OfParts, bare, formed
 from substructures.tree.assembly import Assembly
 from substructures.tree.couple import loaded_outputs
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec
+from substructures.tree.forces.applied_wrenches import applied_wrenches
 from substructures.tree.given.driven import every_coordinate
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.given.loops.multipliers import PREFIX, loop_multipliers

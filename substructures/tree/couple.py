@@ -20,21 +20,21 @@ from substructures.part.part import MAX_NODES, Part
 from substructures.part.topology import entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, declared, division_by_zero, joint_parents
 from substructures.tree.certificate import blamed, certified, seconds_of
-from substructures.tree.closures import Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
+from substructures.tree.cuts import Reduction, reduction_of
 from substructures.tree.document import TreeSpec
+from substructures.tree.forces.load_potentials import found_potential
+from substructures.tree.forces.loads import load_formulas
+from substructures.tree.forces.velocity_forces import least_forces
 from substructures.tree.given.driven import all_coordinates, driven_inputs, driven_names, every_coordinate, put_in
 from substructures.tree.given.ignored import ignore, ignored_names
 from substructures.tree.given.reduced import instances_of
 from substructures.tree.grouping import Admitted, every, numbers_and
-from substructures.tree.load_potentials import found_potential
-from substructures.tree.loads import load_formulas
 from substructures.tree.model import AXES, LISTED, Model
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.shape import CertifiedProgram, KnownShapes, of_shape
 from substructures.tree.units import check_tree_units, tree_warnings
-from substructures.tree.velocity_forces import least_forces
 
 
 def couple(

@@ -13,7 +13,7 @@ from substructures.errors import listed
 from substructures.expr.program import Program
 from substructures.mechanics.state_names import effort_units, positions_of, state_units
 from substructures.part.part import told_operations
-from substructures.tree.closures import ClosureRows, Reduction
+from substructures.tree.cuts import ClosureRows, Reduction
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.shape import with_numbers
 

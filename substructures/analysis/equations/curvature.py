@@ -36,7 +36,7 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.evaluation import Evaluator, interpreted
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 

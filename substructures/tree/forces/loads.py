@@ -16,8 +16,7 @@ from substructures.loads.pairs import Place, Reach
 from substructures.mechanics.linear3 import Vector
 from substructures.part.parameters import si_unit
 from substructures.tree.assembly import Assembly
-from substructures.tree.frame_points import place
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import PlacedPart, place
 
 #: of a revolute and of a prismatic coordinate
 UNITS = ("rad", "m")
