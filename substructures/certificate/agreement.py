@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from decimal import Decimal
 from typing import Any
 
@@ -23,6 +23,19 @@ def not_judged(certificate: Mapping[str, Any]) -> list[str]:
     """The outputs of which a certificate cannot tell whether they are right."""
     errors: Mapping[str, Any] = certificate.get("direct_form", {}).get("max_relative_error", {})
     return [name for name, error in errors.items() if error is None]
+
+
+def not_judged_warnings(quantities: Iterable[str]) -> list[dict[str, str]]:
+    """A warning for each of these quantities, whose programs have outputs that are not judged."""
+    return [
+        {
+            "pointer": "",
+            "code": "not-judged",
+            "message": f"'{name[:80]}' could not be judged: some of what it has to be by the documents has no finite "
+            "value at any state that was tried",
+        }
+        for name in dict.fromkeys(quantities)
+    ]
 
 
 def require_no_less(before: Mapping[str, Any], now: Mapping[str, Any]) -> None:

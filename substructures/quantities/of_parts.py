@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, program
@@ -29,21 +28,6 @@ DYNAMIC = (
     *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
     *("subtree.m", "subtree.s", "subtree.J", "load.at", "load.vector", *OWN),
 )
-
-
-@dataclass(frozen=True)
-class OfParts:
-    """Formulas with their rows along ``axis``; ``parameters``: those of the tree, by name."""
-
-    program: Program
-    rows: tuple[str, ...]
-    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
-    axis: ClassVar[str] = ""
-
-    @property
-    def labels(self) -> Mapping[str, Any]:
-        """Names of places by axis."""
-        return {self.axis: self.rows} if self.axis else {}
 
 
 def _at_momenta(assembly: Assembly, outputs: Mapping[str, Formulas]) -> Mapping[str, Formulas]:

@@ -18,7 +18,8 @@ from substructures.loads.pairs import wrench_forces
 from substructures.part.forces.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.quantities.of_parts import OfParts, formed
+from substructures.quantities.of_parts import formed
+from substructures.quantities.part_models import OfParts
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec

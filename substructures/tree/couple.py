@@ -172,7 +172,8 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
     spec = assembly.reading.spec
-    told = reduction_of(assembly.instances, assembly.mounted, bool(spec.closures), assembly.reduced)
+    order = [(each.name, m.part) for each, m in zip(assembly.instances, assembly.mounted, strict=True)]
+    told = reduction_of(order, bool(spec.closures), assembly.reduced)
     tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told

@@ -10,8 +10,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector
-from substructures.tree.document import Instance
-from substructures.tree.mounted_part import MountedPart
+from substructures.part.part import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,15 +79,12 @@ class Cut:
     length: Expr
 
 
-def reduction_of(
-    instances: Sequence[Instance], mounted: Sequence[MountedPart], is_closed: bool, reduced: Collection[str]
-) -> Reduction:
-    """Of the instances of a tree, hosts first; ``is_closed``: by closures of its own; ``reduced``: those whose formulas
-    are of independent coordinates alone.
+def reduction_of(order: Sequence[tuple[str, Part]], is_closed: bool, reduced: Collection[str]) -> Reduction:
+    """Of the instances of a tree by name, hosts first; ``is_closed``: by closures of its own; ``reduced``: those whose
+    formulas are of independent coordinates alone.
 
     Independent are the coordinates that closed parts name, and all those of open ones.
     """
-    order = [(i.name, m.part) for i, m in zip(instances, mounted, strict=True)]
     closed = [part.definition for name, part in order if part.definition.closures and name not in reduced]
     independent: list[str] = []
     start: dict[str, str] = {}

@@ -17,7 +17,8 @@ from substructures.analysis.simulate import ClosedMotion, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.quantities import reactions as module
 from substructures.quantities.numbers.evaluation import Evaluation, Sources, evaluate
-from substructures.quantities.reactions import ReactionModel, reactions
+from substructures.quantities.part_models import ReactionModel
+from substructures.quantities.reactions import reactions
 
 Plain = dict[str, Any]
 DOWN = [0, -9.81, 0]

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from substructures.array import Array
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.compile.kernel import NO_PLACES, Evaluated, Places, with_elements
 from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
@@ -22,7 +23,6 @@ from substructures.quantities.accelerations import (
     accelerations_on_closures,
     conditions,
 )
-from substructures.quantities.canonical import momentum
 from substructures.quantities.derivative_directions import Direction, direction_values
 from substructures.quantities.numbers.conditioning import Look, solved_anew
 from substructures.quantities.numbers.levels import singular_loops
@@ -38,7 +38,8 @@ from substructures.quantities.numbers.states import (
     read_states,
     require,
 )
-from substructures.quantities.numbers.warnings import Notice, doubted, not_judged_warnings, value_warnings
+from substructures.quantities.numbers.warnings import Notice, doubted, value_warnings
+from substructures.quantities.numbers.workspace import momentum
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
