@@ -5,9 +5,8 @@ from __future__ import annotations
 from substructures.expr.operations import Symbol
 from substructures.loads.scope import Scope
 from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.state_names import inertia_names
 from substructures.part.topology import Topology
-
-UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
 
 
 def inertia_symbols(scope: Scope, topology: Topology) -> tuple[Inertia, ...]:
@@ -24,9 +23,3 @@ def inertia_symbols(scope: Scope, topology: Topology) -> tuple[Inertia, ...]:
         mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(symbol) for symbol, _ in inertia_names(name[k]))
         result.append(Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
     return tuple(result)
-
-
-def inertia_names(body: str) -> list[tuple[str, str]]:
-    """(symbol, unit): m, s and J of a body, in the order m, sx, sy, sz, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz."""
-    names = ["m", *(f"s{x}" for x in "xyz"), *(f"J{e}" for e in ("xx", "yy", "zz", "xy", "xz", "yz"))]
-    return [(f"{body}.{n}", UNITS[n[0]]) for n in names]

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from substructures.documents.units import si_unit
 from substructures.errors import among
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
@@ -32,7 +33,6 @@ from substructures.part.definition import Body, Definition
 from substructures.part.forces.joint_laws import JointLaw, JointLaws
 from substructures.part.forces.load_names import load_names
 from substructures.part.frames import AXES, Frame, axis_rotation
-from substructures.part.parameters import si_unit
 from substructures.part.relations import read_relations
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 

@@ -13,9 +13,9 @@ from substructures.documents import write_json
 from substructures.errors import listed
 from substructures.expr.operations import Output
 from substructures.expr.program import Program
+from substructures.mechanics.state_names import inertia_names
 from substructures.part.definition import Definition
 from substructures.part.forces.wrenches import dead_loads, steady_loads, wrench_places
-from substructures.part.inertia_symbols import inertia_names
 from substructures.part.parameters import described
 from substructures.part.relations import MULTIPLIER, OF_COORDINATES, OFFSET
 from substructures.part.shape import shape_of

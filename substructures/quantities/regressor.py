@@ -29,8 +29,7 @@ from substructures.mechanics.composite_form import Inertia, moments_of_inertia, 
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
-from substructures.mechanics.state_names import BallRow, ball_rows, positions_of
-from substructures.part.inertia_symbols import inertia_names
+from substructures.mechanics.state_names import BallRow, ball_rows, inertia_names, positions_of
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.relations import of_coordinates
