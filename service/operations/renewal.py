@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from service.content.derivation import software
+from service.content.improvement import Improvement
 from service.content.integrity import checked, digest_of
 from service.content.summaries import PartContent
 from service.content.tree_content import TreeSummary
@@ -42,6 +43,20 @@ class CoupledAnew:
     packed: bytes
     nodes: int
     parts: Mapping[str, str]
+
+
+@dataclass(frozen=True, slots=True)
+class TreeProgram:
+    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary, and by
+    which software.
+    """
+
+    program: bytes
+    digest: str
+    nodes: int
+    dof: int
+    summary: TreeSummary
+    software: str
 
 
 class Compute(Protocol):
@@ -200,3 +215,32 @@ def is_tree_newest(connection: Connection, name: str, revision: int, is_older_go
         return True
     is_sound = tree.is_derived and digest_of(tree.summary.encode()) == tree.summary_digest
     return is_sound and (is_older_good or tree.software == software())
+
+
+def put_part(
+    connection: Connection, viewer: Viewer, name: str, before: str, made: PartContent, found: Improvement
+) -> None:
+    """Write what a job derived over a part with the program ``before``; what has another one meanwhile stays."""
+    if content.get_row(connection, made.digest)["program"] != before:
+        return
+    mend_part(connection, made)
+    figures = {"before": found.before, "after": found.after, "program": made.row["program"], "was": before}
+    audit.note(connection, viewer, "substructure.upgrade", name, **figures)
+
+
+def put_tree(
+    connection: Connection,
+    viewer: Viewer,
+    name: str,
+    digest: str,
+    before: str,
+    made: TreeProgram,
+    found: Improvement,
+) -> None:
+    """Write what a job coupled over the program ``before``, in all revisions of this document that have it."""
+    content.put_program(connection, made.digest, made.program, made.nodes)
+    for tree in trees.with_program(connection, name, digest, before):
+        coupled = replace(tree, program=made.digest, dof=made.dof, **made.summary.columns())
+        trees.replace_model(connection, coupled, made.software)
+        figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
+        audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

@@ -18,7 +18,7 @@ from service.operations.jobs import jobs, tables
 from service.operations.jobs.tables import Table
 from service.routes.bodies import APIRouter, binary, body_of
 from service.routes.deferred import FRESH, deferred, made
-from service.routes.trees import revision
+from service.routes.revisions import revision
 from service.schemas.entries import Entry
 from service.schemas.resources import TreeView
 from service.schemas.sweeps import ColumnView, RowTree, TablePage
