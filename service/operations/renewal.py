@@ -2,7 +2,7 @@
 
 It is done for what this server has not derived itself (a store that came from elsewhere, or from before seals), for
 what is damaged, and for what another version of the software derived: on request for what is asked for, and in the
-background for the rest (:mod:`service.renewing`). Documents never change, nor do their digests.
+background for the rest (:mod:`service.operations.renewing`). Documents never change, nor do their digests.
 """
 
 from __future__ import annotations

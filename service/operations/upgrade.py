@@ -1,9 +1,9 @@
 """Formulas of older versions of the software derived anew with today's: the command ``substructures upgrade``.
 
-A version is its definition, a revision its document: these never change, nor do their digests. Their programs are
-what follows: what today's software derives takes the place of what another one did, with a certificate of its own. The
-server does so by itself when a newer version starts (:mod:`service.renewing`). The old program stays in the store under
-its digest, for items of jobs that are queued with it.
+A version is its definition, a revision its document: these never change, nor do their digests. Their programs are what
+follows: what today's software derives takes the place of what another one did, with a certificate of its own. The
+server does so by itself when a newer version starts (:mod:`service.operations.renewing`). The old program stays in the
+store under its digest, for items of jobs that are queued with it.
 """
 
 from __future__ import annotations

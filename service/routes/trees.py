@@ -62,7 +62,7 @@ def list_trees(
         detail = f"'uses' is the name of a part alone; {where}"
         raise unprocessable("bare-name-expected", detail, "/query/uses")
     wanted = searches.checked(TreeSearch(words_of(q), **narrow, uses=uses))
-    size = limited(page_size, store.settings.limits)
+    size = limited(page_size, store.settings.limits.page_size)
     with store.database.read() as connection:
         page = searches.trees(connection, viewer, wanted, size, page_token)
     link = next_link(request, page.next_token)

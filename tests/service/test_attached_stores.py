@@ -23,8 +23,8 @@ from service.database.packed import pack, unpack
 from service.messages.refusals import Refused
 from service.operations.catalogue import PartSubmission, submit
 from service.operations.renewal import OPERATOR
+from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
-from service.renewing import Renewal
 from service.settings import Limits, Settings
 from service.store.store import Store
 from substructures.documents import write_json

@@ -626,7 +626,7 @@ def test_no_more_parts_are_read_than_a_bundle_may_have() -> None:
     digest = "sha256:" + 64 * "0"
     parts = iter([BundledPart(name, 1, digest, digest, b"x" * 700, b"", b"{}") for name in "abc"])
     with pytest.raises(Refused, match="1,404 bytes and more; the limit is 1,000"):
-        write_bundle(parts, Limits(binary_bytes=1000))
+        write_bundle(parts, 1000)
     assert [part.name for part in parts] == ["c"]
 
 

@@ -50,7 +50,7 @@ def _answered(
         return response_of(replace(found, headers={**found.headers, **FRESH}))
     if media != JSON:
         return Response(as_file(table, media), media_type=media, headers=FRESH)
-    size = limited(size, store.settings.limits)
+    size = limited(size, store.settings.limits.page_size)
     after = read_token(search, token, int)
     start = after[0] if after else 0
     following = write_token(search, start + size) if start + size < table.count else None
