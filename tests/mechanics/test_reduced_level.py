@@ -38,8 +38,8 @@ from substructures.expr.operations import Symbol
 from substructures.expr.program import array, program
 from substructures.expr.walk import transfer
 from substructures.quantities import reactions as module
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 from substructures.tree.certificate import certify_tree
 from substructures.tree.given.loops import newton, reduction
 from substructures.tree.given.loops.dependent import Dependent
