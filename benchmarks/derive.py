@@ -16,7 +16,7 @@ from benchmarks.kane import derive_by_kane, operations
 from benchmarks.report import keep, options
 from substructures import Definition, Part, TreeSpec, catalogue, couple, derive
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.part.applied_forces import read_loads
+from substructures.part.forces.applied_forces import read_loads
 from substructures.part.formulas import formulas
 from substructures.part.mechanism import mechanism
 from substructures.part.one_piece import derive_in_one_piece

@@ -16,7 +16,7 @@ from benchmarks.derive import humanoid
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.export import exported_model, files, interface_of_model
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 #: states with reference values
 COMPARED = 64

@@ -28,7 +28,7 @@ from substructures.expr.operations import CONSTANT
 from substructures.expr.program import Formulas, program
 from substructures.expr.trigonometry import cos, sin
 from substructures.quantities.formulas import derived
-from substructures.tree import velocity_forces
+from substructures.tree.forces import velocity_forces
 
 #: chains whose kernels are timed, at how many states, how often
 TIMED, STATES, ROUNDS = ("rx90", "iiwa", "6r14"), 20_000, 201

@@ -25,13 +25,13 @@ from service.app import create_app, open_store
 from service.following import followed
 from service.http.connections import Complaints, Connection, Connections
 from service.jobs.engines.engine import Engine
+from service.operations.renewing import renewed
 from service.operations.seed import Told
 from service.processes.parent import bound, kept, listeners
 from service.queries.jobs.jobs import waiting
 from service.queries.keys import any_key
 from service.queue.engines import engine_of, worker_pool
 from service.queue.supervisor import Supervisor
-from service.renewing import renewed
 from service.settings import Settings, SettingsError
 from service.store.store import Store
 

@@ -28,8 +28,8 @@ N_ai           dq^a / dq^i of joints that relations move (gears, mimic joints): 
 g_a0, ...      what given motions of coordinates make of these (Gamma_ab0, Gamma_a00, T_0, ...): tree.given.driven
 ignored_rates  velocities that given momenta of cyclic coordinates make (Routh's reduced system): tree.given.ignored
 Q_a            = sum over bodies K . u_a + M . Omega_a, springs, dampers and actuators: one law a file in loads
-               (loads.kinds), summed in part.applied_forces (own forces of a part), tree.coupling (gravity, and
-               wrenches on what others carry) and tree.loads (between parts)
+               (loads.kinds), summed in part.forces.applied_forces (own forces of a part), tree.coupling (gravity, and
+               wrenches on what others carry) and tree.forces.loads (between parts)
 =============  ================================================================================================
 
 What leaves as functions of other languages is made by export, on one calling convention (export.interface). Beside
@@ -104,7 +104,8 @@ if TYPE_CHECKING:  # what is imported when it is first asked for: see _WHERE
     from substructures.interchange.symbolic.systems import tree_of_system
     from substructures.interchange.symbolic.texts import from_sympy
     from substructures.part.definition import Definition
-    from substructures.part.part import Formula, Part, derive
+    from substructures.part.derive import derive
+    from substructures.part.part import Formula, Part
     from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
     from substructures.tree.couple import couple
     from substructures.tree.document import Instance, TreeSpec, read_instance
@@ -202,7 +203,8 @@ _WHERE = {
     "substructures.export": ("render",),
     "substructures.expr.program": ("Program",),
     "substructures.part.definition": ("Definition",),
-    "substructures.part.part": ("Formula", "Part", "derive"),
+    "substructures.part.derive": ("derive",),
+    "substructures.part.part": ("Formula", "Part"),
     "substructures.quantities.numbers.evaluation": ("EvaluationOptions", "evaluate"),
     "substructures.interchange.symbolic.equations": ("linearizer", "symbolic_system"),
     "substructures.interchange.symbolic.expressions": ("to_sympy",),

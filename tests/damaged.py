@@ -13,11 +13,11 @@ from typing import Any
 import numpy as np
 
 from substructures import Model, Part, TreeSpec
+from substructures.certificate.agreement import require_no_less
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Operation, Program
-from substructures.part.certificate import require_no_less
-from substructures.part.part import recheck
+from substructures.part.derive import recheck
 from substructures.tree.certificate import certify_tree
 
 NUDGE = Fraction(1_000_001, 1_000_000)

@@ -10,7 +10,7 @@ from made_once import coupled_once
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.export import Exported, exported_model, files, interface_of_model
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 LIMIT = 1_000_000
 QUANTITIES = ("metric", "christoffel", "gravity", "kinematics", "potential_energy", "coriolis", "bias", "forces")

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.quantities.numbers.evaluation import Evaluation
+from substructures.quantities.numbers.result import Evaluation
 
 Plain = dict[str, Any]
 Array = Any

@@ -9,7 +9,7 @@ from in_depth import seeds
 from random_trees import Kind, Plain, random_definition, random_states, with_parameters
 
 from substructures import Model
-from substructures.quantities.numbers.evaluation import Evaluation
+from substructures.quantities.numbers.result import Evaluation
 
 QUANTITIES = ["metric", "christoffel", "forces", "gravity", "potential_energy", "kinematics", "momentum"]
 COUNT = 8

@@ -17,7 +17,8 @@ from substructures.documents import DOCUMENTS
 from substructures.errors import InvalidDocument
 from substructures.interchange.files.content import is_foreign
 from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
+from substructures.part.derive import derive
+from substructures.part.part import Part
 from substructures.quantities.numbers.warnings import BY_VALUE, TOLD
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.couple import couple

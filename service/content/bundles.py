@@ -25,7 +25,6 @@ from service.content.integrity import digest_of
 from service.content.unzipped import file_pointer, invalid, too_large, unzipped
 from service.messages.refusals import unprocessable
 from service.schemas.shapes import Digest
-from service.settings import Limits
 from substructures.documents import read_json, read_model, write_json
 from substructures.documents.fields import LibraryName
 from substructures.errors import InvalidInput
@@ -94,9 +93,9 @@ class _List(BaseModel):
     parts: tuple[_Listed, ...]
 
 
-def write_bundle(parts: Iterable[BundledPart], limits: Limits) -> bytes:
-    """A bundle that can be read again within the same limits. Raises Refused 422 for one that is too large, as soon as
-    it is: no further ``parts`` are taken then."""
+def write_bundle(parts: Iterable[BundledPart], most: int) -> bytes:
+    """A bundle of at most so many bytes, also unpacked. Raises Refused 422 for one that is too large, as soon
+    as it is: no further ``parts`` are taken then."""
     listed, files, size = list[dict[str, Any]](), dict[str, bytes](), 0
     for part in parts:
         number = {} if part.number is None else {"number": part.number}
@@ -105,29 +104,30 @@ def write_bundle(parts: Iterable[BundledPart], limits: Limits) -> bytes:
         listed.append({"name": part.name, **number, **digests, "folder": part.folder, "files": own})
         files |= {part.file(name): data for name, data in part.contents.items()}
         size += sum(map(len, part.contents.values()))
-        _require_room(size, limits)
+        _require_room(size, most)
     packed = archive({LIST: write_json({"format": FORMAT, "version": VERSION, "parts": listed}), **files})
-    _require_room(len(packed), limits)
+    _require_room(len(packed), most)
     return packed
 
 
-def _require_room(size: int, limits: Limits) -> None:
-    if size > limits.binary_bytes:
-        detail = f"the bundle has {size:,} bytes and more; the limit is {limits.binary_bytes:,}: ask for fewer parts"
-        raise unprocessable("too-large", detail, "/query/refs", size=size, limit=limits.binary_bytes)
+def _require_room(size: int, most: int) -> None:
+    if size > most:
+        detail = f"the bundle has {size:,} bytes and more; the limit is {most:,}: ask for fewer parts"
+        raise unprocessable("too-large", detail, "/query/refs", size=size, limit=most)
 
 
-def read_bundle(file: IO[bytes], limits: Limits) -> list[BundledPart]:
-    """The parts of a bundle, in its order, with the digests that it says.
+def read_bundle(file: IO[bytes], most: int, most_words: int) -> list[BundledPart]:
+    """The parts of a bundle of at most ``most`` bytes, in its order, with the digests that it says; ``most_words``: of
+    a definition or certificate.
 
     Raises Refused 422 and InvalidDocument with pointers to the file.
     """
 
     def limit(path: str) -> int:
         """Bytes that a file may have; a definition and what is known of it no more than can come in by a job."""
-        return limits.binary_bytes if path.endswith(f"/{PROGRAM}") else limits.job_bytes
+        return most if path.endswith(f"/{PROGRAM}") else most_words
 
-    files = unzipped(file, 1 + len(FILES) * MOST_PARTS, limits.binary_bytes, limit)
+    files = unzipped(file, 1 + len(FILES) * MOST_PARTS, most, limit)
     if LIST not in files:
         raise invalid(LIST, "it is missing")
     listed = _list_of(files.pop(LIST))

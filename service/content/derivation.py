@@ -15,7 +15,8 @@ from typing import Any
 
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
-from substructures.part.part import MAX_NODES, Part, derive
+from substructures.part.derive import derive
+from substructures.part.part import MAX_NODES, Part
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec, with_levels
 from substructures.tree.model import Model
@@ -61,7 +62,7 @@ def _modules(folder: Traversable, path: str, endings: tuple[str, ...]) -> list[t
 def derived_part(definition: bytes, recipe: str | None = None, max_nodes: int = MAX_NODES) -> Part:
     """The part of a stored definition. ``recipe``: of a part that is a published tree (:func:`recipe_of`).
 
-    Raises as :func:`substructures.part.part.derive`.
+    Raises as :func:`substructures.part.derive.derive`.
     """
     wanted = Definition.stored(read_json(definition))
     found = None if recipe is None else _published(wanted, read_json(recipe.encode()), max_nodes)

@@ -28,7 +28,7 @@ CONNECT_SECONDS = 10
 
 ROOM = 2**20  # bytes
 
-__all__ = ["Connection", "Database", "DatabaseError", "normalised", "told"]
+__all__ = ["Connection", "DBAPIError", "Database", "DatabaseError", "normalised", "told"]
 
 
 class Database:

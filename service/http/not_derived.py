@@ -8,7 +8,7 @@ from fastapi.concurrency import run_in_threadpool
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
 from service.messages.refusals import NotDerived
-from service.renewing import Renewal
+from service.operations.renewing import Renewal
 from service.store.store import Store
 
 

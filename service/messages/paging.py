@@ -10,7 +10,6 @@ from typing import Any
 import orjson
 
 from service.messages.refusals import Refused, unprocessable
-from service.settings import Limits
 
 
 def write_token(search: object, *position: str | int) -> str:
@@ -55,9 +54,8 @@ def _mark(search: object) -> str:
     return hashlib.sha256(repr(search).encode()).hexdigest()[:16]
 
 
-def limited(page_size: int, limits: Limits) -> int:
+def limited(page_size: int, most: int) -> int:
     """The page size if it is allowed. Raises Refused 422."""
-    if page_size > limits.page_size:
-        detail = f"page_size is at most {limits.page_size}"
-        raise unprocessable("page-size", detail, "/query/page_size", limit=limits.page_size)
+    if page_size > most:
+        raise unprocessable("page-size", f"page_size is at most {most}", "/query/page_size", limit=most)
     return page_size

@@ -28,8 +28,8 @@ from substructures.export.rounding import read_ranges
 from substructures.export.stages import staged
 from substructures.expr.program import Program
 from substructures.part.part import Part
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.quantity import FORWARD, VELOCITY_DYNAMICS, askable
+from substructures.quantities.sources import Sources
 from substructures.tree.document import TreeSpec
 from substructures.tree.glossary import glossary, part_glossary
 from substructures.tree.model import Model

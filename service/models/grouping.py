@@ -23,8 +23,8 @@ from substructures.errors import InvalidInput, TooLarge
 from substructures.export import Interface
 from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.quantity import DERIVED, PROGRAMS
+from substructures.quantities.sources import Sources
 
 #: what follows from the equations of motion alone, and has formulas in grouped symbols
 QUANTITIES = (

@@ -16,6 +16,7 @@ from service.models.formulas.entry import Made, Options
 from service.models.source import Source
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.told import base_symbols
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.errors import InvalidInput, TooLarge, meant
 from substructures.export import Interface, render
 from substructures.expr.program import Program
@@ -23,14 +24,12 @@ from substructures.printers import entries
 from substructures.printers.definitions import Definitions
 from substructures.printers.render import LIMIT
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.canonical import momentum
 from substructures.quantities.numbers.result import plain_names
-from substructures.quantities.numbers.warnings import not_judged_warnings
+from substructures.quantities.numbers.workspace import momentum
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
 from substructures.quantities.sources import Sources
 from substructures.tree.glossary import glossary
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import require_stored
+from substructures.tree.model import Model, require_stored
 
 JSON = "json"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"

@@ -8,9 +8,11 @@ from pathlib import Path
 
 from service.settings import Limits
 from substructures.part.part import Part
-from substructures.quantities.numbers.evaluation import Evaluator, Sources, interpreted
+from substructures.quantities.accelerations import Evaluator
+from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.quantity import REGRESSOR
 from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.sources import Sources
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model

@@ -9,9 +9,10 @@ from pydantic import BaseModel
 
 from service.models.source import Source
 from substructures.analysis.motion.trajectory import Trajectory
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.quantities.certificate import DYNAMICS
 from substructures.quantities.numbers.states import read_states
-from substructures.quantities.numbers.warnings import Notice, not_judged_warnings, value_warnings
+from substructures.quantities.numbers.warnings import Notice, value_warnings
 
 #: requests whose coordinates are only where something is looked for
 NEAR = ("EquilibriaRequest", "RootLocusRequest", "ReducedRequest")

@@ -22,10 +22,10 @@ from service.schemas.numbers import EvaluationRequest
 from service.store.store import Store
 from substructures.documents import read_json
 from substructures.expr.program import Program
-from substructures.quantities.numbers.evaluation import Sources, cost, steps
 from substructures.quantities.numbers.one_state import OneState, prepared
 from substructures.quantities.numbers.states import longest
 from substructures.quantities.quantity import OF_PARTS, REACTIONS
+from substructures.quantities.sources import Sources, cost, steps
 
 EVERYBODY = ""  # no owner
 BODY = 4096  # bytes of the request

@@ -22,7 +22,7 @@ from service.schemas.entries import PLAIN, PartEntry
 from service.store.store import Store
 from substructures.documents import read_json
 from substructures.part.definition import Definition
-from substructures.part.part import derive
+from substructures.part.derive import derive
 
 SUBMITTED = Origin()
 

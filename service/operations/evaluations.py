@@ -10,8 +10,9 @@ import orjson
 
 from service.settings import Limits
 from substructures.errors import TooLarge
-from substructures.quantities.numbers.evaluation import Evaluation, Sources, cost
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.quantity import has_numbers
+from substructures.quantities.sources import Sources, cost
 
 
 def check_size(

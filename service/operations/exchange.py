@@ -19,15 +19,11 @@ from service.settings import Limits
 from substructures.documents import read_json
 from substructures.documents.grouped import take
 from substructures.formats import arrays, arrow
-from substructures.quantities.numbers.evaluation import (
-    Evaluation,
-    EvaluationOptions,
-    Evaluator,
-    Sources,
-    evaluate,
-    evaluate_in_parts,
-)
+from substructures.quantities.accelerations import Evaluator
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate, evaluate_in_parts
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.numbers.states import longest
+from substructures.quantities.sources import Sources
 
 MEDIA_TYPES = (JSON, arrays.MEDIA_TYPE, arrow.MEDIA_TYPE)
 PART = 4 * 2**20  # bytes of results that are computed, and then sent, at a time

@@ -12,14 +12,12 @@ from service.database.connections import Connection
 from service.jobs.worker import Worker
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
-from service.operations.sharing.provenance import Origin
+from service.operations.sharing.provenance import IMPORTED
 from service.queries.trees import Tree
 from service.schemas.entries import PLAIN, PartEntry
 from service.store.store import Store
 from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
-
-IMPORTED = Origin("import")
 
 
 @dataclass(frozen=True, slots=True)

@@ -2,7 +2,7 @@
 
 It is done for what this server has not derived itself (a store that came from elsewhere, or from before seals), for
 what is damaged, and for what another version of the software derived: on request for what is asked for, and in the
-background for the rest (:mod:`service.renewing`). Documents never change, nor do their digests.
+background for the rest (:mod:`service.operations.renewing`). Documents never change, nor do their digests.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from typing import Protocol
 
 from service.content.derivation import software
+from service.content.improvement import Improvement
 from service.content.integrity import checked, digest_of
 from service.content.summaries import PartContent
 from service.content.tree_content import TreeSummary
@@ -44,6 +45,20 @@ class CoupledAnew:
     parts: Mapping[str, str]
 
 
+@dataclass(frozen=True, slots=True)
+class TreeProgram:
+    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary, and by
+    which software.
+    """
+
+    program: bytes
+    digest: str
+    nodes: int
+    dof: int
+    summary: TreeSummary
+    software: str
+
+
 class Compute(Protocol):
     """Computes a work of :data:`service.jobs.kinds.requested.REQUESTED`, here or elsewhere."""
 
@@ -58,7 +73,7 @@ def here(kind: str, item: ItemDocument, blobs: Mapping[str, bytes]) -> Outcome:
 
 def part_anew(connection: Connection, digest: str, max_nodes: int = MAX_NODES, compute: Compute = here) -> PartContent:
     """What has to be stored of a part, derived of its stored definition. Raises ValueError, Refused for a definition
-    that is gone or damaged, and as :func:`substructures.part.part.derive`.
+    that is gone or damaged, and as :func:`substructures.part.derive.derive`.
     """
     definition = content.get_definition(connection, digest)
     if definition is None:
@@ -200,3 +215,32 @@ def is_tree_newest(connection: Connection, name: str, revision: int, is_older_go
         return True
     is_sound = tree.is_derived and digest_of(tree.summary.encode()) == tree.summary_digest
     return is_sound and (is_older_good or tree.software == software())
+
+
+def put_part(
+    connection: Connection, viewer: Viewer, name: str, before: str, made: PartContent, found: Improvement
+) -> None:
+    """Write what a job derived over a part with the program ``before``; what has another one meanwhile stays."""
+    if content.get_row(connection, made.digest)["program"] != before:
+        return
+    mend_part(connection, made)
+    figures = {"before": found.before, "after": found.after, "program": made.row["program"], "was": before}
+    audit.note(connection, viewer, "substructure.upgrade", name, **figures)
+
+
+def put_tree(
+    connection: Connection,
+    viewer: Viewer,
+    name: str,
+    digest: str,
+    before: str,
+    made: TreeProgram,
+    found: Improvement,
+) -> None:
+    """Write what a job coupled over the program ``before``, in all revisions of this document that have it."""
+    content.put_program(connection, made.digest, made.program, made.nodes)
+    for tree in trees.with_program(connection, name, digest, before):
+        coupled = replace(tree, program=made.digest, dof=made.dof, **made.summary.columns())
+        trees.replace_model(connection, coupled, made.software)
+        figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
+        audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

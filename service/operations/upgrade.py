@@ -1,26 +1,23 @@
 """Formulas of older versions of the software derived anew with today's: the command ``substructures upgrade``.
 
-A version is its definition, a revision its document: these never change, nor do their digests. Their programs are
-what follows: what today's software derives takes the place of what another one did, with a certificate of its own. The
-server does so by itself when a newer version starts (:mod:`service.renewing`). The old program stays in the store under
-its digest, for items of jobs that are queued with it.
+A version is its definition, a revision its document: these never change, nor do their digests. Their programs are what
+follows: what today's software derives takes the place of what another one did, with a certificate of its own. The
+server does so by itself when a newer version starts (:mod:`service.operations.renewing`). The old program stays in the
+store under its digest, for items of jobs that are queued with it.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
-from service.content.improvement import AS_IT_WAS, Improvement, improvement
-from service.content.summaries import PartContent
-from service.content.tree_content import TreeSummary
-from service.database.connections import Connection, Database
+from service.content.improvement import AS_IT_WAS, improvement
+from service.database.connections import Database
 from service.database.packed import unpack
 from service.messages.viewer import Viewer
-from service.operations.catalogue import mend_part
 from service.operations.renewal import OPERATOR, read_tree, renew_part, renew_tree
 from service.operations.verification import told
-from service.queries import audit, catalogue, content, trees
+from service.queries import catalogue, content, trees
 from substructures.expr.program import Program
 from substructures.part.part import MAX_NODES
 
@@ -37,20 +34,6 @@ class Upgraded:
     after: int | None = None
     outcome: str = AS_IT_WAS
     fault: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class TreeProgram:
-    """What a tree was coupled to anew: packed program with its digest and length, degrees of freedom, summary, and by
-    which software.
-    """
-
-    program: bytes
-    digest: str
-    nodes: int
-    dof: int
-    summary: TreeSummary
-    software: str
 
 
 def upgrade(
@@ -94,17 +77,6 @@ def _part(database: Database, viewer: Viewer, what: str, digest: str, max_nodes:
     return Upgraded(what, digest, found.before, found.after, found.outcome)
 
 
-def put_part(
-    connection: Connection, viewer: Viewer, name: str, before: str, made: PartContent, found: Improvement
-) -> None:
-    """Write what a job derived over a part with the program ``before``; what has another one meanwhile stays."""
-    if content.get_row(connection, made.digest)["program"] != before:
-        return
-    mend_part(connection, made)
-    figures = {"before": found.before, "after": found.after, "program": made.row["program"], "was": before}
-    audit.note(connection, viewer, "substructure.upgrade", name, **figures)
-
-
 def _tree(database: Database, viewer: Viewer, name: str, number: int, max_nodes: int) -> Upgraded:
     with database.read() as connection:
         tree, _ = read_tree(connection, name, number)
@@ -114,21 +86,3 @@ def _tree(database: Database, viewer: Viewer, name: str, number: int, max_nodes:
     made = renew_tree(database, name, number, max_nodes, viewer)
     found = improvement(Program.from_bytes(data), Program.from_bytes(unpack(made.packed)))
     return Upgraded(f"tree {name}@{number}", tree.digest, found.before, found.after, found.outcome)
-
-
-def put_tree(
-    connection: Connection,
-    viewer: Viewer,
-    name: str,
-    digest: str,
-    before: str,
-    made: TreeProgram,
-    found: Improvement,
-) -> None:
-    """Write what a job coupled over the program ``before``, in all revisions of this document that have it."""
-    content.put_program(connection, made.digest, made.program, made.nodes)
-    for tree in trees.with_program(connection, name, digest, before):
-        coupled = replace(tree, program=made.digest, dof=made.dof, **made.summary.columns())
-        trees.replace_model(connection, coupled, made.software)
-        figures = {"before": found.before, "after": found.after, "program": made.digest, "was": before}
-        audit.note(connection, viewer, "tree.upgrade", f"{name}@{tree.revision}", **figures)

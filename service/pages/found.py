@@ -9,10 +9,10 @@ from urllib.parse import urlencode
 
 import orjson
 
-from service.messages.addresses import version_path
+from service.messages.addresses import tree_path, version_path
+from service.messages.viewer import PUBLIC
 from service.operations.searches import Page
-from service.pages.html import Html, html, joined, link, tag
-from service.pages.trees import trees_table
+from service.pages.html import Html, html, joined, link, table, tag
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 
@@ -39,6 +39,22 @@ class Found:
         """Of the page with other values."""
         query = {name: value for name, value in {**self.query, **changes}.items() if value}
         return f"/?{urlencode(query)}" if query else "/"
+
+
+def trees_table(trees: Sequence[Tree], part: str = "") -> Html:
+    """Latest revisions, with what is private marked; ``part``: that is to be coupled onto one of them."""
+    chosen = f"/edit?{urlencode({'substructure': part})}" if part else ""
+    rows = [
+        (
+            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}{chosen}"),
+            tree.dof,
+            tree.owner if tree.visibility == PUBLIC else f"{tree.owner}, private",
+            tree.created[:10],
+            link("JSON", tree_path(tree)),
+        )
+        for tree in trees
+    ]
+    return table(("latest revision", "dof", "owner", "created", ""), rows)
 
 
 def results(found: Found) -> Html:

@@ -2,31 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from urllib.parse import urlencode
 
-from service.messages.addresses import tree_path
-from service.messages.viewer import PUBLIC
 from service.operations.searches import Page
-from service.pages.html import Html, link, table, tag
+from service.pages.found import trees_table
+from service.pages.html import Html, link, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
-
-
-def trees_table(trees: Sequence[Tree], part: str = "") -> Html:
-    """Latest revisions, with what is private marked; ``part``: that is to be coupled onto one of them."""
-    chosen = f"/edit?{urlencode({'substructure': part})}" if part else ""
-    rows = [
-        (
-            link(f"{tree.name}@{tree.revision}", f"/trees/{tree.name}@{tree.revision}{chosen}"),
-            tree.dof,
-            tree.owner if tree.visibility == PUBLIC else f"{tree.owner}, private",
-            tree.created[:10],
-            link("JSON", tree_path(tree)),
-        )
-        for tree in trees
-    ]
-    return table(("latest revision", "dof", "owner", "created", ""), rows)
 
 
 def trees_page(page: Page[Tree], q: str, part: str, may_write: bool) -> bytes:

@@ -13,7 +13,8 @@ from mmap import mmap
 from time import monotonic
 from typing import Any
 
-PROCESSES = 256
+from service.settings import PROCESSES
+
 ABSENT = 2**32 - 1
 PATIENCE = 0.005  # seconds for which a connection is left to others
 LATER = 0.02  # seconds after which it must be another one that waits

@@ -33,7 +33,7 @@ def list_audit_entries(
     """A page of acts, the latest first: submissions, aliases, withdrawals, trees, jobs, keys, sessions."""
     given = {"owner": owner, "key": key, "action": action, "subject": subject}
     wanted = {name: value for name, value in given.items() if value is not None}
-    size, search = limited(page_size, store.settings.limits), ("audit", sorted(wanted.items()))
+    size, search = limited(page_size, store.settings.limits.page_size), ("audit", sorted(wanted.items()))
     before = read_token(search, page_token, int)
     with store.database.read() as connection:
         found = audit.page(connection, wanted, before[0] if before else None, size + 1)

@@ -46,7 +46,7 @@ def get_bundle(
         """Read and pack them."""
         with store.database.read() as connection:
             parts = (bundles.bundled(connection, version) for version in versions)
-            data = write_bundle(parts, store.settings.limits)
+            data = write_bundle(parts, store.settings.limits.binary_bytes)
         name = f"{versions[0].name}.zip" if len(versions) == 1 else "bundle.zip"
         return Answer(200, data, {"Content-Type": MEDIA_TYPE, "Content-Disposition": f'attachment; filename="{name}"'})
 
@@ -74,7 +74,8 @@ def import_bundle(
     def prepare() -> Commit:
         """Derive every part from its definition."""
         with act.spool.reader() as file:
-            parts = read_bundle(file, store.settings.limits)
+            limits = store.settings.limits
+            parts = read_bundle(file, limits.binary_bytes, limits.job_bytes)
         ready = []
         for part in parts:
             act.require_time()

@@ -18,7 +18,7 @@ from service.messages.addresses import tree_path, version_path
 from service.messages.answers import Answer, json_answer
 from service.messages.refusals import Refused
 from service.operations import catalogue, imports
-from service.operations.imports import IMPORTED
+from service.operations.sharing.provenance import IMPORTED
 from service.routes.bodies import APIRouter, binary
 from service.routes.deferred import ACCEPTED, deferred
 from service.schemas.entries import VISIBILITY, PartEntry, Visibility

@@ -95,7 +95,7 @@ def list_substructures(
 ) -> Response:
     """A page of the latest versions. Words that are nowhere are taken for the most similar ones, told in `instead`."""
     chosen = CatalogueSearch(words_of(q), **narrow, tags=tuple(tag), ports=tuple(port), source=words_of(source))
-    wanted, size = searches.checked(chosen), limited(page_size, store.settings.limits)
+    wanted, size = searches.checked(chosen), limited(page_size, store.settings.limits.page_size)
     with store.database.read() as connection:
         page = searches.parts(connection, viewer, wanted, size, page_token, store.caches.facets if facets else None)
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.items))

@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Annotated
 
 from fastapi import Header, Query, Request, Response
 
 from service.database.connections import Connection
-from service.http.acting import Act, ActOf, Commit, timed
+from service.http.acting import ActOf, timed
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
-from service.messages.addresses import tree_path
 from service.messages.answers import Answer, json_answer
 from service.messages.paging import limited
 from service.messages.refusals import unprocessable
-from service.operations import modules, searches, trees
-from service.operations.jobs.job_results import BASE_REVISION, IS_EXACT
+from service.operations import searches, trees
 from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
 from service.routes.bodies import APIRouter, body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf
+from service.routes.revisions import changed, revision, shown_soon
 from service.schemas.entries import Entry
 from service.schemas.resources import TreePage, TreeView
 from service.views.resources import dump, tree_page_view, tree_view
@@ -29,45 +27,6 @@ from service.views.resources import dump, tree_page_view, tree_view
 router = APIRouter(prefix="/v1/trees", tags=["trees"])
 READ, WRITE = [needs("read")], [needs("write")]
 IfMatch = Annotated[str | None, Header(description="ETag of the tree that is to be changed")]
-
-
-def revision(act: Act, prepare: Callable[[], trees.Revision]) -> Callable[[], Commit]:
-    """What ``Act`` runs: prepare a revision, then store it and answer it."""
-
-    def prepared() -> Commit:
-        """Couple."""
-        ready = prepare()
-
-        def commit(connection: Connection) -> Answer:
-            """Store the revision and answer it."""
-            tree, is_new = trees.commit(connection, act.viewer, ready)
-            view = tree_view(tree, trees.withdrawn(connection, act.viewer, tree))
-            return json_answer(view, 201 if is_new else 200, {"Location": tree_path(tree)})
-
-        return commit
-
-    return prepared
-
-
-def changed(act: Act, change: Callable[[], trees.TreeChange]) -> Response:
-    """Store a changed tree, at once or by a job."""
-
-    def later() -> Commit:
-        """The job that stores the same change."""
-        found = change()
-        members = {BASE_REVISION: found.base.revision, IS_EXACT: found.is_exact}
-        return deferred(act, "assemble", found.document, found.step, members)()
-
-    prepared = revision(act, lambda: trees.prepare_change(act.store, act.viewer, act.worker, change()))
-    return shown_soon(act, act.run(prepared, later))
-
-
-def shown_soon(act: Act, answer: Response) -> Response:
-    """The answer. Where a page has asked, it shows the tree now, and finds what it computes with."""
-    ref = answer.headers.get("location", "").rpartition("/")[2]
-    if answer.status_code == 201:
-        act.afterwards(lambda worker: modules.program(modules.of_tree(act.store, act.viewer, ref), worker, ()))
-    return answer
 
 
 @router.post(
@@ -103,7 +62,7 @@ def list_trees(
         detail = f"'uses' is the name of a part alone; {where}"
         raise unprocessable("bare-name-expected", detail, "/query/uses")
     wanted = searches.checked(TreeSearch(words_of(q), **narrow, uses=uses))
-    size = limited(page_size, store.settings.limits)
+    size = limited(page_size, store.settings.limits.page_size)
     with store.database.read() as connection:
         page = searches.trees(connection, viewer, wanted, size, page_token)
     link = next_link(request, page.next_token)

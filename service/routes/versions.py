@@ -36,7 +36,7 @@ def list_substructure_versions(
     name: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """All versions of a part, the newest first: who made them, when, of what and why; those that are withdrawn, too."""
-    size, search = limited(page_size, store.settings.limits), ("versions", name)
+    size, search = limited(page_size, store.settings.limits.page_size), ("versions", name)
     before = read_token(search, page_token, int)
     with store.database.read() as connection:
         owners.seen(connection, viewer, "substructure", name)
@@ -50,7 +50,7 @@ def list_tree_revisions(
     name: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """All revisions of a tree, the newest first: who made them, when, of which one and why."""
-    size, search = limited(page_size, store.settings.limits), ("revisions", name)
+    size, search = limited(page_size, store.settings.limits.page_size), ("revisions", name)
     before = read_token(search, page_token, int)
     with store.database.read() as connection:
         owners.seen(connection, viewer, "tree", name)
@@ -64,7 +64,7 @@ def list_substructure_uses(
     ref: str, request: Request, store: StoreOf, viewer: ViewerOf, page_size: PageSize = 50, page_token: Token = None
 ) -> Response:
     """Trees with the part, parts that such trees became, parts made from it; of all versions for a bare name."""
-    size, search = limited(page_size, store.settings.limits), ("uses", ref)
+    size, search = limited(page_size, store.settings.limits.page_size), ("uses", ref)
     position = read_token(search, page_token, str, str, int)
     after: uses.Position | None = None if position is None else (position[0], position[1], position[2])
     with store.database.read() as connection:

@@ -17,8 +17,8 @@ from substructures.documents import message_of, pointer_step, require_object
 from substructures.errors import Fault, InvalidDocument, InvalidInput, meant
 from substructures.quantities import derivative_directions
 from substructures.quantities.measured import si_values
-from substructures.quantities.numbers.evaluation import read_quantities
 from substructures.quantities.numbers.states import argument_units
+from substructures.quantities.sources import read_quantities
 from substructures.tree.model import Model
 
 Column = float | list[float]

@@ -20,10 +20,10 @@ from substructures.certificate.bodies import (
 from substructures.certificate.by_coordinate import along, of_coordinates
 from substructures.certificate.dynamics import Carried, carried_by_joints, halved, kappa
 from substructures.certificate.linear import Ball, Matrix, dot, identity, side_by_side, skew, zeros
-from substructures.certificate.loads import forces
+from substructures.certificate.loads.part_loads import forces
+from substructures.certificate.loads.potentials import gradient_instead, is_found, ways_of
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs, Values, images_of
-from substructures.certificate.potentials import gradient_instead, is_found, ways_of
 from substructures.certificate.relations import Related, is_ball, mover, positions_of, written
 from substructures.certificate.slopes import at_start, without
 from substructures.expr.operations import Output

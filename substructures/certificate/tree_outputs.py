@@ -38,14 +38,15 @@ from substructures.certificate.given.reduced import (
 )
 from substructures.certificate.joint_rows import friction, friction_load, limits
 from substructures.certificate.linear import Ball, Matrix, dot, identity, roll_pitch_yaw, zeros
-from substructures.certificate.loads import Forces, forces
+from substructures.certificate.loads.forces import Forces
+from substructures.certificate.loads.part_loads import forces
+from substructures.certificate.loads.potentials import UNKNOWN, gradient_instead, integrated, is_found, ways_of
+from substructures.certificate.loads.tree_loads import TreeForces
 from substructures.certificate.numbers import Bindings, Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.part_outputs import equations, frame_columns
-from substructures.certificate.potentials import UNKNOWN, gradient_instead, integrated, is_found, ways_of
 from substructures.certificate.relations import Related, is_ball, mover, positions_of, written
 from substructures.certificate.slopes import at_start, without
-from substructures.certificate.tree_loads import TreeForces
 from substructures.expr.operations import Output
 
 

@@ -184,3 +184,11 @@ def _powers(dimension: Dimension, radians: int) -> Iterator[str]:
     for name, n in zip((*BASE, "rad"), (*dimension, radians), strict=True):
         if n:
             yield name if n == 1 else f"{name}^{n}" if n == int(n) else f"{name}^({n})"
+
+
+def si_unit(unit: str) -> str:
+    """The SI unit of what was given in a unit; a text of old that is no unit stays as it is."""
+    try:
+        return read_unit(unit).si if unit else unit
+    except UnknownUnitError:
+        return unit

@@ -17,8 +17,10 @@ from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
-from substructures.quantities.numbers.evaluation import Evaluation, EvaluationOptions, Sources, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.quantity import TABLE
+from substructures.quantities.sources import Sources
 
 INTEGRANDS = "integrands"  # output of a program
 FORWARD = "forward_dynamics"  #: the accelerations of a motion

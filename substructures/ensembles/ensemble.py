@@ -27,8 +27,8 @@ from substructures.ensembles.motion_column import MotionColumn
 from substructures.ensembles.one_by_one import OneByOne
 from substructures.ensembles.result import TOLD, Ensemble, Failure
 from substructures.errors import InvalidArgument
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.numbers.states import StateInput
+from substructures.quantities.sources import Sources
 from substructures.tree.model import Model
 
 METHODS = ("DOP853", "RK45", "RK23")

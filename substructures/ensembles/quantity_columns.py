@@ -11,7 +11,7 @@ from pydantic import Field
 from substructures.array import Array
 from substructures.documents import DocumentPart
 from substructures.errors import InvalidArgument, InvalidDocument, among, meant
-from substructures.quantities.numbers.evaluation import Evaluation
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
 from substructures.quantities.sources import require_there
 from substructures.tree.model import Model

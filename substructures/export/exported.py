@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.errors import InvalidArgument, among
 from substructures.export.contacts import ContactLaw
 from substructures.export.interface import ORDER, PREPARE, WORK, Interface, Vector, has_time, signature
@@ -21,10 +22,9 @@ from substructures.part.part import INTERNAL, Part
 from substructures.printers.meanings import LETTERS, Label, meanings
 from substructures.printers.meanings import OUTPUTS as LETTERS_OF_OUTPUTS
 from substructures.printers.symmetry import symmetry_rule
-from substructures.quantities.numbers.warnings import not_judged_warnings
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
-from substructures.tree.model_outputs import require_stored
+from substructures.tree.model import require_stored
 
 ALL = "all"
 #: operations of a program that names are looked for in

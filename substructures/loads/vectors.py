@@ -1,5 +1,5 @@
-"""Forces and torques: on a body of a part (with the host, too: kept as wrenches, :mod:`substructures.part.wrenches`),
-or between two frames A (``from``) and B (``to``).
+"""Forces and torques: on a body of a part (with the host, too: kept as wrenches, see
+:mod:`substructures.part.forces.wrenches`), or between two frames A (``from``) and B (``to``).
 
 A force F: Q_a = F . (u_Ba - u_Aa) at the place of the point of B, and V = -F . x where it is constant in the world and
 from there. A torque M: Q_a = M . (Omega_Ba - Omega_Aa).

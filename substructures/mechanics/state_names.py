@@ -1,4 +1,4 @@
-"""What the numbers of states are called, and their units: of ball joints positions are others than rates."""
+"""What the numbers of states and of inertias are called, and their units: positions of ball joints are no rates."""
 
 from __future__ import annotations
 
@@ -8,6 +8,8 @@ from substructures.mechanics.balls import BallJoint
 
 #: SI units of revolute and of prismatic coordinates, by the field of states
 _UNITS = {"q": ("rad", "m"), "qd": ("rad/s", "m/s"), "qdd": ("rad/s^2", "m/s^2")}
+#: SI units of inertial parameters
+_INERTIAL = {"m": "kg", "s": "kg m", "J": "kg m^2"}
 #: SI units of actuators by the kind of joint
 EFFORTS = {"R": "N m", "P": "N"}
 #: of a ball joint: ``positions``, place (x, y, z) of a floating one and quaternion (w, x, y, z), and ``velocities``
@@ -45,3 +47,9 @@ def state_units(coordinates: Sequence[str], joints: str, balls: Sequence[BallRow
     for ball in balls:
         known |= dict.fromkeys(ball["positions"], "") | dict.fromkeys(ball["positions"][:-4], "m")
     return found | {"q": {name: known[name] for name in positions_of(coordinates, balls)}}
+
+
+def inertia_names(body: str) -> list[tuple[str, str]]:
+    """(symbol, unit): m, s and J of a body, in the order m, sx, sy, sz, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz."""
+    names = ["m", *(f"s{x}" for x in "xyz"), *(f"J{e}" for e in ("xx", "yy", "zz", "xy", "xz", "yz"))]
+    return [(f"{body}.{n}", _INERTIAL[n[0]]) for n in names]

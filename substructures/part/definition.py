@@ -1,7 +1,7 @@
 """The JSON form of a substructure definition (the HTTP contract, section 1), checked for structure only.
 
 Meaning is checked when formulas are derived: names and expressions by :mod:`substructures.part.topology`,
-:mod:`substructures.part.applied_forces`, physics by :mod:`substructures.part.physics`.
+:mod:`substructures.part.forces.applied_forces`, physics by :mod:`substructures.part.physics`.
 """
 
 from __future__ import annotations
@@ -13,18 +13,9 @@ from pydantic import ConfigDict, Field, ValidationInfo, field_validator, model_v
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import Document, DocumentPart
-from substructures.documents.fields import (
-    LibraryName,
-    Name,
-    Number,
-    NumberVector,
-    Quantity,
-    TagName,
-    Words,
-    unit_of,
-)
+from substructures.documents.fields import LibraryName, Name, Number, NumberVector, Quantity, TagName, Words, unit_of
 from substructures.documents.tables import with_points
-from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.documents.units import UnknownUnitError, read_unit, si_unit
 from substructures.errors import InvalidDocument
 from substructures.loads.friction import FrictionLaw
 from substructures.loads.kinds import LoadOfPart
@@ -60,6 +51,11 @@ class Parameter(Measured):
     @classmethod
     def _with_given_unit(cls, data: Any, info: ValidationInfo) -> Any:
         return data if is_stored(info) else _in_its_unit(data, "value")
+
+    @property
+    def si_unit(self) -> str:
+        """The unit of its symbol."""
+        return si_unit(self.unit) if self.value is None else self.unit
 
 
 def _in_its_unit(data: Any, field: str) -> Any:

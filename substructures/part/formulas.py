@@ -55,6 +55,7 @@ from substructures.mechanics.kinematics import (
     Columns,
     Link,
     base_functions,
+    carrier_link,
     columns_beyond,
     links,
 )
@@ -69,17 +70,18 @@ from substructures.mechanics.linear3 import (
     cross,
     multiply,
     skew,
+    sub,
     subtract,
     transpose,
 )
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes, absolute
-from substructures.part.applied_forces import Loads, applied_forces
+from substructures.part.forces.applied_forces import Loads, applied_forces
+from substructures.part.forces.wrenches import AppliedWrench
 from substructures.part.frames import joined_turns
 from substructures.part.inertia_symbols import inertia_symbols
-from substructures.part.kinematics import Kinematics, frame_link, kinematics
+from substructures.part.kinematics import Kinematics, frame_link, kinematics, point_kinematics
 from substructures.part.mechanism import Mechanism
 from substructures.part.relations import MULTIPLIER, OFFSET, of_coordinates, of_rates
-from substructures.part.wrenches import wrench_point
 
 
 @dataclass(frozen=True)
@@ -101,7 +103,7 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     Metric and Christoffel symbols come first: of several equal formulas the graph keeps the one it met first.
     """
     if coupled is None:
-        chain, bodies = links(m.joints), inertia_symbols(m)
+        chain, bodies = links(m.joints), inertia_symbols(m.scope, m.topology)
         axes, parallel = parallel_axes(chain, bodies), absolute(chain)
         g = axes.metric(parallel)
         columns = base_functions(chain)
@@ -125,7 +127,7 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     outputs["applied"] = array((len(forces),), lambda c: forces[c])
     outputs["potential"] = array((), lambda: potential)
     outputs |= _frame_outputs(m, k)
-    places = [wrench_point(k, wrench) for wrench in loads.wrenches]
+    places = [_wrench_point(k, wrench) for wrench in loads.wrenches]
     outputs["load.at"] = array((len(places), 3), lambda i, x: places[i][x])
     outputs["load.vector"] = array((len(places), 3), lambda i, x: loads.wrenches[i].vector[x])
     if m.ratios.is_identity:
@@ -134,6 +136,15 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     outputs[MULTIPLIER] = array((n,), lambda a: m.ratios.multipliers[a])
     outputs[OFFSET] = array((n,), lambda a: m.offsets[a])
     return of_coordinates(of_rates(outputs, m.topology.balls), m.ratios)
+
+
+def _wrench_point(k: Kinematics, wrench: AppliedWrench) -> Vector:
+    """``at`` in the body frame of the carrier."""
+    if wrench.point_of is None:
+        return wrench.at
+    # R_k (x - r_k) - tau e3
+    pose, tau = k.pose(wrench.carrier), carrier_link(k.links, wrench.carrier).tau
+    return sub(apply(pose.R, sub(point_kinematics(k, wrench.point_of, wrench.at).position, pose.r)), (0, 0, tau))
 
 
 def _joint_outputs(m: Mechanism, k: Kinematics) -> dict[str, Formulas]:

@@ -3,29 +3,23 @@
 from __future__ import annotations
 
 from substructures.expr.operations import Symbol
+from substructures.loads.scope import Scope
 from substructures.mechanics.composite_form import Inertia
-from substructures.part.mechanism import Mechanism
+from substructures.mechanics.state_names import inertia_names
+from substructures.part.topology import Topology
 
-UNITS = {"m": "kg", "s": "kg m", "J": "kg m^2"}
 
-
-def inertia_symbols(m: Mechanism) -> tuple[Inertia, ...]:
+def inertia_symbols(scope: Scope, topology: Topology) -> tuple[Inertia, ...]:
     """Ten symbols for every carrier of a named body; nothing for the massless bodies inside compound joints."""
-    graph, name = m.graph, m.topology.body_of
+    graph, name = scope.graph, topology.body_of
     result = []
-    for k in range(len(m.joints)):
+    for k in range(len(topology.joints)):
         # a link inside a compound joint has neither mass nor moments
         if k not in name:
             result.append(Inertia(graph.zero, (graph.zero,) * 3, (graph.zero,) * 6))
             continue
         for symbol, unit in inertia_names(name[k]):
-            m.scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
+            scope.symbols[symbol] = Symbol(symbol, "inertia", unit)
         mass, sx, sy, sz, xx, yy, zz, xy, xz, yz = (graph.symbol(symbol) for symbol, _ in inertia_names(name[k]))
         result.append(Inertia(mass, (sx, sy, sz), (xx, yy, zz, xy, xz, yz)))
     return tuple(result)
-
-
-def inertia_names(body: str) -> list[tuple[str, str]]:
-    """(symbol, unit): m, s and J of a body, in the order m, sx, sy, sz, Jxx, Jyy, Jzz, Jxy, Jxz, Jyz."""
-    names = ["m", *(f"s{x}" for x in "xyz"), *(f"J{e}" for e in ("xx", "yy", "zz", "xy", "xz", "yz"))]
-    return [(f"{body}.{n}", UNITS[n[0]]) for n in names]

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any
 
-from substructures.documents.fields import in_si
+from substructures.documents.units import si_unit
 from substructures.errors import among
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.trigonometry import cos_sin
-from substructures.loads.friction import Friction, FrictionLaw, FrictionLoad, read_friction
+from substructures.loads.friction import FrictionLoad
 from substructures.loads.scope import Lookup, Scope, no_names
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.composite_form import Inertia, binet
@@ -30,44 +29,14 @@ from substructures.mechanics.linear3 import (
 )
 from substructures.mechanics.ratios import Ratios
 from substructures.part.balls import quaternion_turn
-from substructures.part.definition import BearingFriction, Body, Definition, JointFriction
+from substructures.part.definition import Body, Definition
+from substructures.part.forces.joint_laws import JointLaw, JointLaws
+from substructures.part.forces.load_names import load_names
 from substructures.part.frames import AXES, Frame, axis_rotation
-from substructures.part.load_names import load_names
-from substructures.part.parameters import si_unit
 from substructures.part.relations import read_relations
 from substructures.part.topology import BASE, JointEntry, Topology, topology
 
 UNITS = ("rad", "m")  #: of a revolute and of a prismatic coordinate
-
-
-@dataclass(frozen=True)
-class Stops:
-    """End stops of a coordinate: -(k + c p') p against the depth p beyond ``low`` or ``high`` [rad or m].
-
-    ``stiffness``: k [N m/rad or N/m]; ``damping``: c [N m s/rad^2 or N s/m^2]; expressions in parameters.
-    """
-
-    low: Expr
-    high: Expr
-    stiffness: Expr
-    damping: Expr
-
-
-@dataclass(frozen=True)
-class JointLaw:
-    """Q_a = -k (q - rest) - c q', less stops and friction, of a joint, and its rotor in g_aa; expressions.
-
-    ``stiffness``: k [N m/rad or N/m]; ``rest`` [rad or m]; ``damping``: c [N m s/rad or N s/m]; ``armature`` [kg m^2 or
-    kg]; ``given``: stiffness and rest as written.
-    """
-
-    stiffness: Expr
-    rest: Expr
-    damping: Expr
-    armature: Expr
-    given: tuple[Any, Any]
-    stops: Stops | None = None
-    friction: Friction | None = None
 
 
 @dataclass(frozen=True)
@@ -156,15 +125,6 @@ def _coordinate(joint: JointEntry) -> Symbol:
     return Symbol(joint.coordinate, "coordinate", UNITS[joint.s])
 
 
-def friction_of(definition: Definition, entry: JointEntry) -> FrictionLaw | None:
-    """The friction of a coordinate as it is given, by its joint or by a load."""
-    given = definition.bodies[entry.body].joint.friction
-    if isinstance(given, tuple):
-        given = given[entry.step]
-    loads = (x for x in definition.loads if isinstance(x, FrictionLoad) and x.coordinate == entry.coordinate)
-    return given or next(loads, None)
-
-
 class _Builder:
     """Adds bodies one by one, parents first."""
 
@@ -192,6 +152,7 @@ class _Builder:
         self.positions: list[Expr] = []
         rates = frozenset(entry.coordinate for entry in layout.joints if entry.is_rate)
         self.names = load_names(scope, inputs, kinds, moved, rates)
+        self.joint_laws = JointLaws(definition, self.entries, scope, self.names)
 
     def add(self, i: int, body: Body) -> None:
         """Place the joint(s) of a body, then give its inertia to the carrier."""
@@ -264,7 +225,7 @@ class _Builder:
         rotation = joint_rotation(constant, *cos_sin(phi))
         self.joints.append(OneDofJoint(frame.carrier, entry.s, rotation, frame.position, tau))
         self.own[len(self.joints) - 1] = Inertia()
-        self.laws.append(self._law(entry, body, self._limits(entry, body, pointer), pointer))
+        self.laws.append(self.joint_laws.law(entry, body, pointer))
         # the body is described in the placed frame: back from the axes in which its joint axis is e3
         return Frame(len(self.joints) - 1, transpose(turned), ZERO)
 
@@ -276,84 +237,6 @@ class _Builder:
                 message = f"{name} does not go with a {body.joint.type} joint"
                 self.scope.fault(f"{pointer}/{name}", "offset-of-compound", message)
         return phi, tau
-
-    def _law(self, entry: JointEntry, body: Body, limits: tuple[Expr, Expr] | None, pointer: str) -> JointLaw:
-        values, givens = {}, {}
-        for name in ("stiffness", "rest", "damping", "armature"):
-            given, place = self._of_step(entry, getattr(body.joint, name), f"{pointer}/{name}", "number", 0)
-            givens[name] = in_si(given)
-            # a spring or damper may depend on the state, as a load; a rotor is a constant
-            values[name] = self.scope.read(given, place, None if name == "armature" else self.names)
-        given = givens["stiffness"], givens["rest"]
-        stops, friction = self._stops(entry, body, limits, pointer), self._friction(entry, body, pointer)
-        return JointLaw(**values, given=given, stops=stops, friction=friction)
-
-    def _of_step(self, entry: JointEntry, given: Any, place: str, what: str, rest: Any) -> tuple[Any, str]:
-        """What is given for one coordinate of a joint, for all of them or in a list, with its place."""
-        if not isinstance(given, tuple):
-            return given, place
-        if len(given) != len(self.entries[entry.body]):
-            self.scope.fault(place, "wrong-length", f"one {what} for each of the joint's coordinates expected")
-            return rest, place
-        return given[entry.step], f"{place}/{entry.step}"
-
-    def _limits(self, entry: JointEntry, body: Body, pointer: str) -> tuple[Expr, Expr] | None:
-        """Lowest and highest value of a coordinate."""
-        given, place = body.joint.limits, f"{pointer}/limits"
-        if given and isinstance(given[0], tuple):
-            if entry.step >= len(given):
-                self.scope.fault(
-                    place, "wrong-length", "one pair of limits for each of the joint's coordinates expected"
-                )
-                return None
-            given, place = given[entry.step], f"{place}/{entry.step}"
-        read = [self.scope.read(value, f"{place}/{i}") for i, value in enumerate(given or ())]
-        return (read[0], read[1]) if read else None
-
-    def _stops(self, entry: JointEntry, body: Body, limits: tuple[Expr, Expr] | None, pointer: str) -> Stops | None:
-        """The end stops of a coordinate, where they are asked for."""
-        place = f"{pointer}/limits_act"
-        given, place = self._of_step(entry, body.joint.limits_act, place, "stop", None)
-        if given is None:
-            return None
-        if limits is None:
-            self.scope.fault(
-                place, "stops-without-limits", "'limits_act' goes with 'limits': where do the stops begin?"
-            )
-            return None
-        return Stops(*limits, *(self.scope.read(getattr(given, x), f"{place}/{x}") for x in ("stiffness", "damping")))
-
-    def _friction(self, entry: JointEntry, body: Body, pointer: str) -> Friction | None:
-        """The dry friction of a coordinate, if it has some."""
-        given, place = self._of_step(entry, body.joint.friction, f"{pointer}/friction", "friction", None)
-        for i, load in enumerate(self.definition.loads):
-            if isinstance(load, FrictionLoad) and load.coordinate == entry.coordinate:
-                if given is not None:
-                    message = f"'{entry.coordinate}' has friction already, at {place}: a coordinate has one law of it"
-                    self.scope.fault(f"/loads/{i}/coordinate", "several-frictions", message)
-                given, place = load, f"/loads/{i}"
-        if isinstance(given, JointFriction) and given.load is not None:
-            self._bearing(entry, given.load, f"{place}/load")
-        return None if given is None else read_friction(self.scope, given, place)
-
-    def _bearing(self, entry: JointEntry, given: BearingFriction, place: str) -> None:
-        """Check what reactions add to friction: simulations take it, formulas do without."""
-        if entry.coordinate in (each.coordinate for each in self.definition.relations):
-            message = f"'{entry.coordinate}' moves with another joint: friction by its load is not known here"
-            self.scope.fault(place, "bad-friction", message)
-        needed = ("radius",) if not entry.s else ()
-        for name in ("coefficient", "radius", "axial_radius"):
-            value = getattr(given, name)
-            if value is None:
-                if name in needed:
-                    self.scope.fault(f"{place}/{name}", "missing", "the friction of a revolute joint has a 'radius'")
-            elif entry.s and name != "coefficient":
-                message = f"a prismatic joint has no '{name}': its friction is mu |R beside its axis|"
-                self.scope.fault(f"{place}/{name}", "bad-friction", message)
-            else:
-                x = self.scope.read(value, f"{place}/{name}")
-                if x.is_number and x.negative and not self.scope.faults:
-                    self.scope.fault(f"{place}/{name}", "bad-friction", f"{name} of friction is not negative")
 
     def _inertia(self, frame: Frame, i: int, body: Body, pointer: str) -> None:
         scope, tensor = self.scope, body.inertia

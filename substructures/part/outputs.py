@@ -8,14 +8,28 @@ from dataclasses import dataclass
 from substructures.certificate.compare import compare
 from substructures.certificate.rebuilt import own_outputs
 from substructures.certificate.states import states_between
+from substructures.certificate.written import defaults_of, plain
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
 from substructures.mechanics.composite_form import Inertia
-from substructures.mechanics.kinematics import INTERFACE
-from substructures.mechanics.linear3 import Matrix, Planar, Rotation, Scalar, Turn, Vector, packed
-from substructures.part.certificate import defaults_of, plain
+from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation
+from substructures.mechanics.linear3 import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Planar,
+    Rotation,
+    Scalar,
+    Turn,
+    Vector,
+    add,
+    apply,
+    multiply,
+    packed,
+    transpose,
+)
 from substructures.part.part import Part
 
 #: outputs with the own inertia of all carriers
@@ -68,6 +82,23 @@ class PartOutputs:
             if (c, 0) in self.formulas[name].entries or (c, 1) in self.formulas[name].entries:
                 factors.append(Planar(axis, cosine, sine))
         return Rotation(tuple(factors))
+
+
+def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
+    """The links of a part's joints, from its stored formulas."""
+    return tuple(
+        Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
+        for c, j in enumerate(part.topology.joints)
+    )
+
+
+def frame_placement(
+    outputs: PartOutputs, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO
+) -> tuple[Rotation, Vector]:
+    """Of what is placed in a frame of a part: rotation from the body frame of the carrier, and origin there."""
+    # E E_f and r_f + E_f^T r
+    E_f, r_f = outputs.matrix("frame.E", frame), outputs.vector("frame.position", frame)
+    return constant_rotation(multiply(E, E_f)), add(r_f, apply(transpose(E_f), position))
 
 
 #: runs the stored program of a part: the named outputs for values of its symbols, over the scalars of these values

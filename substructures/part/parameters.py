@@ -7,18 +7,10 @@ from contextlib import suppress
 from typing import Any
 
 from substructures.documents.fields import Quantity, in_si
-from substructures.documents.units import UnknownUnitError, read_unit
+from substructures.documents.units import UnknownUnitError, read_unit, si_unit
 from substructures.expr.units.unit_check import Notice, steps_of
 from substructures.loads.friction import FrictionLaw, FrictionLoad
 from substructures.part.definition import BearingFriction, Definition, Input, Parameter
-
-
-def si_unit(unit: str) -> str:
-    """The SI unit of what was given in a unit; a text of old that is no unit stays as it is."""
-    try:
-        return read_unit(unit).si if unit else unit
-    except UnknownUnitError:
-        return unit
 
 
 def described(parameters: Mapping[str, Parameter]) -> dict[str, dict[str, Any]]:
@@ -31,8 +23,7 @@ def _described(parameter: Parameter) -> dict[str, Any]:
     plain = {"value": in_si(value), "unit": unit, "description": parameter.description}
     if isinstance(value, Quantity):
         return plain if value.measure.is_si else plain | {"given": value.model_dump()}
-    written = si_unit(unit) if value is None else unit
-    return plain if written == unit else plain | {"unit": written, "given": {"unit": unit}}
+    return plain if parameter.si_unit == unit else plain | {"unit": parameter.si_unit, "given": {"unit": unit}}
 
 
 def described_inputs(inputs: Mapping[str, Input]) -> dict[str, dict[str, Any]]:

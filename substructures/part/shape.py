@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from substructures.part.definition import Definition
-from substructures.part.parameters import described
 
 #: members of a definition that are words, or the name of the whole
 WORDS = (
@@ -30,7 +29,7 @@ def shape_of(definition: Definition) -> dict[str, Any]:
     Numbers that stand in bodies, joints and loads stay: formulas are made of them.
     """
     left = {name: x for name, x in definition.plain().items() if name not in WORDS}
-    units = {name: x["unit"] for name, x in described(definition.parameters).items()}
+    units = {name: parameter.si_unit for name, parameter in definition.parameters.items()}
     return without_descriptions(left) | {"parameters": units}
 
 

@@ -20,18 +20,12 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol
 from substructures.quantities.derivatives import factors_of
-from substructures.quantities.numbers.workspace import Workspace, vector
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import require_stored
+from substructures.quantities.numbers.workspace import Workspace, momentum, vector
+from substructures.tree.model import Model, require_stored
 
 MOMENTA = ("hamiltonian", "canonical_equations")
 PIVOTS = "pivots"
 UNITS = {"R": "kg m^2/s", "P": "kg m/s"}
-
-
-def momentum(coordinate: str) -> str:
-    """The symbol of p_a."""
-    return f"p.{coordinate}"
 
 
 def inverse_metric(model: Model, max_nodes: int) -> Program:

@@ -22,7 +22,8 @@ from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, cross, exactly, scale, sub, transpose
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.quantities.of_parts import OfParts, formed
+from substructures.quantities.of_parts import formed
+from substructures.quantities.part_models import OfParts
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import OWN, Coupled, couple_parts
 from substructures.tree.document import TreeSpec

@@ -24,7 +24,7 @@ from substructures.expr.replay import replay
 from substructures.mechanics.factorisation import Factors, factor_operations, factorised
 from substructures.part.part import MAX_NODES
 from substructures.quantities.numbers.workspace import ID, Workspace, vector
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 

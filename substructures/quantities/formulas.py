@@ -9,13 +9,11 @@ from substructures.expr.hoist import hoisted
 from substructures.expr.program import Entries, Formulas, Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES
-from substructures.quantities.canonical import momentum
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.memo import ProgramCache
-from substructures.quantities.numbers.workspace import ID, Workspace, vector
+from substructures.quantities.numbers.workspace import ID, Workspace, momentum, vector
 from substructures.quantities.quantity import DERIVED, PROGRAMS
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import require_stored
+from substructures.tree.model import Model, require_stored
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
 DYNAMICS = ("metric", "bias", "forces")

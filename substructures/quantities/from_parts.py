@@ -30,8 +30,8 @@ from substructures.quantities.numbers.states import default_number
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import asked, couple_parts
 from substructures.tree.document import TreeSpec, require_full, require_ungiven
-from substructures.tree.load_potentials import found_potential, has_steady_loads, placed_parts
-from substructures.tree.loads import load_formulas
+from substructures.tree.forces.load_potentials import found_potential, has_steady_loads, placed_parts
+from substructures.tree.forces.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.mounted_part import MountedPart, balls_in
 

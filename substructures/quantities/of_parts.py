@@ -3,18 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from typing import Any
 
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, Program, program
-from substructures.part.outputs import over_formulas
+from substructures.mechanics.linear3 import Scalar
+from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.quantities.quantity import COORDINATES, OUTPUTS
 from substructures.tree.assembly import Assembly, assemble, division_by_zero
 from substructures.tree.certificate import RowsExpected, certify_rows
 from substructures.tree.couple import loaded_outputs
-from substructures.tree.coupling import couple_parts
+from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec, require_unignored
 from substructures.tree.given.driven import all_coordinates, put_in
 from substructures.tree.given.ignored import at_momenta
@@ -23,21 +23,11 @@ from substructures.tree.given.ignored import at_momenta
 REDUCED, OF_EQUATIONS = ("reactions", "powers"), frozenset(("metric", "bias", "forces", "potential_energy", "friction"))
 #: outputs, and the names of their rows
 Rows = tuple[Mapping[str, Formulas], Sequence[str]]
-
-
-@dataclass(frozen=True)
-class OfParts:
-    """Formulas with their rows along ``axis``; ``parameters``: those of the tree, by name."""
-
-    program: Program
-    rows: tuple[str, ...]
-    parameters: Mapping[str, Mapping[str, Any]] = field(hash=False)
-    axis: ClassVar[str] = ""
-
-    @property
-    def labels(self) -> Mapping[str, Any]:
-        """Names of places by axis."""
-        return {self.axis: self.rows} if self.axis else {}
+#: outputs that do not take part in kinematics; emptied before coupling
+DYNAMIC = (
+    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
+    *("subtree.m", "subtree.s", "subtree.J", "load.at", "load.vector", *OWN),
+)
 
 
 def _at_momenta(assembly: Assembly, outputs: Mapping[str, Formulas]) -> Mapping[str, Formulas]:
@@ -82,3 +72,14 @@ def formed(
     level = [instance.name for instance in assembly.instances if instance.name in assembly.reduced]
     result = certify_rows(what, spec, definitions, result, rows, expected, multipliers, level)
     return result, tuple(rows), assembly.parameters
+
+
+def bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
+    """Parts without these outputs: without masses and loads coupling gives the kinematics, the rest is zero at once."""
+
+    def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
+        """Outputs of a part, those of its masses empty."""
+        found = run(part, bindings, [name for name in names if name not in left_out])
+        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in left_out}})
+
+    return massless

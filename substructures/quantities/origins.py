@@ -12,9 +12,10 @@ from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.definition import Body
 from substructures.part.part import Part
 from substructures.part.topology import BASE
-from substructures.tree.assembly import assemble, joint_parents, tree_name
+from substructures.tree.assembly import assemble, joint_parents
 from substructures.tree.document import TreeSpec
 from substructures.tree.given.driven import every_coordinate
+from substructures.tree.reading import tree_name
 
 
 @dataclass(frozen=True)

@@ -15,15 +15,16 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Formulas, array
 from substructures.expr.replay import replay
 from substructures.loads.pairs import wrench_forces
-from substructures.part.load_forces import load_forces, wrench_counts
+from substructures.part.forces.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.quantities.of_parts import OfParts, formed
-from substructures.tree.applied_wrenches import part_symbols
+from substructures.quantities.of_parts import formed
+from substructures.quantities.part_models import OfParts
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
-from substructures.tree.loads import loads_apart
+from substructures.tree.forces.applied_wrenches import part_symbols
+from substructures.tree.forces.loads import loads_apart
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
 

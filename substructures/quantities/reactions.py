@@ -15,14 +15,10 @@ acts on the coordinate k alone. f stands at the origin of the body frame that th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from functools import lru_cache
 
 from substructures.certificate.derived.reactions import reaction_outputs
-from substructures.errors import InvalidArgument, meant
-from substructures.expr.graph import Expr, Graph
-from substructures.expr.program import Formulas, array, program
-from substructures.expr.replay import replay
+from substructures.expr.graph import Expr
+from substructures.expr.program import Formulas, array
 from substructures.expr.walk import transfer
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
@@ -30,13 +26,13 @@ from substructures.mechanics.newton_euler import Wrench, inertial_load
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.relations import of_coordinates
-from substructures.quantities.of_parts import OfParts, formed
-from substructures.quantities.regressor import DYNAMIC, bare
-from substructures.tree.applied_wrenches import applied_wrenches
+from substructures.quantities.of_parts import DYNAMIC, bare, formed
+from substructures.quantities.part_models import OUTPUTS, ReactionModel
 from substructures.tree.assembly import Assembly
 from substructures.tree.couple import loaded_outputs
 from substructures.tree.coupling import OWN, couple_parts
 from substructures.tree.document import TreeSpec
+from substructures.tree.forces.applied_wrenches import applied_wrenches
 from substructures.tree.given.driven import every_coordinate
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.given.loops.multipliers import PREFIX, loop_multipliers
@@ -45,67 +41,9 @@ from substructures.tree.inverse_dynamics import WrenchesByCarrier, body_motions,
 from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import PlacedPart
 
-#: force [N] and moment [N m] in the joint's frame, and in the axes of the world; (rows, 3) each
-OUTPUTS = ("reaction_force", "reaction_moment", "reaction_force_world", "reaction_moment_world")
-#: their names in an answer
-FIELDS = ("force", "moment", "force_world", "moment_world")
 NEEDED = "inverse_dynamics"
 #: outputs of parts that neither move nor load anything
 _LEFT_OUT = tuple(name for name in DYNAMIC if name not in ("load.at", "load.vector"))
-
-
-class ReactionModel(OfParts):
-    """Reactions of a tree.
-
-    ``program``: OUTPUTS, (rows, 3) each, functions of t, q, q', q'', inputs, free parameters, and of the multipliers
-    ``lambda.<closure>.<row>`` [N, N m] of closures, ``lambda.<constraint>`` or ``lambda.<constraint>.<row>`` [N] of
-    rolling contacts and knife edges. ``rows``: the joints by their coordinates, then the seats of the
-    instances, ``instance.base``: what carries an instance exerts on it, in its interface frame. In the joint's frame
-    the third axis is that of the joint, and the moment is about the origin of the body frame (O_k + tau e3).
-    """
-
-    axis = "joints"
-
-    def of(self, joints: Sequence[str] | None) -> ReactionModel:
-        """Of some rows alone. Raises InvalidArgument (``/joints/i``, ``unknown-joint``)."""
-        return self if joints is None else _chosen(_ByDigest(self), read_joints(joints, self.rows))
-
-
-@dataclass(frozen=True)
-class _ByDigest:
-    """A model of reactions as a key."""
-
-    model: ReactionModel = field(compare=False)
-    digest: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "digest", f"{self.model.program.digest} {self.model.rows}")
-
-
-def read_joints(joints: Sequence[str] | str, rows: Sequence[str], place: str = "/joints") -> tuple[str, ...]:
-    """Names of rows, each once. Raises InvalidArgument for unknown ones and for none."""
-    names = [joints] if isinstance(joints, str) else joints
-    if not isinstance(names, list | tuple) or not names:
-        raise InvalidArgument.at(place, "missing", "a list of joints is needed")
-    for i, name in enumerate(names):
-        if name not in rows:
-            likely = meant(str(name), rows) or f"; there are {', '.join(rows[:20])}"
-            message = f"there is no joint '{str(name)[:80]}'{likely}"
-            raise InvalidArgument.at(f"{place}/{i}", "unknown-joint", message)
-    return tuple(dict.fromkeys(names))
-
-
-@lru_cache(64)
-def _chosen(known: _ByDigest, joints: tuple[str, ...]) -> ReactionModel:
-    source = known.model.program
-    place = {known.model.rows.index(name): k for k, name in enumerate(joints)}
-    graph = Graph()
-    found = {
-        name: Formulas((len(joints), 3), {(place[k], i): x for (k, i), x in all_rows.entries.items() if k in place})
-        for name, all_rows in replay(source, graph, {}).items()
-    }
-    chosen = program(graph, found, {symbol.name: symbol for symbol in source.symbols})
-    return ReactionModel(chosen, joints, known.model.parameters)
 
 
 def reactions(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> ReactionModel:

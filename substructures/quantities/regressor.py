@@ -17,7 +17,7 @@ which is structurally zero where joint a does not carry k, and where the formula
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -29,18 +29,17 @@ from substructures.mechanics.composite_form import Inertia, moments_of_inertia, 
 from substructures.mechanics.kinematics import Columns, constant_rotation, from_body
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar, negate, transpose
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
-from substructures.mechanics.state_names import BallRow, ball_rows, positions_of
-from substructures.part.inertia_symbols import inertia_names
+from substructures.mechanics.state_names import BallRow, ball_rows, inertia_names, positions_of
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.relations import of_coordinates
 from substructures.quantities.numbers.result import Evaluation, ParameterColumns, failures_of
 from substructures.quantities.numbers.states import StateInput, ValueInput, read_states, symbol_values
-from substructures.quantities.of_parts import formed
+from substructures.quantities.of_parts import DYNAMIC, bare, formed
 from substructures.quantities.regrouping import named_frames, relations
 from substructures.tree.assembly import Assembly, assemble
-from substructures.tree.closures import ClosureRows
 from substructures.tree.coupling import OWN, couple_parts
+from substructures.tree.cuts import ClosureRows
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.given.driven import all_coordinates, driven_names
 from substructures.tree.inverse_dynamics import body_motions
@@ -49,12 +48,6 @@ from substructures.tree.model_outputs import rate_symbols
 from substructures.tree.mounted_part import MountedPart, PlacedPart, ratios_of
 
 OUTPUTS = ("regressor", "inertial_parameters")
-
-#: outputs that do not take part in kinematics; emptied before coupling
-DYNAMIC = (
-    *("metric", "christoffel", "composite.m", "composite.s", "composite.J", "applied", "potential"),
-    *("subtree.m", "subtree.s", "subtree.J", "load.at", "load.vector", *OWN),
-)
 
 
 @dataclass(frozen=True)
@@ -246,14 +239,3 @@ def _link(name: str, here: PlacedPart, frame: int, own: PartOutputs, motions: Ma
     # U and Omega of B by coordinate (notation.md, section 3)
     columns = here.columns_beyond(link)
     return _Link(name, inertia, motions[link.parent].at(from_body(here.links, link), link.rotation), columns)
-
-
-def bare(run: Run, left_out: Sequence[str] = DYNAMIC) -> Run:
-    """Parts without these outputs: without masses and loads coupling gives the kinematics, the rest is zero at once."""
-
-    def massless(part: Part, bindings: Mapping[str, Scalar], names: Sequence[str]) -> PartOutputs:
-        """Outputs of a part, those of its masses empty."""
-        found = run(part, bindings, [name for name in names if name not in left_out])
-        return PartOutputs({**found.formulas, **{name: Formulas((), {}) for name in names if name in left_out}})
-
-    return massless

@@ -24,7 +24,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, carrier_link, constant_rotation, from_body
 from substructures.mechanics.linear3 import Scalar, negate, transpose
-from substructures.tree.closures import Cut
+from substructures.tree.cuts import Cut
 from substructures.tree.mounted_part import WORLD, PlacedPart
 
 #: columns of one link

@@ -37,8 +37,7 @@ from substructures.quantities.quantity import (
 )
 from substructures.tree.document import TreeSpec, require_undriven
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import require_stored
+from substructures.tree.model import Model, require_stored
 from substructures.tree.plausibility import Plausibility
 
 #: outputs that a large model does not have as formulas, in numbers from the parts of the tree

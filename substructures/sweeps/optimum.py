@@ -20,7 +20,7 @@ from substructures.array import Array
 from substructures.documents import escape
 from substructures.ensembles.samples import Distribution, Sampler, Samples
 from substructures.errors import InvalidArgument, InvalidDocument, among
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 from substructures.sweeps.columns import Columns, columns_of
 from substructures.sweeps.conditions import Expression, read_expression
 from substructures.sweeps.document import Column

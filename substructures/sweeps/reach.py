@@ -21,7 +21,7 @@ from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import WORLD, ReachColumn
 from substructures.sweeps.grouped import alike, inside
 from substructures.sweeps.shapes import Shape
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.given.driven import PRIMES
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model

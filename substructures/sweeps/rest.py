@@ -20,7 +20,7 @@ from substructures.quantities.numbers.states import known_values, read_states
 from substructures.sweeps.document import EquilibriumColumn
 from substructures.sweeps.grouped import alike, check_fields, inside
 from substructures.sweeps.shapes import Shape
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 
 STATE = ("q", "qd", "inputs", "t")
 MATRICES = ("metric", "damping", "stiffness")

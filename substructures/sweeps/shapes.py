@@ -25,7 +25,7 @@ from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.couple import couple_formulas
 from substructures.tree.document import TreeSpec, read_instance
 from substructures.tree.model import Model
-from substructures.tree.shape import places_of, without_numbers
+from substructures.tree.numbers import places_of, without_numbers
 from substructures.tree.units import differing_interfaces
 
 
@@ -35,7 +35,7 @@ class Option:
 
     ``fields``: of the instance in the tree document, with the parameters that are bound to expressions; ``values``: in
     SI by the name of the parameter in the definition, of those that have a number, and of its placement
-    (:func:`substructures.tree.shape.places_of`).
+    (:func:`substructures.tree.numbers.places_of`).
     """
 
     part: Part = field(repr=False)

@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from time import perf_counter
 from typing import Any
 
+from substructures.certificate.agreement import HOW, told
 from substructures.certificate.compare import Compared, compare
 from substructures.certificate.described import described, free_coordinates
 from substructures.certificate.given.driven import of_free
@@ -15,11 +16,12 @@ from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.states import states_needed
 from substructures.certificate.tree_outputs import level_at, tree_outputs, tree_symbols, with_given
+from substructures.certificate.written import defaults_of, plain
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.part.certificate import HOW, defaults_of, plain, told
 from substructures.part.definition import Definition
-from substructures.part.part import Part, recheck
+from substructures.part.derive import recheck
+from substructures.part.part import Part
 from substructures.tree.document import TreeSpec
 
 #: outputs out of the documents of a tree and of its parts, names of rows, and values of symbols

@@ -8,33 +8,33 @@ from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
+from substructures.certificate.agreement import not_judged
 from substructures.errors import TooLarge, VerificationFailed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.units.unit_check import UnitCheck
 from substructures.mechanics.state_names import ball_rows
-from substructures.part.certificate import not_judged
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.topology import entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, declared, division_by_zero, joint_parents
 from substructures.tree.certificate import blamed, certified, seconds_of
-from substructures.tree.closures import Reduction, reduction_of
 from substructures.tree.coupling import Coupled, couple_parts
+from substructures.tree.cuts import Reduction, reduction_of
 from substructures.tree.document import TreeSpec
+from substructures.tree.forces.load_potentials import found_potential
+from substructures.tree.forces.loads import load_formulas
+from substructures.tree.forces.velocity_forces import least_forces
 from substructures.tree.given.driven import all_coordinates, driven_inputs, driven_names, every_coordinate, put_in
 from substructures.tree.given.ignored import ignore, ignored_names
 from substructures.tree.given.reduced import instances_of
 from substructures.tree.grouping import Admitted, every, numbers_and
-from substructures.tree.load_potentials import found_potential
-from substructures.tree.loads import load_formulas
 from substructures.tree.model import AXES, LISTED, Model
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.plausibility import Plausibility
 from substructures.tree.shape import CertifiedProgram, KnownShapes, of_shape
 from substructures.tree.units import check_tree_units, tree_warnings
-from substructures.tree.velocity_forces import least_forces
 
 
 def couple(
@@ -172,7 +172,8 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     frames = tuple(f"{i.name}.{frame}" for i, m in pairs for frame in m.part.frames)
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
     spec = assembly.reading.spec
-    told = reduction_of(assembly.instances, assembly.mounted, bool(spec.closures), assembly.reduced)
+    order = [(each.name, m.part) for each, m in zip(assembly.instances, assembly.mounted, strict=True)]
+    told = reduction_of(order, bool(spec.closures), assembly.reduced)
     tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told

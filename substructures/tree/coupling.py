@@ -30,20 +30,12 @@ from substructures.mechanics.linear3 import ZERO, Rotation, Scalar, Vector, add,
 from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
 from substructures.mechanics.ratios import Ratios
 from substructures.part.frames import joined_turns
-from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, inertia_bindings
+from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, frame_placement, inertia_bindings, links_of
 from substructures.part.part import Part
 from substructures.part.relations import MULTIPLIER
 from substructures.tree.grouping import Admitted, Inertias, as_they_are, fixed_inertia, grouped, numbers
 from substructures.tree.inertial import EQUATIONS, FRAMES, Plan, inertial_entries, planned
-from substructures.tree.mounted_part import (
-    WORLD,
-    EvaluatedPart,
-    MountedPart,
-    PlacedPart,
-    frame_placement,
-    links_of,
-    ratios_of,
-)
+from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, ratios_of
 
 #: outputs of a stored program that coupling uses
 USED = (

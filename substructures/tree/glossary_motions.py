@@ -13,10 +13,10 @@ from substructures.mechanics.kinematics import INTERFACE, Link, from_body
 from substructures.mechanics.linear3 import Matrix, Scalar, Vector, negate
 from substructures.mechanics.newton_euler import BodyMotion, Wrench
 from substructures.mechanics.velocity_forces import motions_before, transmitted
+from substructures.tree.forces.velocity_forces import outermost
 from substructures.tree.grouping import on_carriers
 from substructures.tree.inverse_dynamics import body_motions, inertial_loads, pass_back, subtract_applied
 from substructures.tree.mounted_part import PlacedPart
-from substructures.tree.velocity_forces import outermost
 
 AXES = "xyz"
 #: by (letter, numbers of joints, component), in the order in which names are taken

@@ -14,8 +14,8 @@ from substructures.expr.graph import Expr
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation, from_body
 from substructures.mechanics.linear3 import E3, ZERO, ZERO6, add, exactly, scale
-from substructures.part.outputs import PartOutputs
-from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart, frame_placement
+from substructures.part.outputs import PartOutputs, frame_placement
+from substructures.tree.mounted_part import WORLD, MountedPart, PlacedPart
 
 #: inertia of the carriers of a part about their body frame origins, of the interface about its own
 Inertias = dict[int, Inertia]

@@ -18,8 +18,8 @@ from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation
 from substructures.mechanics.linear3 import ZERO, Rotation
 from substructures.mechanics.parallel_axes import ByAngles, absolute
-from substructures.part.outputs import Run, over_formulas
-from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart, links_of
+from substructures.part.outputs import Run, links_of, over_formulas
+from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart
 
 #: stored outputs that make up the links of a part
 LINKS = ("E.tilt", "E.turn", "E.full", "Z", "tau")

@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from substructures.errors import listed
+from substructures.certificate.agreement import not_judged, told_agreement
+from substructures.errors import InvalidDocument, listed
 from substructures.expr.program import Program
 from substructures.mechanics.state_names import effort_units, positions_of, state_units
-from substructures.part.certificate import not_judged, told_agreement
 from substructures.part.part import told_operations
-from substructures.tree.closures import ClosureRows, Reduction
+from substructures.part.topology import MOST_CHRISTOFFEL
+from substructures.tree.cuts import ClosureRows, Reduction
+from substructures.tree.numbers import with_numbers
 from substructures.tree.plausibility import Plausibility
-from substructures.tree.shape import with_numbers
 
+KINEMATICS = ("position", "rotation", "U", "Omega")
 AXES = ("coordinates", "joints", "frames", "limited")
 LISTED = ("driven", "ignored", "velocity_constraints", "contacts", "balls", "reduced")
 
@@ -150,3 +152,15 @@ class Model:
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
         return cls(program, *names, *described, closures, summary.get("inputs", {}), **more).with_numbers()
+
+
+def require_stored(program: Program, names: Iterable[str]) -> None:
+    """Raises InvalidDocument (``not-stored``) for outputs that a model of many coordinates does not have."""
+    missing = [name for name in names if name not in program.outputs]
+    if missing:
+        message = (
+            f"of more than {MOST_CHRISTOFFEL:,} Christoffel symbols no formulas are stored, so there is no "
+            f"{listed(missing)}, but in numbers by an evaluation of a stored tree; velocity forces are found without "
+            "them (bias, inverse_dynamics, forward_dynamics)"
+        )
+        raise InvalidDocument.at("", "not-stored", message)

@@ -29,11 +29,10 @@ A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Chris
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
-from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr
-from substructures.expr.program import Formulas, Program, array
+from substructures.expr.program import Formulas, array
 from substructures.mechanics.balls import accelerations as in_joints
 from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.linear3 import Scalar, add, apply, cross, transpose
@@ -41,27 +40,14 @@ from substructures.mechanics.state_names import ball_rows, positions_of
 from substructures.part.balls import position_rates
 from substructures.part.outputs import over_formulas
 from substructures.part.relations import of_coordinates, of_rates
-from substructures.part.topology import MOST_CHRISTOFFEL
 from substructures.tree.assembly import Assembly
 from substructures.tree.closures import closure_formulas
 from substructures.tree.coupling import Coupled
 from substructures.tree.inverse_dynamics import bias_forces, inverse_dynamics
+from substructures.tree.model import KINEMATICS
 from substructures.tree.mounted_part import PlacedPart, balls_in, balls_of, ratios_of
 
-KINEMATICS = ("position", "rotation", "U", "Omega")
 MOMENTUM = ("linear_momentum", "angular_momentum")
-
-
-def require_stored(program: Program, names: Iterable[str]) -> None:
-    """Raises InvalidDocument (``not-stored``) for outputs that a model of many coordinates does not have."""
-    missing = [name for name in names if name not in program.outputs]
-    if missing:
-        message = (
-            f"of more than {MOST_CHRISTOFFEL:,} Christoffel symbols no formulas are stored, so there is no "
-            f"{listed(missing)}, but in numbers by an evaluation of a stored tree; velocity forces are found without "
-            "them (bias, inverse_dynamics, forward_dynamics)"
-        )
-        raise InvalidDocument.at("", "not-stored", message)
 
 
 def model_outputs(

@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.laws import magnitude, maximum, minimum
+from substructures.loads.pairs import Place
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import (
@@ -19,28 +20,24 @@ from substructures.mechanics.kinematics import (
     Link,
     Pose,
     columns_beyond,
-    constant_rotation,
     fixed_link,
+    from_body,
     joined,
 )
 from substructures.mechanics.linear3 import (
     IDENTITY,
     ZERO,
     Matrix,
-    Rotation,
     Scalar,
     Vector,
-    add,
     apply,
-    multiply,
-    transpose,
 )
 from substructures.mechanics.newton_euler import Wrench
 from substructures.mechanics.ratios import Ratios
-from substructures.part.outputs import PartOutputs, Run, over_formulas
+from substructures.part.forces.wrenches import wrench_about_origin
+from substructures.part.outputs import PartOutputs, Run, frame_placement, over_formulas
 from substructures.part.part import Part
 from substructures.part.relations import MULTIPLIER, OFFSET
-from substructures.part.wrenches import wrench_about_origin
 
 #: the host of what is not mounted on a part
 WORLD = -1
@@ -60,14 +57,6 @@ class MountedPart:
     position: Vector
     bindings: Mapping[str, Scalar]
     first: int
-
-
-def links_of(part: Part, outputs: PartOutputs) -> tuple[Link, ...]:
-    """The links of a part's joints, from its stored formulas."""
-    return tuple(
-        Link(j.parent, j.s, outputs.rotation(c), outputs.vector("Z", c), outputs.scalar("tau", c))
-        for c, j in enumerate(part.topology.joints)
-    )
 
 
 def ratios_of(run: Run, mounted: Sequence[MountedPart]) -> Ratios:
@@ -152,15 +141,6 @@ def friction_of_movers(
             F, S = known[0] + F, known[1] + S
         result[k] = F, S, v, w
     return result, is_one
-
-
-def frame_placement(
-    outputs: PartOutputs, frame: int, E: Matrix = IDENTITY, position: Vector = ZERO
-) -> tuple[Rotation, Vector]:
-    """Of what is placed in a frame of a part: rotation from the body frame of the carrier, and origin there."""
-    # E E_f and r_f + E_f^T r
-    E_f, r_f = outputs.matrix("frame.E", frame), outputs.vector("frame.position", frame)
-    return constant_rotation(multiply(E, E_f)), add(r_f, apply(transpose(E_f), position))
 
 
 @dataclass(frozen=True)
@@ -255,6 +235,11 @@ class PlacedPart:
         placed = frame_placement(self.outputs, frame, E, position)
         return fixed_link(self.links, self.part.frame_carriers[frame], *placed)
 
+    def place(self, frame: int, at: Vector = ZERO) -> Place:
+        """A point of a frame."""
+        link = self.frame_link(frame, IDENTITY, at)
+        return Place(self, link.parent, from_body(self.links, link), self.pose(link.parent).beyond(link))
+
     def columns_beyond(self, link: Link) -> Columns:
         """Columns at the end of a link from one of its carriers, by index in the tree, in the axes there."""
         return columns_beyond(self.links, self.columns, link, self.first)
@@ -273,3 +258,8 @@ class PlacedPart:
                 # R_k v: from the axes of the world to those of the carrier
                 vector = apply(self.pose(carrier).R, vector)
             yield carrier, wrench_about_origin(self.outputs.vector("load.at", i), vector, moment)
+
+
+def place(placed: Sequence[PlacedPart], part: int, frame: int, at: Vector = ZERO) -> Place:
+    """A point of a frame; ``part``: index of a part, or WORLD."""
+    return Place(None, INTERFACE, at, Pose(IDENTITY, at)) if part == WORLD else placed[part].place(frame, at)

@@ -20,9 +20,9 @@ from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Definition
+from substructures.part.inertias import Tensor, faults_of, impossible, more
 from substructures.part.mass import PRECISION, ball_sum, limits_in_numbers, number_of, rounded
 from substructures.part.parameters import names_in_limits
-from substructures.part.physics import Tensor, faults_of, impossible, more
 from substructures.tree.document import TreeSpec
 
 #: definitions of which it is remembered what they are by default

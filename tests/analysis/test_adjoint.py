@@ -20,7 +20,8 @@ from substructures.analysis.control.problem import ControlProblem, Cost, inputs_
 from substructures.analysis.control.shooting import Shooting
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, evaluate
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 
 STENCIL = np.array([-2, -1, 1, 2])
 

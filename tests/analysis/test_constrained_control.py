@@ -18,7 +18,7 @@ from substructures.certificate.derived.adjoint import adjoint
 from substructures.errors import InvalidInput, VerificationFailed
 from substructures.expr.program import Program
 from substructures.quantities.certificate import DYNAMICS, certified
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS
 
 MASS, INERTIA, ARM = 2.0, 0.3, 0.25
 CONTROLS = ["s.u", "tau.s.f"]

@@ -17,7 +17,8 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.reactions import ReactionModel, reactions
+from substructures.quantities.part_models import ReactionModel
+from substructures.quantities.reactions import reactions
 
 G = 9.81
 CHECK = "friction-load"

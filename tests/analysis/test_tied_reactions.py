@@ -15,7 +15,8 @@ from substructures.analysis.simulate import Outputs
 from substructures.errors import InvalidInput, VerificationFailed
 from substructures.mechanics.newton_euler import Wrench
 from substructures.quantities import reactions as module
-from substructures.quantities.reactions import ReactionModel, reactions
+from substructures.quantities.part_models import ReactionModel
+from substructures.quantities.reactions import reactions
 
 EDGE = {"name": "blade", "type": "knife_edge", "frame": "s.b"}
 FLOOR = {"name": "floor", "type": "rolling", "frame": "s.disc", "radius": "s.r"}

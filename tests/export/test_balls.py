@@ -17,7 +17,7 @@ from substructures import Model, couple, derive
 from substructures.errors import InvalidArgument
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402

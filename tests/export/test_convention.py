@@ -20,7 +20,7 @@ from substructures.export import TARGETS, exported_model, files, interface_of_mo
 from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.part.outputs import with_own_inertia
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 #: the contract, section 8, of what has no time
 CONTRACT = {

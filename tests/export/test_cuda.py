@@ -16,7 +16,7 @@ from run_code import agree, alone, state
 from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.languages import cuda
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 QUANTITIES = ("metric", "christoffel", "forces", "inverse_dynamics", "forward_dynamics")
 

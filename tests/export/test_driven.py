@@ -15,7 +15,7 @@ from simulated import simulated
 from substructures import Model, catalogue
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.exported import Function
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402

@@ -19,7 +19,8 @@ from substructures import Model
 from substructures.analysis.simulate import FixedStep
 from substructures.errors import InvalidArgument, InvalidDocument, MissingValue
 from substructures.export import Exported, exported_model, exported_part, files, interface_of_model, interface_of_part
-from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402

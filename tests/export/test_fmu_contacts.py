@@ -18,7 +18,7 @@ from substructures.analysis.motion.contacts.exporting import contact_laws, conta
 from substructures.errors import TooLarge
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.contacts import CONTACTS
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402

@@ -16,7 +16,7 @@ from run_code import agree, alone, arguments, state, tool
 from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, Function, Interface, exported_model, files, interface_of_model
 from substructures.expr.program import Program, Symbol
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 LIMIT = 1_000_000
 #: prints what every call gives, or the name and the message of its error

@@ -13,7 +13,7 @@ from run_code import load_python, octave
 
 from substructures import couple, evaluate
 from substructures.export import Exported, exported_model, files, interface_of_model
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 CONSTANTS = ("c", "cpp", "rust", "fortran", "julia", "modelica", "maxima", "maple", "reduce", "fricas", "mathematica")
 

@@ -13,8 +13,8 @@ from run_code import STRICT, tool
 
 from substructures import TreeSpec, couple
 from substructures.export import exported_model, files, interface_of_model
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 
 COMMANDS = {
     "python": [[sys.executable, "crank_selftest.py"]],

@@ -13,7 +13,7 @@ from run_code import arguments, shared, state
 from substructures.errors import InvalidArgument
 from substructures.export import exported_model, files, interface_of_model
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 STUB = Path(__file__).with_name("simulink")
 FLAGS = ["-std=c99", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{STUB}"]

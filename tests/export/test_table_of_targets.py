@@ -25,7 +25,7 @@ from run_code import STRICT, agree, arguments, by_output, load_python, octave, s
 
 from substructures import catalogue
 from substructures.export import Exported, exported_model, interface_of_model, reference
-from substructures.quantities.numbers.evaluation import Sources
+from substructures.quantities.sources import Sources
 
 pytestmark = pytest.mark.deep
 

@@ -25,7 +25,8 @@ from substructures import ConstrainedMotion, Model, simulate
 from substructures.analysis.equations.nonholonomic.velocity_constraints import closing
 from substructures.analysis.simulate import Outputs
 from substructures.errors import InvalidInput
-from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402

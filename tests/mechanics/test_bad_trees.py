@@ -12,8 +12,10 @@ from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, c
 from substructures.documents.fields import LONGEST
 from substructures.errors import InvalidArgument
 from substructures.expr.syntax import MAX_LENGTH
-from substructures.quantities.numbers.evaluation import EvaluationOptions, Sources, check, evaluate
+from substructures.quantities.numbers.asked import check
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.regressor import regressor
+from substructures.quantities.sources import Sources
 
 INSTANCE: Path = ("instances", 1)
 TREES: list[tuple[str, Path, Any, str, str]] = [

@@ -16,9 +16,10 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.simulate import simulate
 from substructures.certificate.compare import TOLERANCE
 from substructures.pictures.tree import picture
-from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.powers import powers
 from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 

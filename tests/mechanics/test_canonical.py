@@ -15,7 +15,8 @@ from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.quantities import canonical
 from substructures.quantities.formulas import derived
-from substructures.quantities.numbers.evaluation import check, evaluate
+from substructures.quantities.numbers.asked import check
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.sources import Sources
 
 NAMES = ["acrobot", "cart-pendulum", "scara", "ur5", "quarter-car"]

@@ -15,9 +15,11 @@ from random_trees import Plain, model_of
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import condition, definite_solve
+from substructures.quantities.derivative_directions import Direction
 from substructures.quantities.derivatives import forward_dynamics
 from substructures.quantities.formulas import derived
-from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, Sources, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.sources import Sources
 
 FD = "forward_dynamics"
 EPS = float(np.finfo(float).eps)

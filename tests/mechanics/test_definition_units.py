@@ -11,8 +11,9 @@ from bad_documents import GOOD, TREE, Path, changed
 
 from substructures import Definition, InvalidDocument, TreeSpec, couple, derive, evaluate
 from substructures.documents import read_json
+from substructures.part.derive import recheck
 from substructures.part.parameters import counted, uncounted
-from substructures.part.part import Part, recheck
+from substructures.part.part import Part
 
 METRES: dict[str, Any] = {
     "name": "arm",

@@ -8,8 +8,10 @@ from analysis_models import catalogue_model
 
 from substructures import InvalidArgument, InvalidInput
 from substructures.documents.grouped import take
-from substructures.quantities.numbers.evaluation import QUANTITIES, Direction, Evaluation, EvaluationOptions, evaluate
-from substructures.quantities.quantity import needs_parts
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.numbers.result import Evaluation
+from substructures.quantities.quantity import QUANTITIES, needs_parts
 
 
 def test_one_quantity_by_its_name() -> None:

@@ -17,9 +17,11 @@ from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.mechanics.factorisation import factor_operations, factorised
+from substructures.quantities.derivative_directions import Direction
 from substructures.quantities.derivatives import SingularMetric, forward_dynamics
 from substructures.quantities.formulas import DERIVED, derived
-from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, Sources, cost, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.sources import Sources, cost
 
 N = 5
 Q: Plain = {"quantities": ["forward_dynamics"]}

@@ -18,7 +18,8 @@ from random_trees import GRAVITY, Kind, random_definition, random_states, vector
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.evaluation import Evaluation, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.result import Evaluation
 
 N = 3
 Array = Any

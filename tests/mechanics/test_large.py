@@ -24,9 +24,10 @@ from substructures.certificate import part_outputs
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part import topology
-from substructures.part.part import recheck
+from substructures.part.derive import recheck
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.numbers.evaluation import Sources, evaluate, steps
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.sources import Sources, steps
 from substructures.tree.certificate import certify_tree
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")

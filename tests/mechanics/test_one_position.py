@@ -14,20 +14,12 @@ from substructures import Definition, Model, couple, derive
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.program import Program
-from substructures.quantities.numbers.evaluation import (
-    QUANTITIES,
-    Direction,
-    Evaluation,
-    EvaluationOptions,
-    Evaluator,
-    Sources,
-    cost,
-    evaluate,
-    interpreted,
-    numbers_per_state,
-)
-from substructures.quantities.quantity import REGRESSOR
-from substructures.quantities.sources import of_parts
+from substructures.quantities.accelerations import Evaluator
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate, interpreted
+from substructures.quantities.numbers.result import Evaluation
+from substructures.quantities.quantity import QUANTITIES, REGRESSOR
+from substructures.quantities.sources import Sources, cost, numbers_per_state, of_parts
 
 N = 5
 NAMES = [name for name, quantity in QUANTITIES.items() if quantity.source != REGRESSOR]

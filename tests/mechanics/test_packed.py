@@ -12,13 +12,8 @@ from substructures import TreeSpec, couple
 from substructures.client import unpack
 from substructures.compile import compile_program
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.numbers.evaluation import (
-    EvaluationOptions,
-    Sources,
-    evaluate,
-    evaluate_in_parts,
-    interpreted,
-)
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate, evaluate_in_parts, interpreted
+from substructures.quantities.sources import Sources
 from substructures.tree.model import Model
 
 NAMES = ["metric", "christoffel", "forces", "kinematics"]

@@ -18,8 +18,9 @@ from simulated import simulated
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, couple, derive
 from substructures.pictures.tree import picture
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 

@@ -12,7 +12,8 @@ from in_depth import seeds
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition, random_states
 
 from substructures import Model
-from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, evaluate
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from pinocchio_trees import engine_of  # noqa: E402 -- the engine is optional

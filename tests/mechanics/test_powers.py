@@ -17,10 +17,12 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.writers import to_csv
 from substructures.analysis.simulate import Geodesic, Outputs, simulate
 from substructures.errors import VerificationFailed
-from substructures.part import load_forces as by_load
+from substructures.part.forces import load_forces as by_load
 from substructures.quantities import powers as module
-from substructures.quantities.numbers.evaluation import Evaluation, Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.powers import PowerModel, powers
+from substructures.quantities.sources import Sources
 
 Plain = dict[str, Any]
 LAW = {"stiffness": 30, "rest": 0.1, "damping": 2}

@@ -10,7 +10,7 @@ from catalogue_entries import shipped_part
 
 from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, catalogue, couple, derive, evaluate
 from substructures.errors import VerificationFailed
-from substructures.part.part import recheck
+from substructures.part.derive import recheck
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 

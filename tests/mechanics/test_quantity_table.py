@@ -19,7 +19,9 @@ from substructures.export.fmu.variables import layout_of
 from substructures.export.interface import Interface, signature
 from substructures.printers.names import LETTERS, RAISED
 from substructures.quantities import quantity as table
-from substructures.quantities.numbers.evaluation import Direction, Evaluation, EvaluationOptions, evaluate
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
+from substructures.quantities.numbers.result import Evaluation
 from substructures.quantities.quantity import DERIVED, QUANTITIES, TABLE, askable, labels_of
 from substructures.quantities.sources import Sources, of_parts
 

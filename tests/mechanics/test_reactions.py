@@ -16,8 +16,11 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Outputs, simulate
 from substructures.errors import VerificationFailed
 from substructures.quantities import reactions as module
-from substructures.quantities.numbers.evaluation import Evaluation, Sources, evaluate
-from substructures.quantities.reactions import ReactionModel, reactions
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.result import Evaluation
+from substructures.quantities.part_models import ReactionModel
+from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 
 Plain = dict[str, Any]
 DOWN = [0, -9.81, 0]

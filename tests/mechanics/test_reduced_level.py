@@ -38,8 +38,8 @@ from substructures.expr.operations import Symbol
 from substructures.expr.program import array, program
 from substructures.expr.walk import transfer
 from substructures.quantities import reactions as module
-from substructures.quantities.numbers.evaluation import Sources
 from substructures.quantities.reactions import reactions
+from substructures.quantities.sources import Sources
 from substructures.tree.certificate import certify_tree
 from substructures.tree.given.loops import newton, reduction
 from substructures.tree.given.loops.dependent import Dependent
@@ -275,7 +275,7 @@ def test_planted_faults_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     mirrored._gap = lambda found: -reduction._Solver._gap(mirrored, found)  # type: ignore[method-assign]
     for wrong, told in ((replace(right, H=bend), "christoffel"), (mirrored.solve(), "branch")):
         with monkeypatch.context() as patch:
-            patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
+            patch.setattr("substructures.tree.reading.dependent", lambda _, wrong=wrong: wrong)
             with pytest.raises(VerificationFailed, match=told):
                 couple(spec, {"x": part})
 
@@ -400,7 +400,7 @@ def test_faults_of_steps_are_found(monkeypatch: pytest.MonkeyPatch) -> None:
     nowhere = replace(right, values={q: x + gone for q, x in right.values.items()})
     for wrong in (early, longer, replace(right, H=bend), nowhere):
         with monkeypatch.context() as patch:
-            patch.setattr("substructures.tree.assembly.dependent", lambda _, wrong=wrong: wrong)
+            patch.setattr("substructures.tree.reading.dependent", lambda _, wrong=wrong: wrong)
             with pytest.raises(VerificationFailed, match=r"by the documents|branch"):
                 couple({"name": "t", **spec}, {"x": part})
 

@@ -19,8 +19,7 @@ from service.models.formulas import QUANTITIES
 from service.models.numbers import ANALYSES
 from substructures import Model, couple, equilibria, evaluate, linearise, simulate
 from substructures.analysis.closed.reduced import reduced_equations
-from substructures.quantities.numbers.evaluation import Sources
-from substructures.quantities.sources import of_parts
+from substructures.quantities.sources import Sources, of_parts
 
 NAMES = {each["name"]: each for each in PARTS}
 ANGLES = ["x", "y", "z", "yaw", "pitch", "roll"]

@@ -23,9 +23,10 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import derived
-from substructures.quantities.numbers.evaluation import Sources, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.sources import Sources
 
 N = 3
 TEN = ("m", "sx", "sy", "sz", "Jxx", "Jyy", "Jzz", "Jxy", "Jxz", "Jyz")

@@ -13,8 +13,9 @@ from substructures import Definition, MissingValue, Model, Program, TreeSpec, co
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.derivative_directions import Direction
 from substructures.quantities.derivatives import inverse_dynamics_derivative, inverse_dynamics_jacobians
-from substructures.quantities.numbers.evaluation import Direction, EvaluationOptions, evaluate
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
 from substructures.quantities.numbers.states import default_number
 
 N = 2

@@ -17,7 +17,7 @@ from substructures.expr.replay import replay
 from substructures.expr.tally import Tally
 from substructures.quantities.formulas import derived
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.tree import velocity_forces
+from substructures.tree.forces import velocity_forces
 
 KINDS = [
     Kind(6, joints=("revolute", "prismatic"), depth=6),

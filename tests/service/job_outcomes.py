@@ -15,7 +15,8 @@ from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidInput
 from substructures.formats.arrays import read_npz
-from substructures.quantities.numbers.evaluation import Evaluation, evaluate
+from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.result import Evaluation
 from substructures.tree.model import Model
 
 from .conftest import PENDULUM, SLIDER, TREE

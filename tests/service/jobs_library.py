@@ -14,7 +14,8 @@ from service.settings import Limits
 from substructures.documents import write_json
 from substructures.interchange.importing import document_of
 from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
+from substructures.part.derive import derive
+from substructures.part.part import Part
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 

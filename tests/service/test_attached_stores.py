@@ -23,15 +23,15 @@ from service.database.packed import pack, unpack
 from service.messages.refusals import Refused
 from service.operations.catalogue import PartSubmission, submit
 from service.operations.renewal import OPERATOR
+from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
-from service.renewing import Renewal
 from service.settings import Limits, Settings
 from service.store.store import Store
 from substructures.documents import write_json
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
 from substructures.part.definition import Definition
-from substructures.part.part import derive, recheck
+from substructures.part.derive import derive, recheck
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
 from .seals import seal_again

@@ -26,8 +26,8 @@ from service.store import keys
 from service.store.store import Store
 from substructures.certificate.part_outputs import part_symbols
 from substructures.certificate.states import draws
+from substructures.certificate.written import plain
 from substructures.documents import write_json
-from substructures.part.certificate import plain
 from substructures.part.definition import Definition
 
 from .conftest import PENDULUM, SLIDER, copied, make_client
@@ -626,7 +626,7 @@ def test_no_more_parts_are_read_than_a_bundle_may_have() -> None:
     digest = "sha256:" + 64 * "0"
     parts = iter([BundledPart(name, 1, digest, digest, b"x" * 700, b"", b"{}") for name in "abc"])
     with pytest.raises(Refused, match="1,404 bytes and more; the limit is 1,000"):
-        write_bundle(parts, Limits(binary_bytes=1000))
+        write_bundle(parts, 1000)
     assert [part.name for part in parts] == ["c"]
 
 

@@ -9,7 +9,7 @@ import pytest
 
 from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
-from substructures.quantities.numbers.evaluation import Direction
+from substructures.quantities.derivative_directions import Direction
 
 
 def test_arrays_pass_as_they_are() -> None:

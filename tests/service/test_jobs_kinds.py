@@ -16,7 +16,7 @@ from service.settings import Limits
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidDocument
 from substructures.export import render
-from substructures.part.part import derive
+from substructures.part.derive import derive
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model

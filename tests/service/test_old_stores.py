@@ -18,9 +18,9 @@ from fastapi.testclient import TestClient
 from service.app import open_store
 from service.database.schema import NEWEST
 from service.jobs.engines.engine import AttemptReport, Work
+from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
 from service.queries import renewals
-from service.renewing import Renewal
 from service.server import background
 from service.settings import Settings
 from service.store.store import Store
@@ -97,7 +97,7 @@ def test_a_request_is_answered_before_all_is_derived_anew(path: Path, store: Sto
 
 def test_all_is_derived_anew(path: Path, store: Store, caplog: pytest.LogCaptureFixture) -> None:
     """As a server does in the background; pages and log say so."""
-    caplog.set_level(logging.INFO, "service.renewing")
+    caplog.set_level(logging.INFO, "service.operations.renewing")
     before, client = digests(path), make_client(store)
     assert "0 of 5 parts and trees are derived anew" in client.get("/trees").text
     assert not any(each["derived_here"] for kind in ("substructures", "trees") for each in _items(client, kind))

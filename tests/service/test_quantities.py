@@ -18,7 +18,7 @@ from service.store.store import Store
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Program
-from substructures.quantities.numbers.evaluation import QUANTITIES
+from substructures.quantities.quantity import QUANTITIES
 
 from .one_store import double
 

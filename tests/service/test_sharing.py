@@ -94,7 +94,7 @@ def test_what_is_large_becomes_a_job_before_it_is_begun(
 ) -> None:
     store.settings = store.settings.model_copy(update={"limits": Limits(sync_nodes=1000)})
     begun: list[Any] = []
-    monkeypatch.setattr("substructures.part.part.formulas", lambda *given: begun.append(given))
+    monkeypatch.setattr("substructures.part.derive.formulas", lambda *given: begun.append(given))
     answer = client.post("/v1/substructures", json=chain(6))
     assert (answer.status_code, answer.json()["kind"], begun) == (202, "derive", [])
     monkeypatch.undo()

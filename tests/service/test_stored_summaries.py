@@ -13,8 +13,8 @@ import pytest
 from service.app import open_store
 from service.content.integrity import digest_of
 from service.content.tree_content import HOLE, summary_text, tree_summary
+from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
-from service.renewing import Renewal
 from service.settings import Settings
 from substructures import Part, TreeSpec, couple, derive
 from substructures.documents import read_json, write_json

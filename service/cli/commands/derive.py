@@ -14,8 +14,8 @@ from service.cli.documents import definition_of, named
 from service.cli.models import read_definition
 from service.cli.options import File, Json
 from service.cli.output import print_json, tell_warnings, waiting
+from substructures.part.derive import derive as derived
 from substructures.part.part import LEADING, OF_FRAMES, Part
-from substructures.part.part import derive as derived
 
 FORMULAS = "service.cli.formulas"
 

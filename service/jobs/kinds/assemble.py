@@ -24,8 +24,9 @@ from substructures.documents import read_json
 from substructures.documents.to_json import Written
 from substructures.errors import Fault, InvalidDocument, InvalidInput, among
 from substructures.part.definition import Definition
+from substructures.part.derive import derive
 from substructures.part.parameters import described
-from substructures.part.part import Part, derive
+from substructures.part.part import Part
 from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.couple import couple_shape
 from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels

@@ -23,7 +23,8 @@ from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import equivalence
 from substructures.interchange.sides import Parts, sides
 from substructures.part.definition import Definition
-from substructures.part.part import Part, derive
+from substructures.part.derive import derive
+from substructures.part.part import Part
 
 ALL, SIDES = "*", ("a", "b")
 

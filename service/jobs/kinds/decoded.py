@@ -9,10 +9,10 @@ from typing import Any
 from service.content.cache import Cache
 from service.content.integrity import reading
 from service.jobs.kinds.library import StoredTree
+from substructures.certificate.agreement import not_judged
 from substructures.documents import read_json
 from substructures.documents.to_json import Written
 from substructures.expr.program import Program
-from substructures.part.certificate import not_judged
 from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.tree.model import Model

@@ -19,7 +19,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
 from substructures.expr.syntax import ExpressionError
 from substructures.part.definition import Definition
-from substructures.part.part import derive
+from substructures.part.derive import derive
 from substructures.part.topology import topology
 from substructures.part.units import check_units
 

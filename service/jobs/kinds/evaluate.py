@@ -40,13 +40,9 @@ from substructures.expr.program import Program
 from substructures.formats.arrays import as_npz, read_npz
 from substructures.formats.columns import request_of
 from substructures.mechanics.state_names import resting_state
-from substructures.quantities.numbers.evaluation import (
-    EvaluationOptions,
-    evaluate,
-    interpreted,
-    read_quantities,
-)
+from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate, interpreted
 from substructures.quantities.quantity import LABELS, needs_parts
+from substructures.quantities.sources import read_quantities
 from substructures.tree.given.ties import require_chains
 from substructures.tree.model import Model
 

@@ -18,7 +18,7 @@ from substructures.array import Array
 from substructures.documents import pointer_step, read_model
 from substructures.errors import Fault, InvalidDocument, among
 from substructures.quantities.measured import PlaceUnits, si_values
-from substructures.quantities.numbers.evaluation import numbers_per_state, read_quantities
+from substructures.quantities.sources import numbers_per_state, read_quantities
 
 NamedAxis = tuple[str, list[float]]
 #: draws that one step of the counter of Philox makes (Salmon et al. 2011, Parallel random numbers, section 4)

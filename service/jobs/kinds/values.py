@@ -12,10 +12,10 @@ from service.schemas.numbers import EvaluationRequest
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.mechanics.state_names import resting_state
-from substructures.quantities.numbers.evaluation import read_quantities
 from substructures.quantities.numbers.states import States, given_values, read_states
 from substructures.quantities.quantity import REGRESSOR, TABLE
-from substructures.tree.closures import ClosureRows
+from substructures.quantities.sources import read_quantities
+from substructures.tree.cuts import ClosureRows
 from substructures.tree.model import Model
 
 #: what of a summary says how a model moves

@@ -19,9 +19,8 @@ from service.messages.addresses import tree_path, version_path
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
-from service.operations.imports import IMPORTED
-from service.operations.sharing.provenance import Origin
-from service.operations.upgrade import TreeProgram, put_part, put_tree
+from service.operations.renewal import TreeProgram, put_part, put_tree
+from service.operations.sharing.provenance import IMPORTED, Origin
 from service.queries.attempts import Attempt
 from service.queries.jobs import results
 from service.queries.jobs.jobs import submitters

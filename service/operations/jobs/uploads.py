@@ -25,7 +25,8 @@ from substructures.array import Array
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.formats.arrays import flat, write_npz
 from substructures.formats.columns import ColumnRequest, parted, pointer_of, request_of
-from substructures.quantities.numbers.evaluation import Sources, check
+from substructures.quantities.numbers.asked import check
+from substructures.quantities.sources import Sources
 
 TOGETHER = 8 * 2**20  # bytes that are written in one transaction
 

@@ -22,14 +22,12 @@ from service.messages.refusals import Refused, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import catalogue
 from service.operations.catalogue import PartSubmission
-from service.operations.sharing.provenance import Origin
+from service.operations.sharing.provenance import IMPORTED
 from service.queries import content
 from service.queries.catalogue import Version
 from service.schemas.entries import PartEntry
 from service.store.store import Store
 from substructures.errors import Fault, InvalidInput, TooLarge
-
-IMPORTED = Origin("import")
 
 
 def find(connection: Connection, viewer: Viewer, refs: str) -> list[Version]:

@@ -204,7 +204,8 @@ class Mirror:
     def _fetched(self, wanted: Sequence[Offer]) -> list[BundledPart]:
         refs = ",".join(f"{name}@{digest}" for name, digest in wanted)
         data = self._get("/v1/bundles", {"refs": refs}).content
-        return read_bundle(io.BytesIO(data), self._store.settings.limits)
+        limits = self._store.settings.limits
+        return read_bundle(io.BytesIO(data), limits.binary_bytes, limits.job_bytes)
 
     def _json(self, path: str, params: dict[str, str]) -> dict[str, Any]:
         try:

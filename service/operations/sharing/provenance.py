@@ -39,6 +39,10 @@ class Origin:
         return cls(**item.get(ORIGIN, {}))
 
 
+#: of what was read of a file
+IMPORTED = Origin("import")
+
+
 def derived_from(connection: Connection, viewer: Viewer, entry: PartEntry) -> tuple[str, int] | None:
     """Name and number of the version that another was made from. Raises Refused 422 for one that is not there."""
     if entry.derived_from is None:

@@ -20,9 +20,9 @@ from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.expr.program import Program
 from substructures.part.part import Part
+from substructures.quantities.accelerations import Evaluator
 from substructures.quantities.derivatives import SINGULAR, SingularMetric
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.numbers.evaluation import Evaluator
 from substructures.quantities.quantity import OF_PARTS
 from substructures.quantities.sources import Sources
 from substructures.tree.document import TreeSpec, with_levels

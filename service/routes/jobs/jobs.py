@@ -62,7 +62,7 @@ def list_jobs(
 ) -> Response:
     """A page of jobs, the newest first."""
     wanted = {"state": state, "kind": kind, "label": label}
-    size, search = limited(page_size, store.settings.limits), ("jobs", state, kind, label)
+    size, search = limited(page_size, store.settings.limits.page_size), ("jobs", state, kind, label)
     before = read_token(search, page_token, str)
     with store.database.read() as connection:
         found = rows.page_jobs(connection, viewer, wanted, before[0] if before else None, size + 1)
@@ -133,7 +133,7 @@ def list_job_items(
     page_token: Token = None,
 ) -> Response:
     """The items of a job with their states, results and problems."""
-    size, search = limited(page_size, store.settings.limits), ("items", job, state)
+    size, search = limited(page_size, store.settings.limits.page_size), ("items", job, state)
     after = read_token(search, page_token, int)
     with store.database.read() as connection:
         jobs.find(connection, viewer, job)

@@ -18,7 +18,7 @@ from service.operations.jobs import jobs, tables
 from service.operations.jobs.tables import Table
 from service.routes.bodies import APIRouter, binary, body_of
 from service.routes.deferred import FRESH, deferred, made
-from service.routes.trees import revision
+from service.routes.revisions import revision
 from service.schemas.entries import Entry
 from service.schemas.resources import TreeView
 from service.schemas.sweeps import ColumnView, RowTree, TablePage
@@ -50,7 +50,7 @@ def _answered(
         return response_of(replace(found, headers={**found.headers, **FRESH}))
     if media != JSON:
         return Response(as_file(table, media), media_type=media, headers=FRESH)
-    size = limited(size, store.settings.limits)
+    size = limited(size, store.settings.limits.page_size)
     after = read_token(search, token, int)
     start = after[0] if after else 0
     following = write_token(search, start + size) if start + size < table.count else None

@@ -15,7 +15,7 @@ from service.operations.sharing.sources import sources_of
 from service.routes.bodies import APIRouter, body_of
 from service.schemas.numbers import EvaluationRequest, KernelsView
 from service.views.resources import dump
-from substructures.quantities.numbers.evaluation import read_quantities, steps
+from substructures.quantities.sources import read_quantities, steps
 
 router = APIRouter(prefix="/v1/trees/{ref}/kernels", tags=["models"])
 

@@ -9,7 +9,7 @@ from pydantic import Field
 from service.schemas.analyses.motions import MAX_EVENTS, Event, Seconds, StateRequest
 from service.schemas.measured import EXPRESSION, OF_QUANTITY, OF_VARIED, SECONDS
 from service.schemas.parts import RequestPart
-from substructures.analysis.orbits.returns import Section
+from substructures.analysis.orbits.orbit import Section
 from substructures.documents.fields import PlainNumber, Real
 
 Relative = Annotated[Real, Field(ge=1e-14, le=1e-2)]

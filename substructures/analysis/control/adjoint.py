@@ -66,8 +66,7 @@ from substructures.quantities.certificate import DYNAMICS as NEEDS
 from substructures.quantities.certificate import certified
 from substructures.quantities.formulas import derived
 from substructures.tree.document import require_undriven
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS, Model
 
 ID = "inverse_dynamics"
 WEIGHT = "lambda.0"

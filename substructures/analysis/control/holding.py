@@ -20,7 +20,7 @@ from substructures.certificate.derived.adjoint import Held
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, array, program
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.model import Model
 
 #: G and c of closures

@@ -7,11 +7,12 @@ from collections.abc import Sequence
 from substructures.errors import TooLarge
 from substructures.expr.graph import Expr
 
+MatrixRows = list[list[Expr]]
 #: products of minors that are formed at most
 MAX_MINORS = 200_000
 
 
-def inverse(rows: Sequence[Sequence[Expr]]) -> list[list[Expr]] | None:
+def inverse(rows: Sequence[Sequence[Expr]]) -> MatrixRows | None:
     """Y^-1 = adj(Y) / det(Y) (n, n); None when the determinant is zero as a formula. Raises TooLarge.
 
     Minors are expanded row by row over sets of columns; zeros are skipped, so sparse matrices cost little.

@@ -32,11 +32,12 @@ from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, array, program
 from substructures.part.part import MAX_NODES
+from substructures.quantities.accelerations import Evaluator
 from substructures.quantities.certificate import certified
-from substructures.quantities.numbers.evaluation import Evaluator, interpreted
+from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 

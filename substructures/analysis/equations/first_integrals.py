@@ -40,8 +40,7 @@ from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.quantities.numbers.states import input_defaults
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS, Model
 
 Names = frozenset[str]
 AXES = "xyz"

@@ -16,7 +16,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Symbol
 from substructures.mechanics.balls import displacement_rates
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 

@@ -35,7 +35,7 @@ from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
 from substructures.quantities.numbers.workspace import ID, vector
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 

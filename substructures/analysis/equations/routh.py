@@ -26,7 +26,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol, array, program
 from substructures.quantities.certificate import DYNAMICS, certified
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 

@@ -49,7 +49,7 @@ from substructures.expr.walk import transfer
 from substructures.mechanics.state_names import BallRow
 from substructures.printers import entries
 from substructures.quantities.regressor import RegressorModel
-from substructures.tree.closures import require_open
+from substructures.tree.cuts import require_open
 from substructures.tree.document import require_undriven
 
 DRIVES = ("armature", "viscous", "coulomb", "offset")

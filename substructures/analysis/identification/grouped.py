@@ -31,7 +31,7 @@ from substructures.expr.replay import replay
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import constant_rotation
 from substructures.mechanics.linear3 import SYMMETRIC_INDEX, Scalar
-from substructures.part.inertia_symbols import inertia_names
+from substructures.mechanics.state_names import inertia_names
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.printers.names import MAX_COMMENT

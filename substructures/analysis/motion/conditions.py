@@ -16,20 +16,19 @@ from substructures.analysis.motion.problems.events import DIRECTIONS, Event
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Curve, Signal, Table, require_covered
 from substructures.array import Array
-from substructures.certificate.derived.powers import OUTPUT as POWERS
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
 from substructures.quantities.numbers.states import read_states, symbol_values
-from substructures.quantities.reactions import OUTPUTS as REACTIONS
+from substructures.quantities.quantity import POWERS, REACTIONS, outputs_of
 from substructures.tree.model import Model
 
 #: names of series and arrays that trajectories have by themselves
 RESERVED = frozenset(
     ("t", "q", "qd", "qdd", "v", "coordinates", "energy", "power", "work", "multipliers", "actuation", "constraints")
 ) | {"kinetic_energy", "potential_energy", "position_residual", "velocity_residual", "gaps", "friction"}
-RESERVED |= {"contact_forces", POWERS, *REACTIONS}
+RESERVED |= {"contact_forces", POWERS, *outputs_of(REACTIONS)}
 #: what the equations of motion of a tree are made of
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
 

@@ -20,7 +20,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
 from substructures.tree.model import Model
-from substructures.tree.shape import with_numbers
+from substructures.tree.numbers import with_numbers
 
 #: of a sum, relative to its value; a state on closures is known to such a part, too
 ROUNDING = 3e-14

@@ -8,10 +8,9 @@ from typing import Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import positive, whole
+from substructures.analysis.arguments import NumberOrExpression, one_of, positive, real, whole
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.motion.trajectory import Trajectory
-from substructures.analysis.orbits.returns import Section
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
 from substructures.documents import escape
@@ -29,6 +28,30 @@ BifurcationKind = Literal["fold", "branch-point", "period-doubling", "torus"]
 NOISE = 1e-4
 #: turns of a coordinate in a period
 MOST = 1_000_000
+
+
+@dataclass(frozen=True)
+class Section:
+    """The surface ``quantity`` (an expression in coordinates, velocities and parameters, its unit) = ``level`` that an
+    orbit crosses in a ``direction`` ``count`` times in its period; each return takes at most a ``duration`` [s].
+
+    Raises InvalidArgument.
+    """
+
+    quantity: NumberOrExpression
+    level: float = 0.0
+    direction: Literal["rising", "falling"] = "rising"
+    count: int = 1
+    duration: float = 100.0
+
+    def __post_init__(self) -> None:
+        try:
+            object.__setattr__(self, "level", real(self.level, "/level"))
+            one_of(self.direction, "direction", ("rising", "falling"))
+            whole(self.count, "count", 1, 1000)
+            positive(self.duration, "duration")
+        except InvalidArgument as error:
+            raise error.below("/section") from None
 
 
 @dataclass(frozen=True)

@@ -18,8 +18,7 @@ from substructures.analysis.motion.problems.problem import Integrator, Start, St
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.orbits.families import orbit_family
-from substructures.analysis.orbits.orbit import Family, Orbit, Shooting, stability
-from substructures.analysis.orbits.returns import Section
+from substructures.analysis.orbits.orbit import Family, Orbit, Section, Shooting, stability
 from substructures.analysis.orbits.search import Search
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among

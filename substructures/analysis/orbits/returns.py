@@ -5,18 +5,16 @@ H. Poincare, Les methodes nouvelles de la mecanique celeste III, 1899, chapter 2
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
-
 import numpy as np
 
-from substructures.analysis.arguments import NumberOrExpression, exact, one_of, positive, real, require_read, whole
+from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
+from substructures.analysis.orbits.orbit import Section
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument
@@ -33,30 +31,6 @@ RETURN = 1e-7
 #: relative, of times of crossings at which an event acts
 SAME = 1e-12
 PLACE = "/section/quantity"
-
-
-@dataclass(frozen=True)
-class Section:
-    """The surface ``quantity`` (an expression in coordinates, velocities and parameters, its unit) = ``level`` that an
-    orbit crosses in a ``direction`` ``count`` times in its period; each return takes at most a ``duration`` [s].
-
-    Raises InvalidArgument.
-    """
-
-    quantity: NumberOrExpression
-    level: float = 0.0
-    direction: Literal["rising", "falling"] = "rising"
-    count: int = 1
-    duration: float = 100.0
-
-    def __post_init__(self) -> None:
-        try:
-            object.__setattr__(self, "level", real(self.level, "/level"))
-            one_of(self.direction, "direction", ("rising", "falling"))
-            whole(self.count, "count", 1, 1000)
-            positive(self.duration, "duration")
-        except InvalidArgument as error:
-            raise error.below("/section") from None
 
 
 class Returns:

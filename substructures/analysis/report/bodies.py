@@ -11,8 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from substructures.analysis.report.influence import MOST_WORK, STATES
-from substructures.analysis.report.sizes import ALLOWED, sampled, shares
+from substructures.analysis.report.sizes import ALLOWED, FEW_STATES, MOST_WORK, sampled, shares
 from substructures.analysis.report.statements import Figure, Names, Statement, in_short, reason_of
 from substructures.array import Array
 from substructures.errors import InvalidInput, MissingValue, listed
@@ -64,8 +63,8 @@ def body_statements(model: Model, names: Names, Y: RegressorModel | None, addres
 
 
 def _shares(model: Model, Y: RegressorModel) -> _Shares:
-    """At STATES random states."""
-    q = sampled(model)[0][:STATES]
+    """At FEW_STATES random states."""
+    q = sampled(model)[0][:FEW_STATES]
     S, n = q.shape
     # one position, at rest and with every acceleration one
     unit = np.concatenate([np.zeros((1, n)), np.eye(n)])
@@ -107,6 +106,6 @@ def _told(order: Sequence[str], together: Array, address: str) -> Statement:
         figures += [Figure("next_energy_error", energy, "1"), Figure("next_force_error", force, "1")]
         also = "also without" if count else "without"
         after = f"; {also} {order[count]} it would be {100 * energy:.3g} % and {100 * force:.3g} %"
-    text = f"{told}{after}, over {STATES} random states in the limits of the joints."
+    text = f"{told}{after}, over {FEW_STATES} random states in the limits of the joints."
     request = f"GET {address}/inertial_parameters" if address else ""
     return Statement("omissions", "bodies" if count else "no-body", text, (), (), tuple(figures), request)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from substructures.analysis.report.rest import Rest
-from substructures.analysis.report.sizes import sampled
+from substructures.analysis.report.sizes import FEW_STATES, MOST_WORK, sampled
 from substructures.analysis.report.statements import MARK, Figure, Names, Statement, in_short, reason_of
 from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.vibrations import modes
@@ -20,10 +20,8 @@ from substructures.tree.model import Model
 
 #: by which part of their default parameters are changed, and changes of a result that count as none
 PART, NOTHING = 0.1, 1e-9
-#: states that a result is the largest over, parameters that are ranked in a sentence
-STATES, TOLD = 32, 5
-#: parameters times operations up to which they are ranked
-MOST_WORK = 400_000
+#: parameters that are ranked in a sentence
+TOLD = 5
 #: steps of Newton's method with which a position of rest is followed, and the last one at most [rad, m]
 STEPS, CLOSE = 8, 1e-8
 
@@ -141,17 +139,17 @@ def _frequencies(model: Model, rest: Rest, varied: Varied) -> Iterator[_Result]:
 def _over_states(model: Model, varied: Varied) -> Iterator[_Result]:
     """The largest diagonal element of the metric, and the range of the potential energy, over the same states."""
     count = len(next(iter(varied.columns.values())))
-    states = read_states(model, {"q": np.tile(sampled(model)[0][:STATES], (count, 1))}, None)
+    states = read_states(model, {"q": np.tile(sampled(model)[0][:FEW_STATES], (count, 1))}, None)
     given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(model)}
     quantities = ["metric", "potential_energy"]
     values = symbol_values(model, given, states, quantities)
-    values |= {name: np.repeat(column, STATES) for name, column in varied.columns.items()}
-    found = interpret_in_blocks(model.program, values, quantities, count * STATES)
-    g = found["metric"].reshape(count, STATES, model.dof, model.dof)
+    values |= {name: np.repeat(column, FEW_STATES) for name, column in varied.columns.items()}
+    found = interpret_in_blocks(model.program, values, quantities, count * FEW_STATES)
+    g = found["metric"].reshape(count, FEW_STATES, model.dof, model.dof)
     diagonal = np.einsum("ksaa->ksa", g).max(axis=1)
     a = int(diagonal[0].argmax())
-    unit, over = "kg*m^2" if model.joints[a] == "R" else "kg", f"over {STATES} random states"
+    unit, over = "kg*m^2" if model.joints[a] == "R" else "kg", f"over {FEW_STATES} random states"
     element = f"The largest value of {MARK}g[{a + 1},{a + 1}]{MARK} {over}"
     yield _Result("largest-element", element, unit, diagonal[:, a], "evaluations")
-    V = found["potential_energy"].reshape(count, STATES)
+    V = found["potential_energy"].reshape(count, FEW_STATES)
     yield _Result("potential-range", f"The range of the potential energy {over}", "J", np.ptp(V, axis=1), "evaluations")

@@ -7,8 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from substructures.analysis.report.influence import MOST_WORK, STATES
-from substructures.analysis.report.sizes import ALLOWED, SEED, sampled, shares
+from substructures.analysis.report.sizes import ALLOWED, FEW_STATES, MOST_WORK, SEED, sampled, shares
 from substructures.analysis.report.statements import Figure, Names, Statement, in_short, reason_of
 from substructures.array import Array
 from substructures.errors import InvalidInput, MissingValue, listed
@@ -33,17 +32,17 @@ class _Sampled:
         the same coordinate. Raises LinAlgError where the metric is not positive definite.
         """
         count, n = len(sets) + 1, self.model.dof
-        q = sampled(self.model)[0][:STATES]
+        q = sampled(self.model)[0][:FEW_STATES]
         qd = np.random.default_rng(SEED).uniform(-1, 1, q.shape)
         states = read_states(self.model, {"q": np.tile(q, (count, 1)), "qd": np.tile(qd, (count, 1))}, None)
         given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(self.model)}
         values = symbol_values(self.model, given, states, QUANTITIES)
         for name in self.names:
             column = np.array([1.0, *(name not in some for some in sets)])
-            values[name] = np.repeat(column, STATES) * values[name]
+            values[name] = np.repeat(column, FEW_STATES) * values[name]
         with np.errstate(all="ignore"):
-            found = interpret_in_blocks(self.model.program, values, QUANTITIES, count * STATES)
-        g, Q = found["metric"].reshape(count, STATES, n, n), found["forces"].reshape(count, STATES, n)
+            found = interpret_in_blocks(self.model.program, values, QUANTITIES, count * FEW_STATES)
+        g, Q = found["metric"].reshape(count, FEW_STATES, n, n), found["forces"].reshape(count, FEW_STATES, n)
         return shares(g[0], g[1:], Q[0], Q[1:])
 
 
@@ -82,7 +81,7 @@ def _told(names: Names, order: Sequence[str], together: Array, address: str) -> 
     """The longest beginning of the order that may be left out, with its errors."""
     wrong = together.max(axis=1) > ALLOWED
     count = int(wrong.argmax()) if wrong.any() else len(order)
-    over = f"over {STATES} random states in the limits of the joints, at rates up to 1"
+    over = f"over {FEW_STATES} random states in the limits of the joints, at rates up to 1"
     figures = []
     told = f"No parameter of the mass matrix may be zero at {100 * ALLOWED:g} %"
     if count:

@@ -25,6 +25,8 @@ from substructures.tree.model import Model
 #: a share that is called small, states that are sampled, and the range of slides without limits [m]
 SMALL, STATES, SLIDE = 0.02, 400, 1.0
 SEED = 1
+#: states that one result is the largest over, and values of parameters times operations up to which it is looked for
+FEW_STATES, MOST_WORK = 32, 400_000
 #: errors of the kinetic energy and of forces that are allowed, and a force beside the largest of all that is rounding
 ALLOWED, ROUNDING = 0.01, 1e-12
 

@@ -10,7 +10,9 @@ from substructures.certificate.bodies import NONE, Bodies, laws_of
 from substructures.certificate.by_coordinate import along, rates
 from substructures.certificate.dynamics import carried_by_joints
 from substructures.certificate.linear import Ball, dot
-from substructures.certificate.loads import LOADS, Forces, joint_law
+from substructures.certificate.loads.forces import Forces
+from substructures.certificate.loads.joint_laws import joint_law
+from substructures.certificate.loads.part_loads import LOADS
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
 from substructures.certificate.relations import written

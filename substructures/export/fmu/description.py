@@ -13,7 +13,7 @@ from xml.etree import ElementTree as Tree
 from substructures.documents.units import BASE, UnknownUnitError, read_unit
 from substructures.export.fmu.variables import TOLERANCE, Layout, Variable
 from substructures.export.software import SOFTWARE
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS
 
 #: shown in degrees: factor of the displayed number
 _DEGREES = 57.29577951308232

@@ -13,7 +13,8 @@ from substructures.interchange.difference.documents import Change, applied, chan
 from substructures.interchange.difference.formulas import QuantityDifference, compared
 from substructures.interchange.difference.sides import of_model, of_part
 from substructures.part.definition import Definition
-from substructures.part.part import Part, draft
+from substructures.part.derive import draft
+from substructures.part.part import Part
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 

@@ -3,27 +3,25 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from substructures.array import Array
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.compile.kernel import NO_PLACES, Evaluated, Places, with_elements
-from substructures.errors import InvalidArgument, TooLarge
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
-from substructures.formats.packing import packed_elements
 from substructures.quantities.accelerations import (
     Evaluator,
     accelerations,
     accelerations_on_closures,
     conditions,
 )
-from substructures.quantities.canonical import momentum
-from substructures.quantities.derivative_directions import Direction, direction_values
+from substructures.quantities.derivative_directions import Direction
+from substructures.quantities.numbers.asked import Asked, Form, read_arguments
 from substructures.quantities.numbers.conditioning import Look, solved_anew
 from substructures.quantities.numbers.levels import singular_loops
 from substructures.quantities.numbers.reaction_numbers import reaction_numbers
@@ -34,48 +32,23 @@ from substructures.quantities.numbers.states import (
     StateInput,
     States,
     ValueInput,
-    known_values,
-    read_states,
     require,
 )
-from substructures.quantities.numbers.warnings import Notice, doubted, not_judged_warnings, value_warnings
+from substructures.quantities.numbers.warnings import Notice, doubted, value_warnings
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
     MODEL,
     OUTPUTS,
-    QUANTITIES,
     REACTIONS,
     TABLE,
 )
 from substructures.quantities.sources import (
     PARTS,
     Sources,
-    cost,
-    numbers_per_state,
-    read_quantities,
-    require_there,
     steps,
 )
 from substructures.tree.model import Model
-
-__all__ = [
-    "QUANTITIES",
-    "Direction",
-    "Evaluation",
-    "EvaluationOptions",
-    "Evaluator",
-    "Failure",
-    "Sources",
-    "check",
-    "cost",
-    "evaluate",
-    "evaluate_in_parts",
-    "interpreted",
-    "numbers_per_state",
-    "read_quantities",
-    "steps",
-]
 
 
 def interpreted(
@@ -146,8 +119,8 @@ def evaluate(
     given: dict[str, Any] = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
     given |= {"along": options.along, "joints": options.joints}
     sources = Sources(model) if isinstance(model, Model) else model
-    form = _Form(options.packed, options.float32)
-    asked = _asked(sources, quantities, given, form, options.limit, options.evaluator)
+    form = Form(options.packed, options.float32)
+    asked = read_arguments(sources, quantities, given, form, options.limit, options.evaluator)
     states, values = asked.states, asked.values
     return _answered(asked, states, values, _told_of_values(asked, states.q, values, options.first))
 
@@ -169,92 +142,12 @@ def evaluate_in_parts(
     is asked for. Warnings about the values of a part are told with it, with ``told_first`` those about all states with
     the first one; states in failures, and in warnings about one state, are counted from the beginning of the part.
     """
-    form = _Form(bool(given.get("packed")), bool(given.get("float32")))
-    asked = _asked(sources, quantities, given, form, limit, evaluator)
+    form = Form(bool(given.get("packed")), bool(given.get("float32")))
+    asked = read_arguments(sources, quantities, given, form, limit, evaluator)
     return _parts(asked, size, first, told_first)
 
 
-@dataclass(frozen=True, slots=True)
-class _Form:
-    """What results look like."""
-
-    packed: bool
-    float32: bool
-
-    def places(self, sources: Sources, names: Sequence[str]) -> Places:
-        """The elements of the outputs that are packed."""
-        n, rule = sources.model.dof, sources.christoffel_rule
-        kinds = {"metric": "symmetric", "christoffel": rule}
-        return {x: packed_elements(x, n, kinds[x]) for x in names if x in kinds} if self.packed else NO_PLACES
-
-    def shown(self, result: Any) -> Any:
-        """Results in the precision wanted."""
-        if not self.float32:
-            return result
-        if isinstance(result, dict):
-            return {name: self.shown(x) for name, x in result.items()}
-        with np.errstate(over="ignore"):  # then it is a failure
-            return result.astype(np.float32)
-
-    def is_beyond(self, result: Any, state: int) -> bool:
-        """Whether a result that is not finite is so only in the precision wanted."""
-        each = result.values() if isinstance(result, dict) else (result,)
-        return self.float32 and all(bool(np.isfinite(x[state]).all()) for x in each)
-
-
-@dataclass(frozen=True, slots=True)
-class _Asked:
-    """Arguments that were checked, with the values of all symbols; ``chosen``, ``inputs``: names of those given."""
-
-    sources: Sources
-    names: Sequence[str]
-    form: _Form
-    evaluator: Evaluator
-    states: States
-    values: Mapping[str, Any]
-    chosen: Sequence[str]
-    inputs: Sequence[str]
-
-
-def _asked(
-    sources: Sources,
-    quantities: str | Sequence[str],
-    given: ArgumentsByName,
-    form: _Form,
-    limit: int | None,
-    evaluator: Evaluator,
-) -> _Asked:
-    names = read_quantities(quantities)
-    sources = _of_joints(sources, names, given.get("joints"))
-    states = read_states(sources.model, given, limit)
-    values = _values(sources, given, given.get("along"), states, names)
-    if any(TABLE[name].of_momenta for name in names):
-        values |= _momenta(sources, evaluator, values, states.count)
-    chosen, inputs = (tuple(given.get(field) or ()) for field in ("parameters", "inputs"))
-    return _Asked(sources, names, form, evaluator, states, values, chosen, inputs)
-
-
-def _of_joints(sources: Sources, names: Sequence[str], joints: Sequence[str] | None) -> Sources:
-    """The sources with the rows of reactions that are wanted. Raises InvalidArgument for unknown ones."""
-    if joints is None:
-        return sources
-    if REACTIONS not in names:
-        raise InvalidArgument.at("/joints", "not-supported", "'joints' goes with the quantity 'reactions'")
-    found = replace(sources, joints=(joints,) if isinstance(joints, str) else tuple(joints))
-    found.of(REACTIONS)
-    return found
-
-
-def _momenta(sources: Sources, evaluator: Evaluator, values: Mapping[str, Any], count: int) -> dict[str, Any]:
-    """p_a = g_ab q'^b of the states, by their symbols."""
-    name, coordinates = "generalised_momenta", sources.model.coordinates
-    program = sources.program(name)
-    require(program, [name], values)
-    found = evaluator(program, values, [name], count)[name]
-    return {momentum(c): found[:, a] for a, c in enumerate(coordinates)}
-
-
-def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[Evaluation]:
+def _parts(asked: Asked, size: int, first: int, told_first: bool) -> Iterator[Evaluation]:
     states, count = asked.states, asked.states.count
     varying = {name for name, x in asked.values.items() if np.shape(x) == (count,)}
     told = _told_of_values(asked, states.q, asked.values, first) if told_first else None
@@ -267,7 +160,7 @@ def _parts(asked: _Asked, size: int, first: int, told_first: bool) -> Iterator[E
         told = told and []
 
 
-def _told_of_values(asked: _Asked, q: Array, values: Mapping[str, Any], first: int) -> list[Notice]:
+def _told_of_values(asked: Asked, q: Array, values: Mapping[str, Any], first: int) -> list[Notice]:
     sources, chosen = asked.sources, {name: values[name] for name in asked.chosen}
     others = {symbol.name for each in sources.derived(asked.names) for symbol in each.program.symbols}
     told = value_warnings(sources, chosen, asked.inputs, q, others, first)
@@ -275,7 +168,7 @@ def _told_of_values(asked: _Asked, q: Array, values: Mapping[str, Any], first: i
 
 
 def _answered(
-    asked: _Asked, states: States, values: Mapping[str, Any], warnings: Iterable[Mapping[str, Any]]
+    asked: Asked, states: States, values: Mapping[str, Any], warnings: Iterable[Mapping[str, Any]]
 ) -> Evaluation:
     """The numbers of some states; ``warnings`` about their values."""
     sources, names, model = asked.sources, asked.names, asked.sources.model
@@ -312,37 +205,7 @@ def _is_finite(names: Sequence[str], found: Mapping[str, Mapping[str, Array]]) -
     return seen and not any(TABLE[name].pivots for name in names)
 
 
-def check(
-    sources: Sources,
-    quantities: str | Sequence[str],
-    q: StateInput | None,
-    qd: StateInput | None = None,
-    qdd: StateInput | None = None,
-    *,
-    inputs: ValueInput | None = None,
-    parameters: ValueInput | None = None,
-    t: ArrayLike | None = 0.0,
-    along: Direction | None = None,
-    joints: Sequence[str] | None = None,
-    **_form: bool,
-) -> States:
-    """The states, when :func:`evaluate` would accept the arguments; nothing is computed.
-
-    Raises as :func:`evaluate`, but for formulas that are too large to be made here, or take too long.
-    """
-    names = read_quantities(quantities)
-    sources = _of_joints(sources, names, joints)
-    given = {"q": q, "qd": qd, "qdd": qdd, "inputs": inputs, "parameters": parameters, "t": t}
-    states = read_states(sources.model, given, None)
-    with suppress(TooLarge, TimeoutError):
-        values = _values(sources, given, along, states, names)
-        for source, program, outputs in steps(sources, names):
-            if program is not None and source != REACTIONS:
-                require(program, outputs, values | dict.fromkeys(map(momentum, sources.model.coordinates), 0.0))
-    return states
-
-
-def _computed(asked: _Asked, values: Mapping[str, Any], count: int) -> dict[str, dict[str, Array]]:
+def _computed(asked: Asked, values: Mapping[str, Any], count: int) -> dict[str, dict[str, Array]]:
     """Outputs by source."""
     sources, evaluator, model = asked.sources, asked.evaluator, asked.sources.model
     look = _looking(model, values, count)
@@ -392,24 +255,3 @@ def _looking(model: Model, values: Mapping[str, Any], count: int) -> Look:
         return interpreted(model.program, some, names, len(states))
 
     return look
-
-
-def _values(
-    sources: Sources, given: ArgumentsByName, along: Direction | None, states: States, quantities: Sequence[str]
-) -> dict[str, Any]:
-    """Values of all symbols. Raises InvalidArgument for an argument that a quantity needs."""
-    model = sources.model
-    require_there(model, quantities)
-    # the first quantity that needs an argument is the one that a message names
-    needed = {field: name for name in reversed(quantities) for field in TABLE[name].requires}
-    if "qdd" in needed and states.qdd is None and model.dof:
-        raise InvalidArgument.at("/qdd", "missing", f"{needed['qdd']} needs accelerations 'qdd'")
-    if "reactions" in quantities and states.qdd is not None and model.closures:
-        message = "reactions of a tree with closures are those of its own motion: leave 'qdd' out"
-        raise InvalidArgument.at("/qdd", "not-supported", message)
-    parameters = sources.parameters(quantities)
-    defaults = sources.defaults if parameters is model.parameters else None
-    values = known_values(model, given, states, parameters, defaults)
-    if "along" in needed:
-        values |= direction_values(model, along, states)
-    return values

@@ -10,13 +10,14 @@ from typing import Any
 import numpy as np
 
 from substructures.array import Array
+from substructures.certificate.agreement import not_judged_warnings
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
 from substructures.quantities.numbers.levels import dependent_left, ranges_left
 from substructures.quantities.numbers.result import Evaluation, without_axis
 from substructures.quantities.numbers.states import default_numbers, input_defaults
-from substructures.quantities.numbers.warnings import doubted, not_judged_warnings, value_warnings
+from substructures.quantities.numbers.warnings import doubted, value_warnings
 from substructures.quantities.quantity import CONDITION, FORWARD, REACTIONS, TABLE
 from substructures.quantities.sources import PARTS, Sources, read_quantities, steps
 

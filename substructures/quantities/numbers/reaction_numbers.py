@@ -14,8 +14,8 @@ from substructures.mechanics.closure_rows import ranks
 from substructures.quantities.accelerations import Evaluator, closure_sizes
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS
 from substructures.quantities.numbers.states import require
+from substructures.quantities.part_models import OUTPUTS
 from substructures.quantities.quantity import REACTIONS
-from substructures.quantities.reactions import OUTPUTS
 from substructures.tree.model import Model
 
 

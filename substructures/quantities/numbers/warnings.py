@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
 from substructures.array import Array
@@ -64,19 +64,6 @@ def no_coordinates(dof: int) -> list[Notice]:
 def _without_effect(kind: str, name: str) -> Notice:
     message = f"no formula depends on the {kind} '{name}'"
     return {"pointer": f"/{kind}s/{escape(name)}", "code": "no-effect", "message": message}
-
-
-def not_judged_warnings(quantities: Iterable[str]) -> list[dict[str, str]]:
-    """A warning for each of these quantities, whose programs have outputs that are not judged."""
-    return [
-        {
-            "pointer": "",
-            "code": "not-judged",
-            "message": f"'{name[:80]}' could not be judged: some of what it has to be by the documents has no finite "
-            "value at any state that was tried",
-        }
-        for name in dict.fromkeys(quantities)
-    ]
 
 
 def doubted(sources: Sources, quantities: Sequence[str]) -> list[str]:

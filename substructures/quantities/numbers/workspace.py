@@ -17,8 +17,7 @@ from substructures.expr.program import Entries, Formulas, Program, Symbol, array
 from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
 from substructures.part.balls import position_rates
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import KINEMATICS, require_stored
+from substructures.tree.model import KINEMATICS, Model, require_stored
 
 #: of coordinates by the letter of their joint
 UNITS = {"R": "rad", "P": "m"}
@@ -203,6 +202,11 @@ class Workspace:
             raise InvalidDocument.at(
                 "/parameters", "division-by-zero", f"a formula divides by zero when these are zero: {zeros}"
             ) from None
+
+
+def momentum(coordinate: str) -> str:
+    """The symbol of p_a."""
+    return f"p.{coordinate}"
 
 
 def _non_zero(formulas: Formulas) -> Entries:

@@ -14,11 +14,12 @@ from substructures.expr.program import Formulas
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, Columns, Link, constant_rotation, joined
 from substructures.mechanics.linear3 import ZERO
+from substructures.part.derive import derive
 from substructures.part.formulas import Coupled, parallel_axes
 from substructures.part.inertia_symbols import inertia_symbols
 from substructures.part.mechanism import Mechanism
 from substructures.part.outputs import over_formulas
-from substructures.part.part import MAX_NODES, Part, derive
+from substructures.part.part import MAX_NODES, Part
 from substructures.tree.coupling import OWN, evaluate_parts, place, with_momenta
 from substructures.tree.document import Instance
 from substructures.tree.inertial import FRAMES, LINKS, Plan, inertial_entries, planned
@@ -38,7 +39,7 @@ def published_part(
 ) -> Part:
     """The part that a tree becomes, coupled, verified and certified; ``parts``: by name of the instance.
 
-    Raises as :func:`substructures.part.part.derive`.
+    Raises as :func:`substructures.part.derive.derive`.
     """
     return derive(found.definition, max_nodes, admit, lambda m, large: _coupled(found, parts, m, large))
 
@@ -47,7 +48,7 @@ def _coupled(found: Published, parts: Mapping[str, Part], m: Mechanism, large: b
     run = over_formulas(m.graph)
     mounted = _mounted(found, parts, m)
     plan = planned(run, mounted, not large, True)
-    symbols = inertia_symbols(m)
+    symbols = inertia_symbols(m.scope, m.topology)
     axes = parallel_axes(plan.chain, symbols)
     by_angles = axes.by_angles(plan.by_angles, not large)
     own = [run(here.part, here.bindings, OWN) for here in mounted]

@@ -18,7 +18,7 @@ from service.schemas.jobs import ItemDocument
 from substructures.expr.program import Program
 from substructures.quantities.formulas import derived
 from substructures.quantities.quantity import OF_PARTS, PROGRAMS
-from substructures.tree.closures import ClosureRows
+from substructures.tree.cuts import ClosureRows
 
 CLOSURES = "closures"
 PROGRAM = "program"

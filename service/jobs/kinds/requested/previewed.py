@@ -12,8 +12,9 @@ from service.jobs.kinds.requested.reported import INSTANCE
 from service.schemas.jobs import ItemDocument
 from substructures.documents import read_model
 from substructures.part.definition import Definition
+from substructures.part.derive import derive
 from substructures.part.mass import mass_at_defaults
-from substructures.part.part import Part, derive
+from substructures.part.part import Part
 from substructures.pictures.tree import picture
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec

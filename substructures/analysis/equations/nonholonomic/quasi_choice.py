@@ -8,20 +8,18 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.arguments import require_read
-from substructures.analysis.equations.cofactors import determinant
+from substructures.analysis.equations.cofactors import MatrixRows, determinant
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     VelocityRows,
     linear_row,
     row_values,
 )
 from substructures.errors import InvalidArgument, among
-from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
 from substructures.printers.render import write
 from substructures.quantities.numbers.workspace import Workspace
 
-MatrixRows = list[list[Expr]]
 #: positions in which a determinant is looked at
 PLACES = 64
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from substructures.analysis.equations.nonholonomic.quasi_choice import MatrixRows
+from substructures.analysis.equations.cofactors import MatrixRows
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, array, program

@@ -54,8 +54,7 @@ from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.document import require_undriven, require_unignored
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS, Model
 
 
 @dataclass(frozen=True)

@@ -24,8 +24,7 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Program, array
 from substructures.mechanics.linear3 import Vector, add, apply, cross, sub, transpose
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.tree.model import Model
-from substructures.tree.model_outputs import KINEMATICS
+from substructures.tree.model import KINEMATICS, Model
 
 GAP, ROWS, RATE, BIAS, WHEN = "gap", "rows", "rate", "bias", "when"
 #: velocities of frames where the coordinates rest, of trees with given motions

@@ -31,7 +31,7 @@ from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.numbers.states import require
-from substructures.quantities.reactions import ReactionModel
+from substructures.quantities.part_models import ReactionModel
 from substructures.tree.model import Model
 
 FORCE = "reaction_force"

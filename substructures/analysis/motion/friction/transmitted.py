@@ -19,7 +19,7 @@ from substructures.expr.program import array, program
 from substructures.mechanics.accelerations import definite_solve
 from substructures.quantities.formulas import DYNAMICS
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.quantities.reactions import OUTPUTS, ReactionModel
+from substructures.quantities.part_models import OUTPUTS, ReactionModel
 from substructures.tree.model import Model
 
 

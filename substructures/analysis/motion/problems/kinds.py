@@ -12,7 +12,7 @@ from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.problem import StateVector
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
-from substructures.quantities.reactions import ReactionModel
+from substructures.quantities.part_models import ReactionModel
 from substructures.tree.model import Model
 
 

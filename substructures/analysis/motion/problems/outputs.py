@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid
+from substructures.quantities.part_models import ReactionModel
 from substructures.quantities.powers import PowerModel
-from substructures.quantities.reactions import ReactionModel
 
 
 @dataclass(frozen=True)

@@ -13,11 +13,10 @@ from substructures.expr.walk import transfer
 from substructures.mechanics.kinematics import INTERFACE, Link, Pose, fixed_link
 from substructures.mechanics.linear3 import E3, IDENTITY, ZERO, Matrix, Vector, apply, sub, transpose
 from substructures.part.frames import CutFrames
-from substructures.part.outputs import PartOutputs
+from substructures.part.outputs import PartOutputs, frame_placement, links_of
 from substructures.part.part import Part
 from substructures.tree.given.loops.dependent import NotReduced
 from substructures.tree.given.loops.triangle import Closing, Complex, Motion, conjugate, cross, over, plus, times
-from substructures.tree.mounted_part import frame_placement, links_of
 
 #: types of closures in a plane, by how many of the three numbers of a motion in it they leave free
 TURNING = ("pin", "revolute", "ball", "spherical", "cylindrical")

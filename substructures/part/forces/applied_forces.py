@@ -2,7 +2,7 @@
 
 Springs, bushings and what else acts between parts of the substructure do no work in a motion of the interface: their
 generalised forces are complete without a host. Forces and torques act on the host, too: kept as wrenches
-(:mod:`substructures.part.wrenches`), as are those between two frames in the axes of the world.
+(:mod:`substructures.part.forces.wrenches`), as are those between two frames in the axes of the world.
 """
 
 from __future__ import annotations
@@ -14,12 +14,13 @@ from substructures.expr.graph import Expr
 from substructures.loads.document import Law, LoadFormulas
 from substructures.loads.joint import JointForce
 from substructures.loads.pairs import Reach
+from substructures.part.forces.joint_laws import Stops
+from substructures.part.forces.load_names import depends_on_state
+from substructures.part.forces.own_names import OwnNames
+from substructures.part.forces.potentials import found_potential
+from substructures.part.forces.wrenches import AppliedWrench, acts_on_host, read_wrenches
 from substructures.part.kinematics import Kinematics
-from substructures.part.load_names import depends_on_state
-from substructures.part.mechanism import Mechanism, Stops
-from substructures.part.own_names import OwnNames
-from substructures.part.potentials import found_potential
-from substructures.part.wrenches import AppliedWrench, acts_on_host, read_wrenches
+from substructures.part.mechanism import Mechanism
 
 
 @dataclass

@@ -12,11 +12,9 @@ from typing import TypeGuard
 
 from substructures.loads.names import Names, names_in
 from substructures.loads.vectors import ForceBetween, ForceLoad, TorqueBetween, TorqueLoad
-from substructures.mechanics.kinematics import carrier_link
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.definition import Definition
-from substructures.part.kinematics import Kinematics, point_kinematics
 
 WrenchLoad = ForceLoad | TorqueLoad | ForceBetween | TorqueBetween
 
@@ -112,15 +110,6 @@ def steady_loads(definition: Definition, coordinates: Iterable[str]) -> tuple[bo
         row.alone and not is_dead and all(names_in(x) <= known for x in row.load.vector)
         for row, is_dead in zip(wrench_rows(definition), dead_loads(definition), strict=True)
     )
-
-
-def wrench_point(k: Kinematics, wrench: AppliedWrench) -> Vector:
-    """``at`` in the body frame of the carrier."""
-    if wrench.point_of is None:
-        return wrench.at
-    # R_k (x - r_k) - tau e3
-    pose, tau = k.pose(wrench.carrier), carrier_link(k.links, wrench.carrier).tau
-    return sub(apply(pose.R, sub(point_kinematics(k, wrench.point_of, wrench.at).position, pose.r)), (0, 0, tau))
 
 
 def wrench_about_origin(at: Vector, vector: Vector, moment: bool) -> Wrench:

@@ -8,16 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from substructures.documents.units import si_unit
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
 from substructures.loads.document import LoadFormulas
 from substructures.loads.names import End, Names
 from substructures.loads.pairs import Place, Reach
 from substructures.mechanics.linear3 import Vector
-from substructures.part.parameters import si_unit
 from substructures.tree.assembly import Assembly
-from substructures.tree.frame_points import place
-from substructures.tree.mounted_part import PlacedPart
+from substructures.tree.mounted_part import PlacedPart, place
 
 #: of a revolute and of a prismatic coordinate
 UNITS = ("rad", "m")

@@ -10,7 +10,9 @@ from typing import Any
 
 from flint import arb
 
-from substructures.certificate.between import (
+from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame
+from substructures.certificate.linear import Ball, dot, identity, zeros
+from substructures.certificate.loads.between import (
     HALF,
     Between,
     MeasuredNames,
@@ -22,9 +24,7 @@ from substructures.certificate.between import (
     in_world,
     torque_changes,
 )
-from substructures.certificate.bodies import GROUND, NONE, Bodies, Frame
-from substructures.certificate.linear import Ball, dot, identity, zeros
-from substructures.certificate.loads import friction_force
+from substructures.certificate.loads.joint_laws import friction_force
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import names_of, slope
 from substructures.expr.direct import steps_of

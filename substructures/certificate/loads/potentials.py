@@ -17,7 +17,7 @@ from flint import arb
 from substructures.certificate.by_coordinate import along, gathered
 from substructures.certificate.expanded import MOST, Expanded, NoExpansionError, expanded
 from substructures.certificate.linear import Ball, quaternion_product, turn_of
-from substructures.certificate.loads import Forces
+from substructures.certificate.loads.forces import Forces
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs, Values
 from substructures.certificate.relations import is_ball, positions_of, rates_of

@@ -16,11 +16,12 @@ from substructures.expr.replay import replay
 from substructures.loads.document import Load
 from substructures.loads.friction import FrictionLoad
 from substructures.mechanics.kinematics import base_functions, links
-from substructures.part.applied_forces import applied_forces, read_loads
 from substructures.part.definition import Definition
+from substructures.part.forces.applied_forces import applied_forces, read_loads
+from substructures.part.forces.joint_laws import JointLaw
+from substructures.part.forces.wrenches import wrench_places
 from substructures.part.kinematics import Kinematics, kinematics
-from substructures.part.mechanism import JointLaw, Mechanism, mechanism
-from substructures.part.wrenches import wrench_places
+from substructures.part.mechanism import Mechanism, mechanism
 
 
 def load_forces(definition: Definition) -> Program:

@@ -15,13 +15,14 @@ from substructures.mechanics.cut_joints import PLACE
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, scale, sub, transpose
 from substructures.mechanics.newton_euler import Wrench
 from substructures.part.frames import axis_rotation
-from substructures.tree.assembly import Assembly, tree_name
-from substructures.tree.closures import ClosureEnd, closure_formulas
-from substructures.tree.frame_points import place
+from substructures.tree.assembly import Assembly
+from substructures.tree.closures import closure_formulas
+from substructures.tree.cuts import ClosureEnd
+from substructures.tree.forces.loads import load_formulas
+from substructures.tree.forces.part_loads import loads_of_parts
 from substructures.tree.given.ties import KnifeEdgeConstraint, RollingConstraint
-from substructures.tree.loads import load_formulas
-from substructures.tree.mounted_part import WORLD, PlacedPart
-from substructures.tree.part_loads import loads_of_parts
+from substructures.tree.mounted_part import WORLD, PlacedPart, place
+from substructures.tree.reading import tree_name
 
 #: rows of a rolling contact: along both directions of the plane, and along its normal
 ROLLING = ("slip_1", "slip_2", "contact")

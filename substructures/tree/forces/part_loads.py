@@ -11,10 +11,9 @@ from substructures.loads.document import LoadFormulas
 from substructures.loads.names import End, Names
 from substructures.loads.pairs import Acting, Place, Reach
 from substructures.mechanics.linear3 import Vector
-from substructures.part.wrenches import acts_on_host
+from substructures.part.forces.wrenches import acts_on_host
 from substructures.tree.assembly import Assembly
-from substructures.tree.frame_points import place_of
-from substructures.tree.loads import LoadNames
+from substructures.tree.forces.loads import LoadNames
 from substructures.tree.mounted_part import PlacedPart, joint_position
 
 
@@ -67,7 +66,7 @@ class _Inside(Names):
 
     def anchor(self, end: End, point: Vector) -> Place:
         """A point of a body or port."""
-        return place_of(self.here, self.here.part.frames.index(end.frame), point)
+        return self.here.place(self.here.part.frames.index(end.frame), point)
 
     def place(self, anchor: Place) -> Place:
         """The anchor itself."""

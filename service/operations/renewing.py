@@ -15,8 +15,7 @@ from contextlib import contextmanager
 from threading import Thread
 from time import perf_counter
 
-from sqlalchemy.exc import DBAPIError
-
+from service.database.connections import DBAPIError
 from service.messages.refusals import NotDerived, Refused
 from service.operations.renewal import OPERATOR, is_part_newest, is_tree_newest, renew_part, renew_tree
 from service.operations.verification import told

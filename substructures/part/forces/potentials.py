@@ -18,7 +18,7 @@ from substructures.expr.rings.expand import is_zero
 from substructures.expr.walk import transfer
 from substructures.loads.names import LEFT_OUT
 from substructures.loads.scope import Scope
-from substructures.part.load_names import velocity_in
+from substructures.part.forces.load_names import velocity_in
 
 
 def spring_potential(scope: Scope, names: Sequence[str], forces: Mapping[int, Expr], pointer: str) -> Expr:

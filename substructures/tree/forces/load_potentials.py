@@ -13,9 +13,9 @@ from collections.abc import Iterator, Sequence
 from substructures.expr.calculus.integrate import from_zero, needed, potential
 from substructures.expr.graph import Expr, Graph
 from substructures.loads.pairs import wrench_forces
-from substructures.part.outputs import Run, over_formulas
+from substructures.part.outputs import Run, links_of, over_formulas
 from substructures.tree.coupling import place
-from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, balls_in, links_of, ratios_of
+from substructures.tree.mounted_part import EvaluatedPart, MountedPart, PlacedPart, balls_in, ratios_of
 
 #: terms of a generalised force that is integrated
 LIMIT = 50

@@ -12,11 +12,11 @@ from substructures.loads.names import LEFT_OUT, Elastic, End, Names
 from substructures.loads.pairs import Place, Reach
 from substructures.mechanics.kinematics import base_functions, links
 from substructures.mechanics.linear3 import IDENTITY, ZERO, Vector, dot, sub
+from substructures.part.forces.load_names import depends_on_state
+from substructures.part.forces.potentials import spring_potential
 from substructures.part.frames import Frame
 from substructures.part.kinematics import Kinematics, kinematics, own_place, point_kinematics
-from substructures.part.load_names import depends_on_state
 from substructures.part.mechanism import Mechanism
-from substructures.part.potentials import spring_potential
 
 
 class OwnNames(Names):

@@ -1,0 +1,1 @@
+"""What loads have to do, by virtual power: those of definitions and of trees, and their potentials."""

@@ -1,0 +1,1 @@
+"""Loads of a part: read, and what they do as generalised forces."""
