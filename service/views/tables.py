@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from service.messages.negotiation import by_preference
+from service.messages.negotiation import most_wanted
 from service.messages.refusals import Refused
 from service.operations.jobs.tables import Table
 from substructures.formats import arrow
@@ -22,15 +22,13 @@ AT_A_TIME = 10_000  # rows
 
 def chosen_media(accept: str) -> str:
     """The media type of the answer. Raises Refused 406."""
-    for pattern in by_preference(accept or "*/*"):
-        if pattern in ("*/*", "application/*", JSON):
-            return JSON
-        if pattern in FILES:
-            if pattern in (arrow.MEDIA_TYPE, PARQUET) and not arrow.is_available():
-                detail = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use text/csv"
-                raise Refused(406, "arrow-not-installed", detail)
-            return pattern
-    raise Refused(406, "not-acceptable", f"answers are {', '.join((JSON, *FILES))}")
+    found = most_wanted(accept, (JSON, *FILES))
+    if found is None:
+        raise Refused(406, "not-acceptable", f"answers are {', '.join((JSON, *FILES))}")
+    if found in (arrow.MEDIA_TYPE, PARQUET) and not arrow.is_available():
+        detail = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use text/csv"
+        raise Refused(406, "arrow-not-installed", detail)
+    return found
 
 
 def rows_view(table: Table, start: int, stop: int) -> dict[str, Any]:
