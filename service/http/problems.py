@@ -107,7 +107,8 @@ def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRo
 
 
 def _other_method(request: Request, found: Sequence[APIRoute]) -> Refused:
-    methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
+    possible = {method for route in found for method in route.methods or ()}
+    methods = ", ".join(sorted(possible | ({"HEAD"} if "GET" in possible else set())))
     detail = f"{request.method[:40]} is not possible at this path, but {methods}"
     return Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
 
