@@ -40,7 +40,8 @@ def test_problems(client: TestClient) -> None:
     problem(client.get("/v1/trees/"), 404, "not-found")
     problem(client.get("/v1/trees/nothing"), 404, "unknown-tree")
     wrong = client.put("/v1/substructures", json={})
-    assert problem(wrong, 405, "method-not-allowed")["detail"] == "PUT is not possible at this path, but GET, HEAD, POST"
+    detail = problem(wrong, 405, "method-not-allowed")["detail"]
+    assert detail == "PUT is not possible at this path, but GET, HEAD, POST"
     assert set(wrong.headers["allow"].replace(" ", "").split(",")) == {"GET", "HEAD", "POST"}
     problem(
         client.post("/v1/substructures", content=b"{}", headers={"Content-Type": "text/plain"}),
