@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from statistics import stdev
 from typing import Any, cast
 
 import numpy as np
@@ -96,7 +97,11 @@ def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
 
     column = table(filled, job, "/columns/torque?bins=3")
     assert column["count"] == sum(column["histogram"]["counts"]) == whole["count"]
-    assert column["quantiles"]["1"] == max(row["torque"] for row in whole["items"])
+    torques = [row["torque"] for row in whole["items"]]
+    assert column["quantiles"]["1"] == max(torques)
+    assert column["deviation"] == pytest.approx(stdev(torques))
+    alone = table(filled, job, f"/columns/torque?where=torque>={max(torques)}")
+    assert (alone["count"], alone["mean"], alone["deviation"]) == (1, max(torques), None)
 
     for label in ("study:night", "arm:long", "study:night arm:long"):
         assert [each["id"] for each in filled.get("/v1/jobs", params={"label": label}).json()["items"]] == [job]
