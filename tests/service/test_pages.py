@@ -120,6 +120,20 @@ def test_the_page_of_a_tree(filled: TestClient) -> None:
         assert filled.get(address).status_code == 200, address
 
 
+def test_a_tree_that_was_removed_and_stored_again_has_its_pages(filled: TestClient) -> None:
+    """Its revisions count on; nothing links to those that are gone."""
+    tree = {**TREE, "name": "again"}
+    filled.post("/v1/trees", json=tree)
+    assert filled.delete("/v1/trees/again").status_code == 204
+    for at in (TREE["gravity"], [0, 0, 0]):
+        filled.post("/v1/trees", json={**tree, "gravity": at})
+    assert [each["revision"] for each in filled.get("/v1/trees/again/revisions").json()["items"]] == [3, 2]
+    for path in ("/trees/again", "/trees/again/edit", "/trees/again@2/edit"):
+        answer = filled.get(path)
+        assert (answer.status_code, "again@1" in answer.text) == (200, False), path
+    assert "/trees/again@2/difference?to=again@3" in filled.get("/trees/again").text
+
+
 def test_parts_without_coordinates_or_values(client: TestClient) -> None:
     still = {"name": "block", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     for definition in (still, SLIDER, {"name": "nothing", "bodies": []}):
