@@ -76,7 +76,18 @@ def _steps(bench: Bench) -> Html:
     if n < bench.newest[0]:
         parts += [link("newest revision", f"/trees/{name}@{bench.newest[0]}/edit")]
     redo = tag("button", "redo", type="button", id="redo", hidden="hidden")
-    return html(tag("p", redo, " ", joined(parts, " "), class_="bar"), _comparison(bench))
+    return html(tag("p", redo, " ", joined(parts, " "), class_="bar"), _beside(bench), _comparison(bench))
+
+
+def _beside(bench: Bench) -> Html | None:
+    """That others have changed the tree meanwhile, as in another window: their changes are not in this revision."""
+    base, before = bench.tree.based_on, bench.before
+    if base is None or before is None or base == before.revision:
+        return None
+    known = link(
+        f"what @{before.revision} has", f"/trees/{bench.reference}/difference?to={before.name}@{before.revision}"
+    )
+    return tag("p", f"This was made of @{base}, not of @{before.revision}: compare ", known, class_="warn")
 
 
 def _comparison(bench: Bench) -> Html:

@@ -134,6 +134,18 @@ def test_a_tree_that_was_removed_and_stored_again_has_its_pages(filled: TestClie
     assert "/trees/again@2/difference?to=again@3" in filled.get("/trees/again").text
 
 
+def test_changes_of_another_window_are_told(filled: TestClient) -> None:
+    """Of two that are made of one revision, the second lacks what the first has changed."""
+    filled.post("/v1/trees", json={**TREE, "name": "contended"})
+    for name in ("left", "right"):
+        step = {"name": name, "substructure": "pendulum", "at": "world"}
+        assert filled.post("/v1/trees/contended@1/couplings", json=step).status_code == 201
+    first, second = (filled.get(f"/trees/contended@{number}/edit").text for number in (2, 3))
+    assert "This was made of" not in first
+    assert "This was made of @1, not of @2" in second
+    assert "/trees/contended@3/difference?to=contended@2" in second
+
+
 def test_parts_without_coordinates_or_values(client: TestClient) -> None:
     still = {"name": "block", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     for definition in (still, SLIDER, {"name": "nothing", "bodies": []}):
