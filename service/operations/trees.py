@@ -248,10 +248,12 @@ def store(
     whose = owners.claimed(connection, viewer, "tree", name, entry)
     owners.require_public_parts(connection, whose, coupled.parts.values())
     latest = trees.latest_revision(connection, name)
-    if base is not None and ((not is_exact and latest != base) or not trees.is_there(connection, name, base)):
+    like = base or latest
+    there = trees.digest_of(connection, name, like)
+    if base is not None and ((not is_exact and latest != base) or there is None):
         raise StaleError(f"'{name}' was changed or removed meanwhile")
-    current = trees.resolve(connection, viewer, Reference(name, base)) if latest else None
-    if current is not None and current.digest == digest:
+    current = trees.resolve(connection, viewer, Reference(name, like)) if there == digest else None
+    if current is not None:
         return current, False
     for part in coupled.inline:
         catalogue.store_part(connection, part)
