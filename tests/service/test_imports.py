@@ -83,6 +83,7 @@ def test_a_file_with_loops_is_a_tree(client: TestClient) -> None:
         (ARM.replace("0 1 0", "0 0 0"), "", 422, 'line 3: <axis>: the axis has no direction'),
         (ARM, "?kind=mjcf", 422, "this is URDF, not MJCF"),
         (ARM, "?kind=word", 422, "kind 'word' is none of"),
+        (ARM, "?name=%E8%85%95", 422, "/query/name: '\u8155' has nothing of what names here are made of"),
         ("<html></html>", "", 422, "this is a web page"),
         ("", "", 422, "no element found"),
         ("\x00\x01", "", 422, "not well-formed"),
