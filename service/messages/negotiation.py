@@ -61,6 +61,11 @@ def most_wanted(accept: str, offered: Sequence[str]) -> str | None:
     return min(wanted, key=lambda each: each[:2])[2] if wanted else None
 
 
+def is_refused(accept: str, what: str) -> bool:
+    """Whether a header of this form, as Accept-Encoding, names something with the quality 0."""
+    return _ranges(accept).get(what, (1.0, 0))[0] <= 0
+
+
 def _ranges(accept: str) -> dict[str, tuple[float, int]]:
     """For every range of an Accept header its quality and its place."""
     ranges: dict[str, tuple[float, int]] = {}

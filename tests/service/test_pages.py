@@ -361,6 +361,9 @@ def test_what_is_read_is_compressed(filled: TestClient) -> None:
     packed = filled.get("/trees/cell", headers={"Accept-Encoding": "gzip"})
     assert packed.headers["content-encoding"] == "gzip"
     assert packed.text == filled.get("/trees/cell", headers={"Accept-Encoding": "identity"}).text
+    for refused in ("gzip;q=0", "*, GZIP ; q=0.0"):
+        answer = filled.get("/trees/cell", headers={"Accept-Encoding": refused})
+        assert (answer.text, answer.headers.get("content-encoding")) == (packed.text, None)
     state = {"quantities": ["metric"], "q": [[0.1]] * 400}
     assert "content-encoding" not in filled.post("/v1/trees/cell/evaluations", json=state).headers
     icon = filled.get("/favicon.ico")
