@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from starlette.datastructures import Headers
 from starlette.middleware.gzip import DEFAULT_EXCLUDED_CONTENT_TYPES, GZipMiddleware
 from starlette.types import ASGIApp, Receive, Scope, Send
 
+from service.messages.negotiation import is_refused
 from substructures.formats import arrays, arrow
 
 #: bytes below which it is not worth the time
@@ -24,4 +26,5 @@ class Compression:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer."""
         is_read = scope["type"] == "http" and scope["method"] == "GET"
-        await (self._packing if is_read else self._plain)(scope, receive, send)
+        is_packed = is_read and not is_refused(Headers(scope=scope).get("accept-encoding", ""), "gzip")
+        await (self._packing if is_packed else self._plain)(scope, receive, send)

@@ -50,7 +50,7 @@ def as_refused(error: Exception) -> Refused:
         case HTTPException():
             return Refused(error.status_code, "http-error", str(error.detail), headers=error.headers)
         case DataError():
-            return unprocessable("invalid-text", "a text holds characters that the database cannot store, such as NUL")
+            return _not_storable("")
         case DBAPIError() | PoolTimeout() if _is_unavailable(error):
             _log.error("the database does not answer: %s", error)
             return Refused(503, "database-unavailable", _why(error), headers={"Retry-After": "1"})
@@ -74,6 +74,19 @@ def _why(error: Exception) -> str:
 
 def _validation_fault(item: Mapping[str, Any]) -> Fault:
     return Fault("".join(map(pointer_step, item["loc"])), str(item["type"]).replace("_", "-"), message_of(item))
+
+
+def _not_storable(pointer: str) -> Refused:
+    which = f" of {pointer}" if pointer else ""
+    return unprocessable("invalid-text", f"the text{which} holds what the database cannot store, such as NUL", pointer)
+
+
+def _with_nul(request: Request) -> str:
+    """The pointer to what the address gives with a NUL, which PostgreSQL takes in no text."""
+    query = [("query", *given) for given in request.query_params.multi_items()]
+    path = [("path", *given) for given in request.path_params.items()]
+    found = (f"/{kind}" + pointer_step(name) for kind, name, value in query + path if "\0" in str(value))
+    return next(found, "")
 
 
 def document(refused: Refused, instance: str) -> dict[str, Any]:
@@ -107,7 +120,8 @@ def _unknown(request: Request, found: Sequence[APIRoute], routes: Sequence[APIRo
 
 
 def _other_method(request: Request, found: Sequence[APIRoute]) -> Refused:
-    methods = ", ".join(sorted({method for route in found for method in route.methods or ()}))
+    possible = {method for route in found for method in route.methods or ()}
+    methods = ", ".join(sorted(possible | ({"HEAD"} if "GET" in possible else set())))
     detail = f"{request.method[:40]} is not possible at this path, but {methods}"
     return Refused(405, "method-not-allowed", detail, headers={"Allow": methods})
 
@@ -132,10 +146,12 @@ def install(app: FastAPI, routes: Sequence[APIRoute], page: Page) -> None:
             free = min((len(route.param_convertors) for route in found), default=0)
             found = [route for route in found if len(route.param_convertors) == free]
             error = _unknown(request, found, routes) or _other_method(request, found)
+        if isinstance(error, DataError):
+            error = _not_storable(_with_nul(request))
         return response(error, request.url.path, page if _is_browser(request) else None)
 
     for kind in (
         *(Refused, InvalidInput, TooLarge, MissingValue, VerificationFailed),
-        *(RequestValidationError, HTTPException),
+        *(RequestValidationError, HTTPException, DataError),
     ):
         app.add_exception_handler(kind, handle)

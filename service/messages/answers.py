@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import hashlib
+import io
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
 from itertools import chain
+from typing import Any
 
 from service import __version__
 
@@ -31,6 +33,33 @@ class Stream:
     pieces: Iterator[bytes | memoryview]
     headers: Mapping[str, str]
     status: int = 200
+
+
+class Sink(io.RawIOBase):
+    """Where a file is written to that is sent while it grows."""
+
+    def __init__(self) -> None:
+        self._chunks: list[bytes] = []
+        self._size = 0
+
+    def writable(self) -> bool:
+        """It only can be written to, so that nothing is sought in it."""
+        return True
+
+    def write(self, data: Any) -> int:
+        """Keep until it is taken."""
+        self._chunks.append(bytes(data))
+        self._size += len(data)
+        return len(data)
+
+    def tell(self) -> int:
+        """How much was written in all."""
+        return self._size
+
+    def taken(self) -> bytes:
+        """What was written since the last time."""
+        chunks, self._chunks = self._chunks, []
+        return b"".join(chunks)
 
 
 def some_of(pieces: Iterator[bytes | memoryview]) -> list[bytes | memoryview]:

@@ -28,9 +28,15 @@ def read_token(search: object, token: str | None, *kinds: type) -> tuple[Any, ..
         mark, *position = _read(token)
     except (ValueError, TypeError, binascii.Error):
         mark, position = "", []
-    if mark != _mark(search) or [type(value) for value in position] != list(kinds):
+    is_place = [type(value) for value in position] == list(kinds) and all(map(_is_storable, position))
+    if mark != _mark(search) or not is_place:
         raise of_no_page()
     return tuple(position)
+
+
+def _is_storable(value: str | int) -> bool:
+    """Whether every database compares it with what it has."""
+    return "\0" not in value if isinstance(value, str) else 0 <= value < 2**63
 
 
 def of_no_page() -> Refused:

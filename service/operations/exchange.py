@@ -8,7 +8,7 @@ from itertools import chain
 from typing import Any
 
 from service.messages.answers import JSON, Answer, Stream, json_answer, streamed
-from service.messages.negotiation import by_preference
+from service.messages.negotiation import most_wanted
 from service.messages.refusals import Refused
 from service.messages.spool import Spool
 from service.operations import evaluations
@@ -36,17 +36,12 @@ def choose_media_type(accept: str, sent: str) -> str:
     """The media type of the answer; that of the request if all are welcome. Raises Refused 406."""
     if accept in ("*/*", sent) and sent in (JSON, arrays.MEDIA_TYPE):
         return sent
-    for pattern in by_preference(accept or "*/*"):
-        found = next((media for media in (sent, *MEDIA_TYPES) if _matches(pattern, media)), None)
-        if found == arrow.MEDIA_TYPE and not arrow.is_available():
-            raise Refused(406, "arrow-not-installed", _EXTRA)
-        if found is not None:
-            return found
-    raise Refused(406, "not-acceptable", f"answers are {_KNOWN}")
-
-
-def _matches(pattern: str, media: str) -> bool:
-    return media in MEDIA_TYPES and pattern in ("*/*", "application/*", media)
+    found = most_wanted(accept, [media for media in (sent, *MEDIA_TYPES) if media in MEDIA_TYPES])
+    if found is None:
+        raise Refused(406, "not-acceptable", f"answers are {_KNOWN}")
+    if found == arrow.MEDIA_TYPE and not arrow.is_available():
+        raise Refused(406, "arrow-not-installed", _EXTRA)
+    return found
 
 
 def read_requests(body: Spool, sent: str, limits: Limits) -> Iterable[EvaluationRequest]:

@@ -239,7 +239,7 @@ def store(
     base: int | None = None,
     is_exact: bool = False,
 ) -> tuple[trees.Tree, bool]:
-    """Store a coupled tree; the tree, and whether it is new (creating the same tree again is not).
+    """Store a coupled tree; the tree, and whether it is new (neither the latest created again nor ``base`` unchanged).
 
     Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned;
     Refused 403, 409 where the name is another's, or others would see private parts.
@@ -248,12 +248,13 @@ def store(
     whose = owners.claimed(connection, viewer, "tree", name, entry)
     owners.require_public_parts(connection, whose, coupled.parts.values())
     latest = trees.latest_revision(connection, name)
-    if base is None and latest:
-        current = trees.resolve(connection, viewer, Reference(name))
-        if current is not None and current.digest == digest:
-            return current, False
-    if base is not None and ((not is_exact and latest != base) or not trees.is_there(connection, name, base)):
+    like = base or latest
+    there = trees.digest_of(connection, name, like)
+    if base is not None and ((not is_exact and latest != base) or there is None):
         raise StaleError(f"'{name}' was changed or removed meanwhile")
+    current = trees.resolve(connection, viewer, Reference(name, like)) if there == digest else None
+    if current is not None:
+        return current, False
     for part in coupled.inline:
         catalogue.store_part(connection, part)
     if coupled.program is not None:

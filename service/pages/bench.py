@@ -20,11 +20,11 @@ COUNTED = ("metric", "christoffel", "forces")
 
 @dataclass(frozen=True)
 class Bench:
-    """A revision, the one before it, and the newest; ``frames``: of the tree by instance, in order."""
+    """A revision, the one before it, and the numbers of the newest; ``frames``: of the tree by instance, in order."""
 
     tree: Tree
     before: Tree | None
-    latest: int
+    newest: Sequence[int]
     frames: Mapping[str, Sequence[str]]
 
     @property
@@ -73,15 +73,26 @@ def _steps(bench: Bench) -> Html:
         parts += [tag("button", "undo", type="button", id="undo", data_of=before)]
         parts += [link(f"what changed since @{bench.before.revision}", f"/trees/{before}/difference?to={name}@{n}")]
         parts += [link("revision before", f"/trees/{before}/edit")]
-    if n < bench.latest:
-        parts += [link("newest revision", f"/trees/{name}@{bench.latest}/edit")]
+    if n < bench.newest[0]:
+        parts += [link("newest revision", f"/trees/{name}@{bench.newest[0]}/edit")]
     redo = tag("button", "redo", type="button", id="redo", hidden="hidden")
-    return html(tag("p", redo, " ", joined(parts, " "), class_="bar"), _comparison(bench))
+    return html(tag("p", redo, " ", joined(parts, " "), class_="bar"), _beside(bench), _comparison(bench))
+
+
+def _beside(bench: Bench) -> Html | None:
+    """That others have changed the tree meanwhile, as in another window: their changes are not in this revision."""
+    base, before = bench.tree.based_on, bench.before
+    if base is None or before is None or base == before.revision:
+        return None
+    known = link(
+        f"what @{before.revision} has", f"/trees/{bench.reference}/difference?to={before.name}@{before.revision}"
+    )
+    return tag("p", f"This was made of @{base}, not of @{before.revision}: compare ", known, class_="warn")
 
 
 def _comparison(bench: Bench) -> Html:
     """This revision beside any other one."""
-    others = [n for n in range(bench.latest, max(0, bench.latest - MOST), -1) if n != bench.tree.revision]
+    others = [n for n in bench.newest if n != bench.tree.revision][:MOST]
     if not others:
         return Html()
     options = [tag("option", f"@{n}", value=f"{bench.tree.name}@{n}") for n in others]

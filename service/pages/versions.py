@@ -41,9 +41,9 @@ def revisions_section(entries: Sequence[RevisionEntry]) -> list[Html]:
             link(f"@{each.revision}", f"/trees/{each.name}@{each.revision}"),
             each.created[:10],
             each.note,
-            _compared("trees", each.name, each.based_on or each.revision - 1, each.revision),
+            _compared("trees", each.name, each.based_on or (older.revision if older else 0), each.revision),
         )
-        for each in entries[:SHOWN]
+        for each, older in zip(entries[:SHOWN], [*entries[1:], None], strict=False)
     ]
     address = f"/v1/trees/{entries[0].name}/revisions" if entries else ""
     return _section("Revisions", ("revision", "stored", "note", ""), rows, len(entries) > SHOWN, address)

@@ -79,7 +79,7 @@ def names_like(connection: Connection, viewer: Viewer, kind: Kind, name: str) ->
     table = _TABLES[kind]
     query = select(table.c.name).where(visible(table)).order_by(table.c.name).limit(CANDIDATES)
     query = query.where(table.c.dof.is_not(None)) if kind == "tree" else query  # not of removed ones
-    begins = table.c.name.startswith(name[:1].lower(), autoescape=True)
+    begins = table.c.name.startswith(name[:1].strip("\0").lower(), autoescape=True)
     found = list(connection.execute(query.where(begins), seen_by(viewer)).scalars())
     return found or list(connection.execute(query, seen_by(viewer)).scalars())
 

@@ -70,9 +70,9 @@ def latest_revision(connection: Connection, name: str) -> int:
     return connection.execute(_LATEST_NUMBER, {"name": name}).scalar_one()
 
 
-def is_there(connection: Connection, name: str, revision: int) -> bool:
-    """Whether a revision has not been removed."""
-    return connection.execute(_IS_THERE, {"name": name, "number": revision}).first() is not None
+def digest_of(connection: Connection, name: str, revision: int) -> str | None:
+    """The digest of the document of a revision; None of one that was removed."""
+    return connection.execute(_DIGEST, {"name": name, "number": revision}).scalar()
 
 
 def add_revision(connection: Connection, tree: Tree, parts: Mapping[str, str]) -> None:
@@ -264,7 +264,7 @@ _LATEST = _NAMED.where(_IS_LATEST)
 #: of all names
 LATEST = _all().where(_IS_LATEST, _VISIBLE)
 _LATEST_NUMBER = select(tree_names.c.latest).where(tree_names.c.name == bindparam("name"))
-_IS_THERE = select(trees.c.name).where(trees.c.name == bindparam("name"), trees.c.revision == bindparam("number"))
+_DIGEST = select(trees.c.digest).where(trees.c.name == bindparam("name"), trees.c.revision == bindparam("number"))
 _NEW, _NEW_PART = insert(trees), insert(tree_parts)
 _FORM_AGAIN = (
     update(summary_forms)

@@ -47,7 +47,7 @@ class ColumnView(Shape):
     column: str
     count: int
     mean: float | None
-    deviation: float | None
+    deviation: float | None = Field(description="of a sample, by n - 1; null of one row")
     quantiles: dict[str, float]
     histogram: Histogram | None
 

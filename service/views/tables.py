@@ -8,29 +8,33 @@ from collections.abc import Iterator
 from importlib import import_module
 from typing import Any
 
-from service.messages.negotiation import by_preference
+from service.messages.answers import Sink
+from service.messages.negotiation import most_wanted
 from service.messages.refusals import Refused
 from service.operations.jobs.tables import Table
 from substructures.formats import arrow
-from substructures.formats.arrays import write_npz
+from substructures.formats.npz_writer import NpzWriter
 
 CSV, NPZ, PARQUET = "text/csv", "application/x-npz", "application/vnd.apache.parquet"
 FILES = (CSV, NPZ, arrow.MEDIA_TYPE, PARQUET)
 JSON = "application/json"
-AT_A_TIME = 10_000  # rows
+AT_A_TIME, OF_A_GROUP = 10_000, 250_000  # rows that become text, and numbers of a file, in one piece
 
 
 def chosen_media(accept: str) -> str:
     """The media type of the answer. Raises Refused 406."""
-    for pattern in by_preference(accept or "*/*"):
-        if pattern in ("*/*", "application/*", JSON):
-            return JSON
-        if pattern in FILES:
-            if pattern in (arrow.MEDIA_TYPE, PARQUET) and not arrow.is_available():
-                detail = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use text/csv"
-                raise Refused(406, "arrow-not-installed", detail)
-            return pattern
-    raise Refused(406, "not-acceptable", f"answers are {', '.join((JSON, *FILES))}")
+    found = most_wanted(accept, (JSON, *FILES))
+    if found is None:
+        raise Refused(406, "not-acceptable", f"answers are {', '.join((JSON, *FILES))}")
+    if found in (arrow.MEDIA_TYPE, PARQUET) and not arrow.is_available():
+        detail = "this server has no Arrow: install it with the extra 'substructures[arrow]', or use text/csv"
+        raise Refused(406, "arrow-not-installed", detail)
+    return found
+
+
+def as_file(table: Table, media: str) -> Iterator[bytes | memoryview]:
+    """All rows of a table as one of FILES, which are sent while they grow."""
+    return as_csv(table) if media == CSV else as_npz(table) if media == NPZ else as_arrow(table, media)
 
 
 def rows_view(table: Table, start: int, stop: int) -> dict[str, Any]:
@@ -53,15 +57,25 @@ def as_csv(table: Table) -> Iterator[bytes]:
         text.truncate()
 
 
-def as_file(table: Table, media: str) -> bytes:
-    """All rows of a table, but as CSV."""
-    if media == NPZ:
-        return b"".join(write_npz(table.columns).pieces)
+def as_npz(table: Table) -> Iterator[memoryview]:
+    """All rows of a table, column by column."""
+    writer = NpzWriter()
+    for name, values in table.columns.items():
+        yield from writer.whole(name, values)
+    yield writer.directory()
+
+
+def as_arrow(table: Table, media: str) -> Iterator[bytes]:
+    """All rows of a table as an Arrow stream or as Parquet, some at a time: record batches, or row groups."""
     pyarrow = import_module("pyarrow")
-    made, sink = pyarrow.table(dict(table.columns)), io.BytesIO()
-    if media == PARQUET:
-        import_module("pyarrow.parquet").write_table(made, sink, compression="zstd")
-    else:
-        with pyarrow.ipc.new_stream(sink, made.schema) as stream:
-            stream.write_table(made)
-    return sink.getvalue()
+    sink, schema = Sink(), pyarrow.table(dict(table.rows(0, 0).columns)).schema
+    texts = [field.name for field in schema if pyarrow.types.is_string(field.type)]
+    with (
+        import_module("pyarrow.parquet").ParquetWriter(sink, schema, compression="zstd", use_dictionary=texts)
+        if media == PARQUET
+        else pyarrow.ipc.new_stream(sink, schema)
+    ) as writer:
+        for start in range(0, table.count, OF_A_GROUP):
+            writer.write_table(pyarrow.table(dict(table.rows(start, start + OF_A_GROUP).columns), schema))
+            yield sink.taken()
+    yield sink.taken()

@@ -146,8 +146,13 @@ def _as_quantity(column: MotionColumn) -> QuantityColumn:
     return QuantityColumn(quantity=str(column.quantity), of=column.of)
 
 
+def deviation(values: Array) -> float | None:
+    """The standard deviation of a sample (n,), sqrt(sum (x - mean)^2 / (n - 1)); None of fewer than two values."""
+    return float(values.std(ddof=1)) if len(values) > 1 else None
+
+
 def statistics(column: Array) -> dict[str, Any]:
-    """Mean, deviation, extremes and quantiles of the members that have a number, and how many these are."""
+    """Mean, :func:`deviation`, extremes and quantiles of the members that have a number, and how many these are."""
     known = column[np.isfinite(column)]
     if not len(known):
         return {"count": 0}
@@ -155,7 +160,7 @@ def statistics(column: Array) -> dict[str, Any]:
     return {
         "count": len(known),
         "mean": float(known.mean()),
-        "deviation": float(known.std(ddof=1)) if len(known) > 1 else 0.0,
+        "deviation": deviation(known),
         "least": float(known.min()),
         "largest": float(known.max()),
         "quantiles": {f"{level:g}": float(x) for level, x in zip(QUANTILES, levels, strict=True)},

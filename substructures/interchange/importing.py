@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
+from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import PartOfFile, as_part
 from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
 from substructures.interchange.files.wanted import Options, text_of_file
@@ -71,8 +72,11 @@ def import_file(
     ``kind``: of the file, default by its content; ``name``: of the part, default the robot's; ``file``: its name, kept
     with the digest in ``source``; ``included``: contents of the files that an MJCF file includes, by their names there;
     ``cut``: links that begin parts of their own in a tree. Raises InvalidDocument with line and element for what cannot
-    be read, InvalidArgument for links that are not there.
+    be read, InvalidArgument for links that are not there, and for a name of which nothing is left.
     """
+    if name and not library_name(name, otherwise=""):
+        message = f"'{name[:40]}' has nothing of what names here are made of: a to z, 0 to 9 and '-'"
+        raise InvalidArgument.at("/name", "invalid-name", message)
     rows = read_rows(data, kind, options.parameters != "none")
     if rows is not None:
         definition = _with_losses(rows[1], rows[2]) | ({} if name is None else {"name": library_name(name)})

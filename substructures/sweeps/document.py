@@ -61,7 +61,7 @@ class ReachColumn(DocumentPart):
 
 class SimulationColumn(MotionColumn):
     """A number of the motion from the state ``at`` (``q``, ``qd``, ``inputs``) over a ``span`` [s], as of an ensemble:
-    of its values at ``count`` times.
+    of its values at ``count`` times. ``absolute_tolerance`` [rad, m; per s]: None is a hundredth of the relative one.
     """
 
     analysis: Literal["simulation"]
@@ -69,6 +69,7 @@ class SimulationColumn(MotionColumn):
     span: tuple[Real, Real]
     count: Annotated[int, Field(ge=2, le=MAX_OUTPUTS)] = 101
     relative_tolerance: Annotated[Real, Field(ge=1e-14, le=1e-1)] = 1e-8
+    absolute_tolerance: Annotated[Real, Field(ge=0, le=1e-1)] | None = None
 
 
 #: no field of a column is called so: pointers to faults pass it over

@@ -32,7 +32,7 @@ def simulation_columns(
 
 
 #: what columns of one motion have in common
-MOTION = ("at", "span", "count", "relative_tolerance")
+MOTION = ("at", "span", "count", "relative_tolerance", "absolute_tolerance")
 
 
 def _moved(
@@ -46,7 +46,7 @@ def _moved(
         name: MotionColumn(expression=c.expression, quantity=c.quantity, of=c.of, take=c.take)
         for name, c in columns.items()
     }
-    tolerance = how.relative_tolerance
+    relative, absolute = how.relative_tolerance, how.absolute_tolerance
     try:
         found = simulate_ensemble(
             shape.sources,
@@ -57,7 +57,9 @@ def _moved(
             parameters=parameters,
             columns=wanted,
             grid=OutputGrid(count=how.count),
-            integrator=Integrator(relative_tolerance=tolerance, absolute_tolerance=tolerance / 100),
+            integrator=Integrator(
+                relative_tolerance=relative, absolute_tolerance=relative / 100 if absolute is None else absolute
+            ),
         )
     except InvalidInput as error:
         raise error.moved(lambda pointer: _place(pointer, f"/columns/{first}")) from None

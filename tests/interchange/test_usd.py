@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import sys
 import zipfile
+from cProfile import Profile
 from pathlib import Path
+from pstats import Stats
 from typing import Any
 
 import numpy as np
@@ -20,6 +22,7 @@ from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import equivalence
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import Side
+from substructures.interchange.usd.reader import read_usd
 
 pytest.importorskip("pxr", reason="the wheel usd-core is not installed (extra 'usd')")
 
@@ -328,11 +331,40 @@ TOLD = {
     ),
     "acceleration": (DRIVE + '        uniform token drive:angular:physics:type = "acceleration"\n', "forces grow with"),
     "velocity": (DRIVE + "        float drive:angular:physics:targetVelocity = 9\n", "a drive that follows a velocity"),
+    "ref": (
+        '    def PhysicsRevoluteJoint "elbow"\n    {\n        custom double mjc:ref = 0.1\n',
+        "mjc:ref is not read: what it says of the mechanics is left out",
+    ),
     "armature": (
         '    def PhysicsRevoluteJoint "elbow"\n    {\n        float physxJoint:armature = 0.1\n',
         "physxJoint:armature is not read: what it says of the mechanics is left out",
     ),
 }
+
+
+def heap(bodies: int, kind: str) -> str:
+    """A chain of bodies with its joints from the last to the first, bodies that lie apart, or that are nested."""
+    api = '(prepend apiSchemas = ["PhysicsRigidBodyAPI", "PhysicsMassAPI"])'
+    begun = [f'def Xform "b{k}" {api}\n{{\n float physics:mass = 1\n' for k in range(bodies)]
+    if kind == "nested":
+        return "#usda 1.0\n" + "".join(begun) + "}\n" * bodies
+    joints = [
+        f'def PhysicsFixedJoint "j{k}"\n{{\n rel physics:body0 = </b{k - 1}>\n rel physics:body1 = </b{k}>\n}}\n'
+        for k in range(bodies - 1, 0, -1)
+    ]
+    return "#usda 1.0\n" + "".join(each + "}\n" for each in begun) + "".join(joints if kind == "chain" else [])
+
+
+@pytest.mark.parametrize("kind", ["chain", "apart", "nested"])
+def test_work_grows_with_the_number_of_prims(kind: str) -> None:
+    def calls(bodies: int) -> int:
+        profile = Profile()
+        robot = profile.runcall(read_usd, heap(bodies, kind).encode())
+        assert len(robot.links) == bodies
+        return int(Stats(profile).total_calls)  # type: ignore[attr-defined]
+
+    calls(2)  # what is imported and kept by the way
+    assert calls(80) < 2.02 * calls(40)
 
 
 def test_balls_turn_by_yaw_pitch_and_roll_and_their_cones_are_told() -> None:

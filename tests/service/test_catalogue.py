@@ -8,6 +8,7 @@ from typing import Any
 import pytest
 from fastapi.testclient import TestClient
 
+from service.messages.paging import write_token
 from service.schemas.resources import AliasView, FormulaIndex, VersionPage, VersionView
 from substructures.printers import FORMATS
 
@@ -247,6 +248,13 @@ def test_foreign_page_tokens_are_refused(filled: TestClient) -> None:
         answer = filled.get("/v1/substructures", params=query)
         assert answer.status_code == 422
         assert answer.json()["errors"][0]["pointer"] == "/query/page_token"
+
+
+@pytest.mark.parametrize("position", [-1, 2**63, 2**64 - 1])
+def test_page_tokens_that_somebody_made_up_are_refused(filled: TestClient, position: int) -> None:
+    token = write_token(("versions", "pendulum"), position)
+    answer = filled.get("/v1/substructures/pendulum/versions", params={"page_token": token})
+    assert (answer.status_code, answer.json()["code"]) == (422, "page-token")
 
 
 @pytest.mark.parametrize(

@@ -120,3 +120,33 @@ def test_a_lost_connection_is_said_and_comes_back(browser: Any, address: str) ->
     tab.until(f"{TEXT}.includes('slider@1') && !{TEXT}.includes('pendulum@1')")
     tab.wrong = [each for each in tab.wrong if "ERR_INTERNET_DISCONNECTED" not in each]
     tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_could_not_be_stored_can_be_stored_again(browser: Any, address: str, filled: TestClient) -> None:
+    tab = Tab(browser, address, "/")
+    chosen(tab, ROBOT, "rod.urdf")
+    tab.until("document.getElementById('store')")
+    tab.page.fill("#name", "mended")
+    tab.page.route("**/v1/imports?*store=true*", lambda route: route.abort(), times=1)
+    for words in ("cannot be stored", "Stored as mended@1"):
+        tab.page.click("#store")
+        tab.until(f"document.getElementById('import').textContent.includes('{words}')")
+    assert filled.get("/v1/substructures/mended@1").status_code == 200
+    tab.wrong = [each for each in tab.wrong if "ERR_FAILED" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_of_two_files_the_last_one_is_shown(browser: Any, address: str) -> None:
+    """Whichever is read first."""
+    tab = Tab(browser, address, "/")
+    tab.page.route("**/v1/imports?file=slow*", lambda route: (tab.page.wait_for_timeout(1500), route.continue_()))
+    chosen(tab, ROBOT.replace("rod", "slow"), "slow.urdf")
+    chosen(tab, ROBOT, "quick.urdf")
+    tab.until("document.querySelector('#import img')?.alt === 'Picture of quick.urdf'")
+    tab.page.wait_for_timeout(2500)
+    assert tab.page.get_attribute("#import img", "alt") == "Picture of quick.urdf"
+    tab.close()

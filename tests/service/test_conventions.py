@@ -40,8 +40,9 @@ def test_problems(client: TestClient) -> None:
     problem(client.get("/v1/trees/"), 404, "not-found")
     problem(client.get("/v1/trees/nothing"), 404, "unknown-tree")
     wrong = client.put("/v1/substructures", json={})
-    assert problem(wrong, 405, "method-not-allowed")["detail"] == "PUT is not possible at this path, but GET, POST"
-    assert set(wrong.headers["allow"].replace(" ", "").split(",")) == {"GET", "POST"}
+    detail = problem(wrong, 405, "method-not-allowed")["detail"]
+    assert detail == "PUT is not possible at this path, but GET, HEAD, POST"
+    assert set(wrong.headers["allow"].replace(" ", "").split(",")) == {"GET", "HEAD", "POST"}
     problem(
         client.post("/v1/substructures", content=b"{}", headers={"Content-Type": "text/plain"}),
         415,
@@ -342,9 +343,9 @@ def test_preferences_that_were_followed_are_told(
     ("path", "allowed"),
     [
         ("cell/evaluations", "POST"),
-        ("cell/metric", "GET"),
+        ("cell/metric", "GET, HEAD"),
         ("cell/couplings/arm", "DELETE, PATCH"),
-        ("cell", "DELETE, GET"),
+        ("cell", "DELETE, GET, HEAD"),
     ],
 )
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from statistics import stdev
 from typing import Any
 
 import numpy as np
@@ -26,6 +27,9 @@ def test_members_are_simulations(client: TestClient) -> None:  # noqa: F811
         alone = ask(client, "cart/simulations", **own)
         assert found["columns"]["end"][k] == pytest.approx(alone["q"][-1][1], abs=1e-6)
     assert found["statistics"]["end"]["mean"] == pytest.approx(np.mean(found["columns"]["end"]))
+    assert found["statistics"]["end"]["deviation"] == pytest.approx(stdev(found["columns"]["end"]))
+    alone = ask(client, "cart/ensembles", q=q[0], span=[0, 0.1], columns=COLUMNS)
+    assert alone["statistics"]["end"]["deviation"] is None
 
 
 def test_units_and_samples(client: TestClient) -> None:  # noqa: F811

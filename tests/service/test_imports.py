@@ -12,6 +12,7 @@ from service.cli.main import main
 from service.server import background
 from service.settings import Limits, Settings
 from service.store.store import Store
+from substructures.client import Client
 from tests.interchange.test_meshes import ROBOT as ROBOT_WITH_MESHES
 from tests.interchange.test_meshes import zipped
 
@@ -82,6 +83,7 @@ def test_a_file_with_loops_is_a_tree(client: TestClient) -> None:
         (ARM.replace("0 1 0", "0 0 0"), "", 422, 'line 3: <axis>: the axis has no direction'),
         (ARM, "?kind=mjcf", 422, "this is URDF, not MJCF"),
         (ARM, "?kind=word", 422, "kind 'word' is none of"),
+        (ARM, "?name=%E8%85%95", 422, "/query/name: '\u8155' has nothing of what names here are made of"),
         ("<html></html>", "", 422, "this is a web page"),
         ("", "", 422, "no element found"),
         ("\x00\x01", "", 422, "not well-formed"),
@@ -250,6 +252,23 @@ def test_a_robot_that_is_submitted_may_become_a_job(
     told = capsys.readouterr()
     assert "became the job" in told.out
     assert f"{'assemble' if cut else 'derive'}: 1 succeeded of 1" in told.err
+
+
+def test_parts_of_a_robot_that_is_cut_are_stored_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "long.urdf"
+    path.write_text(LONG)
+    with background(Settings(database=f"sqlite:///{tmp_path / 's.db'}", catalogue=False)) as address:
+        for name in ("long", "long", "other"):
+            flags = ["--cut", "hand", "--name", name, "--submit", "--server", address]
+            assert main(["import", str(path), *flags]) == 0
+        with Client(address) as client:
+            trees = {tree["name"]: tree for tree in client.trees()}
+            assert {name: tree["revision"] for name, tree in trees.items()} == {"long": 1, "other": 1}
+            parts = {(each["name"], each["version"]) for each in client.substructures()}
+            assert parts == {(f"{tree}-{part}", 1) for tree in trees for part in ("robot", "hand")}
+            called = [each["substructure"].partition("@")[0] for each in client.tree("long")["instances"]]
+    assert called == ["long-robot", "long-hand"]
+    assert capsys.readouterr().out.splitlines()[0].startswith("long sha256:")
 
 
 def test_like_remarks_are_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -89,6 +89,23 @@ def test_wrong_requests(double: TestClient) -> None:
     assert double.get("/v1/trees/cell/metric", headers={"Accept": "image/png"}).status_code == 406
 
 
+@pytest.mark.parametrize(
+    ("accept", "found"),
+    [
+        ("application/json;q=0, */*", "text/plain"),
+        ("*/*, application/json;q=0.1", "text/plain"),
+        ("text/*;q=0.2, text/x-c, application/*;q=0.1", "text/x-c"),
+        ("text/plain;q=0.5, application/json;q=0.5", "text/plain"),
+        ("application/json;q=0, application/*", "application/x-latex"),
+        ("*/*;q=0", None),
+    ],
+)
+def test_what_is_most_wanted(double: TestClient, accept: str, found: str | None) -> None:
+    answer = double.get("/v1/trees/cell/metric", headers={"Accept": accept})
+    media = answer.headers["content-type"].partition(";")[0]
+    assert (answer.status_code, media) == ((406, "application/problem+json") if found is None else (200, found))
+
+
 def test_immutable_formulas_are_cached_by_clients(double: TestClient) -> None:
     first = double.get("/v1/trees/cell@2/metric")
     assert "immutable" in first.headers["cache-control"]

@@ -120,6 +120,32 @@ def test_the_page_of_a_tree(filled: TestClient) -> None:
         assert filled.get(address).status_code == 200, address
 
 
+def test_a_tree_that_was_removed_and_stored_again_has_its_pages(filled: TestClient) -> None:
+    """Its revisions count on; nothing links to those that are gone."""
+    tree = {**TREE, "name": "again"}
+    filled.post("/v1/trees", json=tree)
+    assert filled.delete("/v1/trees/again").status_code == 204
+    for at in (TREE["gravity"], [0, 0, 0]):
+        filled.post("/v1/trees", json={**tree, "gravity": at})
+    assert [each["revision"] for each in filled.get("/v1/trees/again/revisions").json()["items"]] == [3, 2]
+    for path in ("/trees/again", "/trees/again/edit", "/trees/again@2/edit"):
+        answer = filled.get(path)
+        assert (answer.status_code, "again@1" in answer.text) == (200, False), path
+    assert "/trees/again@2/difference?to=again@3" in filled.get("/trees/again").text
+
+
+def test_changes_of_another_window_are_told(filled: TestClient) -> None:
+    """Of two that are made of one revision, the second lacks what the first has changed."""
+    filled.post("/v1/trees", json={**TREE, "name": "contended"})
+    for name in ("left", "right"):
+        step = {"name": name, "substructure": "pendulum", "at": "world"}
+        assert filled.post("/v1/trees/contended@1/couplings", json=step).status_code == 201
+    first, second = (filled.get(f"/trees/contended@{number}/edit").text for number in (2, 3))
+    assert "This was made of" not in first
+    assert "This was made of @1, not of @2" in second
+    assert "/trees/contended@3/difference?to=contended@2" in second
+
+
 def test_parts_without_coordinates_or_values(client: TestClient) -> None:
     still = {"name": "block", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "fixed"}, "mass": 1}]}
     for definition in (still, SLIDER, {"name": "nothing", "bodies": []}):
@@ -335,6 +361,9 @@ def test_what_is_read_is_compressed(filled: TestClient) -> None:
     packed = filled.get("/trees/cell", headers={"Accept-Encoding": "gzip"})
     assert packed.headers["content-encoding"] == "gzip"
     assert packed.text == filled.get("/trees/cell", headers={"Accept-Encoding": "identity"}).text
+    for refused in ("gzip;q=0", "*, GZIP ; q=0.0"):
+        answer = filled.get("/trees/cell", headers={"Accept-Encoding": refused})
+        assert (answer.text, answer.headers.get("content-encoding")) == (packed.text, None)
     state = {"quantities": ["metric"], "q": [[0.1]] * 400}
     assert "content-encoding" not in filled.post("/v1/trees/cell/evaluations", json=state).headers
     icon = filled.get("/favicon.ico")

@@ -62,6 +62,10 @@ def test_nul_is_harmless(client: TestClient) -> None:
         answer = client.get(f"/v1/substructures{path}")
         assert answer.status_code in (404, 422), answer.text
         assert answer.headers["content-type"] == "application/problem+json"
+    assert client.get("/v1/trees/%00").status_code == 404
+    for path, pointer in (("?label=%00", "/query/label"), ("/a%00b", "/path/job"), ("?label=a%00b", "/query/label")):
+        refused = client.get(f"/v1/jobs{path}")
+        assert (refused.status_code, [each["pointer"] for each in refused.json()["errors"]]) == (422, [pointer])
 
 
 def test_concurrency(client: TestClient) -> None:

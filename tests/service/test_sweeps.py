@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+from statistics import stdev
 from typing import Any, cast
 
 import numpy as np
@@ -15,6 +16,7 @@ from service.operations.jobs import tables
 from service.operations.jobs.tables import Table
 from service.store.store import Store
 from service.views import tables as views
+from substructures.formats import arrow
 from substructures.formats.arrays import read_npz
 from substructures.sweeps import block
 
@@ -96,7 +98,11 @@ def test_a_sweep_is_a_table(filled: TestClient, store: Store) -> None:
 
     column = table(filled, job, "/columns/torque?bins=3")
     assert column["count"] == sum(column["histogram"]["counts"]) == whole["count"]
-    assert column["quantiles"]["1"] == max(row["torque"] for row in whole["items"])
+    torques = [row["torque"] for row in whole["items"]]
+    assert column["quantiles"]["1"] == max(torques)
+    assert column["deviation"] == pytest.approx(stdev(torques))
+    alone = table(filled, job, f"/columns/torque?where=torque>={max(torques)}")
+    assert (alone["count"], alone["mean"], alone["deviation"]) == (1, max(torques), None)
 
     for label in ("study:night", "arm:long", "study:night arm:long"):
         assert [each["id"] for each in filled.get("/v1/jobs", params={"label": label}).json()["items"]] == [job]
@@ -111,6 +117,24 @@ def test_rows_become_text_some_at_a_time(monkeypatch: pytest.MonkeyPatch) -> Non
         assert len(pieces) == max(1, (count + 1) // 2)
         text = "".join(f"{k},{k / 2}\r\n" for k in range(count))
         assert b"".join(pieces).decode() == f"row,x\r\n{text}"
+
+
+@pytest.mark.parametrize("count", [0, 1, 2, 7])
+def test_tables_become_files_some_rows_at_a_time(monkeypatch: pytest.MonkeyPatch, count: int) -> None:
+    """Record batches and row groups of so many rows, columns of an npz one by one."""
+    pyarrow, parquet = pytest.importorskip("pyarrow"), pytest.importorskip("pyarrow.parquet")
+    monkeypatch.setattr(views, "OF_A_GROUP", 2)
+    columns = {"row": np.arange(count), "part": np.arange(count).astype(str), "x": np.arange(count) / 2}
+    whole = Table(cast("Any", None), columns, {})
+    files = {media: list(views.as_file(whole, media)) for media in (views.NPZ, views.PARQUET, arrow.MEDIA_TYPE)}
+    packed = {media: b"".join(pieces) for media, pieces in files.items()}
+    batches = list(pyarrow.ipc.open_stream(packed[arrow.MEDIA_TYPE]))
+    groups = parquet.ParquetFile(io.BytesIO(packed[views.PARQUET]))
+    assert len(batches) == groups.num_row_groups == len(files[arrow.MEDIA_TYPE]) - 1 == (count + 1) // 2
+    npz = read_npz(io.BytesIO(packed[views.NPZ]), len(packed[views.NPZ]))
+    for name, values in columns.items():
+        assert npz[name].tolist() == groups.read().column(name).to_pylist() == values.tolist()
+        assert [x for batch in batches for x in batch.column(name).to_pylist()] == values.tolist()
 
 
 @pytest.mark.parametrize("bins", [1, 20, 1000])

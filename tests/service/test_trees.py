@@ -102,6 +102,17 @@ def test_an_instance_is_moved_and_moved_back(filled: TestClient) -> None:
         assert digest in (None, moved["digest"])
 
 
+@pytest.mark.parametrize("base", ["cell", "cell@1"])
+def test_a_change_of_nothing_is_no_revision(filled: TestClient, rows: Any, base: str) -> None:
+    filled.post("/v1/trees/cell@1/couplings", json=HAND)
+    first, before = filled.get(f"/v1/trees/{base}"), rows()
+    for body in ({}, {"at": "world"}):
+        answer = filled.patch(f"/v1/trees/{base}/couplings/arm", json=body)
+        assert (answer.status_code, answer.content) == (200, first.content)
+        assert answer.headers["location"] == f"/v1/trees/cell@{first.json()['revision']}"
+    assert rows() == before
+
+
 @pytest.mark.parametrize(
     ("instance", "body", "status", "pointer"),
     [

@@ -199,7 +199,7 @@ PURE = {
     # samples have a unit beside the numbers, columns may be of anything
     *("samples.of.values", "samples.of.uniform", "samples.of.normal", "columns.expression"),
     # states of columns are converted where they are used
-    *("columns.at", "columns.over", "columns.span", "columns.relative_tolerance"),
+    *("columns.at", "columns.over", "columns.span", "columns.relative_tolerance", "columns.absolute_tolerance"),
 }
 
 

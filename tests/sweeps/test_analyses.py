@@ -220,6 +220,15 @@ def test_motions_of_an_oscillator() -> None:
     assert found["energy"] == pytest.approx(found["a.c"] * 0.005, rel=1e-4)
 
 
+def test_tolerances_of_motions() -> None:
+    """A coarse absolute tolerance is taken, so that motions that are stepped so violate their conditions."""
+    motion = {"analysis": "simulation", "at": {"q": [0.1]}, "span": [0, 20], "expression": "a.q"}
+    columns = {"fine": {**motion, "absolute_tolerance": 1e-14}, "coarse": {**motion, "absolute_tolerance": 0.1}}
+    found = Sweep(SPRUNG, {"rod": ROD}, columns={**columns, "usual": motion}).rows().columns
+    assert found["fine"] == pytest.approx(found["usual"], abs=1e-6)
+    assert np.isnan(found["coarse"]).all()
+
+
 def test_motions_with_contacts_are_those_of_each_row() -> None:
     """A ball bounces with 0.8 of its velocity, whatever its mass; a row that starts below has no number."""
     ball = {

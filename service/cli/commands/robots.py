@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import sys
 import zipfile
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 from itertools import islice
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
@@ -23,6 +23,9 @@ from substructures.interchange.files.archive import PACKAGE, Beside, main_of
 from substructures.interchange.files.wanted import KINDS, Base, Fixed, Options, Parameters, Rotations
 from substructures.interchange.importing import Imported, import_file
 from substructures.interchange.sides import sides
+
+if TYPE_CHECKING:
+    from substructures.client import Client
 
 #: an included file or mesh is read when it is in the folder of the file, or below it
 _MOST_BYTES = 64 * 2**20
@@ -128,7 +131,10 @@ def read(
 def _submitted(server: Server, found: Imported, document: Any, wait: bool, json: bool) -> int:
     with server.client() as client:
         with waiting("deriving"):
-            answer = client.request("POST", "/v1/substructures" if found.tree is None else "/v1/trees", document)
+            if found.tree is None:
+                answer = client.request("POST", "/v1/substructures", document)
+            else:
+                answer = client.request("POST", "/v1/trees", _with_names(client, document))
         stored = answer.json()
         if answer.status_code == 202:
             from service.cli.progress import became_job  # noqa: PLC0415 -- with the client, of a server alone
@@ -139,6 +145,16 @@ def _submitted(server: Server, found: Imported, document: Any, wait: bool, json:
     else:
         print(f"{stored['name']} {stored['digest']}")
     return 0
+
+
+def _with_names(client: Client, tree: Mapping[str, Any]) -> dict[str, Any]:
+    """The tree whose parts are stored under their names, once, and are called by them."""
+    stored = [client.submit(each["definition"])[0] for each in tree["instances"]]
+    instances = [
+        {**{name: x for name, x in each.items() if name != "definition"}, "substructure": part.ref}
+        for each, part in zip(tree["instances"], stored, strict=True)
+    ]
+    return {**tree, "instances": instances}
 
 
 def _told(found: Imported) -> Iterator[str]:

@@ -18,6 +18,7 @@ from service.queries.jobs import jobs as rows_of_jobs
 from service.queries.jobs import results
 from service.queries.jobs.jobs import Job
 from substructures.documents import read_json
+from substructures.ensembles.columns import deviation
 from substructures.errors import InvalidDocument, among
 from substructures.sweeps.block import Block, joined, objectives
 from substructures.sweeps.conditions import read_condition
@@ -220,7 +221,7 @@ def distribution(table: Table, name: str, bins: int) -> dict[str, Any]:
             "column": name,
             "count": len(values),
             "mean": float(values.mean()),
-            "deviation": float(values.std()),
+            "deviation": deviation(values),
             "quantiles": {f"{q:g}": float(x) for q, x in zip(QUANTILES, quantiles, strict=True)},
             "histogram": _histogram(values, bins),
         }

@@ -15,7 +15,7 @@ from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
 from service.operations import catalogue, differences, modules, pictures, trees
 from service.pages.account import PageRoute
-from service.pages.bench import Bench, bench_page
+from service.pages.bench import MOST, Bench, bench_page
 from service.pages.details import part_page, tree_page
 from service.pages.html import html
 from service.pages.layout import answer, document
@@ -145,14 +145,16 @@ def workbench(
     with store.database.read() as connection:
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)
-        latest = trees.find(connection, viewer, found.name).revision
-        number = found.revision - 1
-        before = trees.find(connection, viewer, f"{found.name}@{number}") if number else None
+        newest = versions.page_revisions(connection, viewer, found.name, None, MOST + 1)
+        older = versions.page_revisions(connection, viewer, found.name, found.revision, 1)
+        before = trees.find(connection, viewer, f"{found.name}@{older[0].revision}") if older else None
     frames: dict[str, list[str]] = {}
     for name in model.frames:
         frames.setdefault(name.partition(".")[0], []).append(name.partition(".")[2])
     shown = of_tree(found, model, None, None)
-    made = bench_page(Bench(found, before, latest, frames), view(shown, picture_of(shown)), substructure)
+    made = bench_page(
+        Bench(found, before, [each.revision for each in newest], frames), view(shown, picture_of(shown)), substructure
+    )
     return _answer(request, made, "workbench.js")
 
 

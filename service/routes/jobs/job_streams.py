@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import io
 import zipfile
 from collections.abc import AsyncIterator, Iterator
 from time import monotonic
@@ -14,6 +13,7 @@ from fastapi.responses import StreamingResponse
 from starlette.types import Receive, Scope, Send
 
 from service.http.requests import StoreOf, ViewerOf, needs
+from service.messages.answers import Sink
 from service.operations.jobs import jobs
 from service.queries import content
 from service.queries.jobs import job_events, results
@@ -110,7 +110,7 @@ def get_job_archive(job: str, store: StoreOf, viewer: ViewerOf) -> Response:
 
 
 def _archive(store: Store, job: str) -> Iterator[bytes]:
-    sink = _Sink()
+    sink = Sink()
     with zipfile.ZipFile(sink, "w", zipfile.ZIP_DEFLATED, compresslevel=1) as packed:
         for name, data in _members(store, job):
             packed.writestr(name, data)
@@ -151,24 +151,3 @@ def _members(store: Store, job: str) -> Iterator[tuple[str, bytes]]:
 
 class _Removed(Exception):
     """A job was removed while its files were sent: what was sent is to be no whole archive."""
-
-
-class _Sink(io.RawIOBase):
-    """Where a zip file is written to that is sent while it grows."""
-
-    def __init__(self) -> None:
-        self._chunks: list[bytes] = []
-
-    def writable(self) -> bool:
-        """It only can be written to, so that nothing is sought in it."""
-        return True
-
-    def write(self, data: Any) -> int:
-        """Keep until it is taken."""
-        self._chunks.append(bytes(data))
-        return len(data)
-
-    def taken(self) -> bytes:
-        """What was written since the last time."""
-        chunks, self._chunks = self._chunks, []
-        return b"".join(chunks)

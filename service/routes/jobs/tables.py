@@ -24,7 +24,7 @@ from service.schemas.resources import TreeView
 from service.schemas.sweeps import ColumnView, RowTree, TablePage
 from service.store.store import Store
 from service.views.resources import dump
-from service.views.tables import CSV, FILES, as_csv, as_file, chosen_media, rows_view
+from service.views.tables import CSV, FILES, as_file, chosen_media, rows_view
 from substructures.documents import read_model
 
 router = APIRouter(prefix="/v1/jobs/{job}", tags=["jobs"])
@@ -45,11 +45,9 @@ def _answered(
     request: Request, store: Store, table: Table, search: tuple[Any, ...], size: int, token: str | None
 ) -> Response:
     media = chosen_media(request.headers.get("accept", "*/*"))
-    if media == CSV:
-        found = streamed(as_csv(table), f"{CSV}; charset=utf-8")
-        return response_of(replace(found, headers={**found.headers, **FRESH}))
     if media != JSON:
-        return Response(as_file(table, media), media_type=media, headers=FRESH)
+        found = streamed(as_file(table, media), f"{media}; charset=utf-8" if media == CSV else media)
+        return response_of(replace(found, headers={**found.headers, **FRESH}))
     size = limited(size, store.settings.limits.page_size)
     after = read_token(search, token, int)
     start = after[0] if after else 0

@@ -8,6 +8,7 @@ or length] springs and dampers. Source: https://openusd.org/release/api/usd_phys
 from __future__ import annotations
 
 import math
+from collections import Counter
 from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, Literal
@@ -186,7 +187,8 @@ def _end(prim: Prim, k: int, scene: Scene) -> Prim:
 def names_of(paths: list[str]) -> dict[str, str]:
     """The last name of a path, where no other has it; else the path."""
     last = [path.rpartition("/")[2] for path in paths]
-    return {path: name if last.count(name) == 1 else path[1:] for path, name in zip(paths, last, strict=True)}
+    count = Counter(last)
+    return {path: name if count[name] == 1 else path[1:] for path, name in zip(paths, last, strict=True)}
 
 
 def _to_third(axis: int) -> Array:

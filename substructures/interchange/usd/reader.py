@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
+from heapq import heappop, heappush
 
 import numpy as np
 
@@ -24,7 +25,7 @@ EARTH = decimal_of(9.81)
 #: what other programs add to a stage and act by, by the last word of the attribute
 _ACTING = {
     "armature", "jointFriction", "frictionloss", "linearDamping", "angularDamping", "disableGravity", "gravcomp",
-    "springref", "stiffness", "damping",
+    "springref", "ref", "stiffness", "damping",
 }  # fmt: skip
 _OWN = ("physics", "drive", "limit", "xformOp")
 
@@ -51,30 +52,41 @@ class _Reader:
         self.scene, self.report = scene, report
         self.names = names_of(list(scene.bodies))
         self.links: list[Link] = []
-        self.reached: set[str | None] = {None}
-        self.left = sorted(joints_of(scene, report), key=lambda joint: joint.is_cut)
+        self.joints = sorted(joints_of(scene, report), key=lambda joint: joint.is_cut)
+        self.left = dict(enumerate(self.joints))
+        self.reached: set[str | None] = set()
+        self._at: dict[str | None, list[int]] = {}
+        for k, joint in enumerate(self.joints):
+            for end in joint.ends:
+                self._at.setdefault(end, []).append(k)
+        self._due: list[int] = []  # a heap: numbers of joints at what is reached
 
     def robot(self) -> Robot:
         """Everything together."""
+        self._reach(None)
         self._grow()
-        while len(self.reached) <= len(self.scene.bodies):
-            self._root(self._next_root())
-            self._grow()
+        for path in self._roots():
+            if path not in self.reached:
+                self._root(path)
+                self._grow()
         self._tell_of_others()
-        loops = tuple(joint.loop(self.names, self.report) for joint in self.left)
+        loops = tuple(joint.loop(self.names, self.report) for joint in self.left.values())
         gravity, place = self._gravity()
         layer = self.scene.stage.GetRootLayer()
         name = layer.defaultPrim or self.scene.prims[0].GetName()
         return Robot(str(name), in_order(self.links), self.report, loops=loops, gravity=gravity, gravity_place=place)
 
-    def _grow(self) -> None:
-        """By joints, as long as one leads to a body that is not reached."""
-        while (found := next(filter(self._leads_on, self.left), None)) is not None:
-            self.left.remove(found)
-            self._carried(found)
+    def _reach(self, path: str | None) -> None:
+        self.reached.add(path)
+        for k in self._at.get(path, ()):
+            heappush(self._due, k)
 
-    def _leads_on(self, joint: Joint) -> bool:
-        return (joint.ends[0] in self.reached) != (joint.ends[1] in self.reached)
+    def _grow(self) -> None:
+        """By the first joint that leads to a body that is not reached, as long as there is one."""
+        while self._due:
+            k = heappop(self._due)
+            if not self.reached.issuperset(self.joints[k].ends):
+                self._carried(self.left.pop(k))
 
     def _carried(self, joint: Joint) -> None:
         """The body behind a joint."""
@@ -84,12 +96,12 @@ class _Reader:
         motions = joint.motions(child, self.scene, self.report)
         self._link(path, None if over is None else self.names[over], placed, motions, joint.name)
 
-    def _next_root(self) -> str:
-        """A root of an articulation, else a body that is no body1, else any."""
-        left = [path for path in self.scene.bodies if path not in self.reached]
-        api, carried = package("UsdPhysics").ArticulationRootAPI, {joint.ends[1] for joint in self.left}
-        roots = [path for path in left if self.scene.bodies[path].HasAPI(api)]
-        return next(iter([*roots, *(path for path in left if path not in carried), *left]))
+    def _roots(self) -> Iterator[str]:
+        """Roots of articulations, then bodies that are no body1, then any."""
+        api, carried = package("UsdPhysics").ArticulationRootAPI, {joint.ends[1] for joint in self.joints}
+        yield from (path for path, prim in self.scene.bodies.items() if prim.HasAPI(api))
+        yield from (path for path in self.scene.bodies if path not in carried)
+        yield from self.scene.bodies
 
     def _root(self, path: str) -> None:
         pose = self.scene.upright(self.scene.frame(self.scene.bodies[path])[0])
@@ -99,7 +111,7 @@ class _Reader:
 
     def _link(self, path: str, parent: str | None, pose: Pose, motions: tuple[Motion, ...], joint: str) -> None:
         prim = self.scene.bodies[path]
-        self.reached.add(path)
+        self._reach(path)
         shown = any(each.IsA(package("UsdGeom").Gprim) for each in self.scene.below(path))
         place, inertial = vector(pose.r), self._inertial(path, shown)
         link = Link(self.names[path], parent, place_of(prim), place, to_rpy(pose.R), motions, inertial, joint, shown)
@@ -107,7 +119,7 @@ class _Reader:
 
     def _inertial(self, path: str, shown: bool) -> Inertial:
         """Of the body, or the sum of what hangs on it; told where the format computes more of the shapes."""
-        prim, below = self.scene.bodies[path], list(self.scene.below(path))
+        prim, below = self.scene.bodies[path], self.scene.below(path)
         found = [each for each in below if self._mass(each)]
         if prim in found:
             return self._weighed(prim, shown)

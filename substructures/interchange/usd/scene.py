@@ -11,6 +11,7 @@ import math
 from collections.abc import Iterable
 from dataclasses import dataclass
 from decimal import Decimal
+from functools import cached_property
 from typing import Any, Literal, NamedTuple
 
 import numpy as np
@@ -163,10 +164,16 @@ class Scene:
         """Of the stage, in the axes of the part."""
         return Pose(self.units.up @ pose.R, self.units.up @ pose.r)
 
-    def below(self, body: str) -> Iterable[Prim]:
+    def below(self, body: str) -> list[Prim]:
         """The prims that hang on a body, itself among them."""
-        return (prim for prim in self._usd.PrimRange(self.bodies[body], self._usd.TraverseInstanceProxies())
-                if self.body_of(prim) == body)  # fmt: skip
+        return self._hanging[body]
+
+    @cached_property
+    def _hanging(self) -> dict[str | None, list[Prim]]:
+        found: dict[str | None, list[Prim]] = {}
+        for prim in self.prims:
+            found.setdefault(self.body_of(prim), []).append(prim)
+        return found
 
 
 def rotation_of(quaternion: Any, prim: Prim) -> Array:

@@ -4,7 +4,13 @@ import { element } from "./fragments.js";
 const headers = ({ name }) => ({ "Content-Type": /\.zip$/i.test(name) ? "application/zip" : "application/octet-stream" });
 const place = document.getElementById("import");
 const [input, cut] = ["file", "cut"].map((id) => document.getElementById(id));
-const tell = (...content) => place.replaceChildren(...content);
+let [file, latest] = [null, 0];
+
+/** What tells of a work, as long as no later one has begun. */
+function telling() {
+    const mine = ++latest;
+    return (...content) => mine === latest && place.replaceChildren(...content);
+}
 
 /** The answer of the interface for the file. */
 async function sent(file, more) {
@@ -15,9 +21,9 @@ async function sent(file, more) {
     return [answer.status, told];
 }
 
-function failed({ message, faults = [] }) {
+function refused({ message, faults = [] }) {
     const lines = faults.length ? faults.map((fault) => fault.message) : [message];
-    tell(element("p", { class: "warn" }, "This cannot be stored:"), element("ul", {}, ...lines.map((line) => element("li", {}, line))));
+    return [element("p", { class: "warn" }, "This cannot be stored:"), element("ul", {}, ...lines.map((line) => element("li", {}, line)))];
 }
 
 function remarks(rows) {
@@ -32,8 +38,7 @@ function remarks(rows) {
 }
 
 /** What would be stored, with a button that stores it. */
-async function preview(file) {
-    if (!file) return;
+async function preview(file, tell) {
     tell(element("p", { class: "quiet" }, `reading and deriving ${file.name} ...`));
     const [, told] = await sent(file, { preview: "true" });
     const { picture, dof, joints, mass, warnings } = told.preview;
@@ -44,18 +49,22 @@ async function preview(file) {
     const seen = element("select", { id: "visibility", "aria-label": "Who sees it" },
         element("option", { value: "public" }, "everybody sees it"), element("option", { value: "private" }, "only its owner"));
     const button = element("button", { type: "button", id: "store" }, "Store");
+    const wrong = element("div", { role: "alert" });
     button.addEventListener("click", () => {
         button.disabled = true;
-        store(file, name.value.trim(), seen.value).catch(failed);
+        store(file, name.value.trim(), seen.value, telling()).catch((error) => {
+            button.disabled = false;
+            wrong.replaceChildren(...refused(error));
+        });
     });
     const size = `${told.kind}: ${dof} dof ${joints}${mass === null ? "" : `, ${Number(mass.toPrecision(4))} kg`}`;
     const words = warnings.map(({ message }) => element("li", { class: "warn" }, message));
     const about = element("div", {}, element("p", {}, size), element("ul", {}, ...words),
-        element("p", {}, name, " ", seen, " ", button), element("p", { class: "quiet small" }, "Nothing is stored yet."));
+        element("p", {}, name, " ", seen, " ", button), wrong, element("p", { class: "quiet small" }, "Nothing is stored yet."));
     tell(element("div", { class: "split" }, element("div", { class: "picture" }, image), about), remarks(told.report));
 }
 
-async function store(file, name, visibility) {
+async function store(file, name, visibility, tell) {
     const more = { ...(name ? { name } : {}), ...(visibility === "private" ? { visibility } : {}) };
     const [status, told] = await sent(file, { store: "true", ...more });
     if (status === 202) return tell(element("p", {}, "It became ", element("a", { href: `/jobs/${told.id}` }, "a job"), "."));
@@ -65,15 +74,23 @@ async function store(file, name, visibility) {
 }
 
 if (input) {
-    const chosen = () => preview(input.files[0]).catch(failed);
-    input.addEventListener("change", chosen);
-    cut.addEventListener("change", chosen);
+    const read = () => {
+        const tell = telling();
+        if (file) preview(file, tell).catch((error) => tell(...refused(error)));
+    };
+    const chosen = (files) => {
+        file = files[0] ?? file;
+        read();
+    };
+    input.addEventListener("click", () => { input.value = ""; }); // the same file, which was changed, is one, too
+    input.addEventListener("change", () => chosen(input.files));
+    cut.addEventListener("change", read);
     addEventListener("dragover", (event) => event.preventDefault());
     addEventListener("drop", (event) => {
         event.preventDefault();
         if (!event.dataTransfer.files.length) return;
         input.files = event.dataTransfer.files;
         place.scrollIntoView({ block: "center" });
-        chosen();
+        chosen(input.files);
     });
 }
