@@ -17,10 +17,10 @@ TABLE = ("times", "coefficients", "value", "pieces", "halvings", "length")
 
 class TimeTables:
     """Tables (times (m + 1,), coefficients (m, d + 1), highest power first, in the time from the beginning of a piece)
-    whose values at the present time are ``values`` (1, k).
+    whose values at the present time are written into ``values``, an array (1,) each.
     """
 
-    def __init__(self, values: Array, tables: Sequence[tuple[Array, Array]]) -> None:
+    def __init__(self, values: Sequence[Array], tables: Sequence[tuple[Array, Array]]) -> None:
         self.values, self._tables = values, tables
         self.words = np.zeros((len(tables), len(TABLE)), dtype=np.int64)
         for k, (times, _) in enumerate(tables):
@@ -30,7 +30,7 @@ class TimeTables:
         """Of table k so many pieces from one on, of which those at the ends go on beyond them."""
         times, coefficients = self._tables[k]
         length = coefficients.shape[1]
-        at = [address(times) + 8 * first, address(coefficients) + 8 * first * length, address(self.values) + 8 * k]
+        at = [address(times) + 8 * first, address(coefficients) + 8 * first * length, address(self.values[k])]
         self.words[k] = [*at, count, count.bit_length(), length]
 
 

@@ -10,10 +10,15 @@ from closed_trees import tree_model
 from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 
 from substructures import InvalidArgument, Model, simulate
+from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.prescribed import Prescribed
+from substructures.analysis.motion.integrators.tableaux import TABLEAUX
+from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Curve, Table
 from substructures.analysis.simulate import ClosedMotion, Outputs
+from substructures.compile import target
+from substructures.compile.motion import CompiledRun
 
 TIMES = [0.0, 1.0, 2.0, 3.0]
 DWELL = [0.0, 1.0, 1.0, 1.0]
@@ -96,6 +101,29 @@ def test_kinks_of_expressions_are_named(slide: Model, motion: str, time: float, 
 def test_a_jump_of_the_acceleration_is_no_kink(slide: Model, motion: str, at: Any) -> None:
     t = np.linspace(0, 3, 7)
     np.testing.assert_allclose(moved(slide, motion), at(t), atol=1e-9)
+
+
+@pytest.mark.skipif(not target.available(), reason="machine code cannot be made, or is not wanted")
+def test_tables_and_expressions_are_followed_in_machine_code() -> None:
+    """-s'' of a table of five pieces of a parabola, beside an expression, in the order in which they are given."""
+    bodies = [
+        {"name": n, "parent": p, "joint": {"type": "prismatic", "coordinate": n}, "mass": 1}
+        for n, p in (("x", "base"), ("y", "x"), ("z", "y"))
+    ]
+    document = {"gravity": [0, 0, 0], "instances": [{"name": "s", "substructure": "slide"}]}
+    model = tree_model(document, {"slide": {"name": "slide", "bodies": bodies}})
+    times = np.linspace(0, 3, 6)
+    given = {"s.z": "t^3", "s.x": Table(times, 2 * times**2, "cubic"), "s.y": Table(times, -(times**2), "quintic")}
+    state = Constrained(model, Start([0, 0, 0]), (0, 3), given)
+    state.move(0.0, np.zeros(3), np.zeros(3))
+    rates = state.compiled(state.equations(state.independent_rows()))
+    assert rates is not None
+    run = CompiledRun(TABLEAUX["DOP853"], rates, (1e-9, 1e-9))
+    for t in (0.0, 1.3, 3.0):
+        np.testing.assert_allclose(run.rates(t, np.zeros(7))[3:6], [4, -2, 6 * t], atol=1e-9)
+    found = simulate(model, [0, 0, 0], (0, 3), kind=ClosedMotion(prescribed=given), outputs=Outputs(count=4))
+    assert found.is_right, found.message
+    np.testing.assert_allclose(found.q, np.stack([2 * found.t**2, -(found.t**2), found.t**3], axis=1), atol=1e-8)
 
 
 def test_loop_states_see_kinks_where_they_are(slide: Model) -> None:

@@ -20,10 +20,11 @@ def at(tables: TimeTables, times: Array) -> Array:
     rates = CompiledRates((), np.zeros(1), np.zeros((1, 2)), np.zeros((1, 1)), None, tables=tables)
     run, found = CompiledRun(TABLEAUX["RK23"], rates, (1.0, 1.0)), []
     for t in times.tolist():
-        tables.values.fill(np.nan)
+        for value in tables.values:
+            value.fill(np.nan)
         run.begin(t, np.zeros(2), t, 1.0)
         run.advance(0)
-        found.append(tables.values[0].copy())
+        found.append(np.concatenate(tables.values))
     return np.array(found)
 
 
@@ -37,7 +38,7 @@ def test_values_of_tables(knots: int) -> None:
         if knots > 3 or how in ("hold", "linear")
     ]
     arrays = [(np.array(curve.times), np.array(curve.pieces)) for curve in curves]
-    tables = TimeTables(np.zeros((1, len(curves))), arrays)
+    tables = TimeTables([*np.zeros((len(curves), 1))], arrays)
     wanted = np.sort(np.r_[times, rng.uniform(times[0] - 0.1, times[-1] + 0.1, 60)])
     np.testing.assert_array_equal(at(tables, wanted), [[curve(t) for curve in curves] for t in wanted.tolist()])
     start, end = times[-2:].tolist()

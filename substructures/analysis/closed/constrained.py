@@ -125,7 +125,8 @@ class Constrained:
         self.is_still = not self.prescribed.index and not (self.closed and self.model.driven)
         self.conservative = not source.outputs[POWER].entries and self.is_still
         self._t, self._x = np.zeros(1), np.zeros((1, 2 * self.n))
-        self.inputs = VaryingInputs(self.conditions, self._t, [(state_names(self.model), self._x)], folder)
+        state, others = [(state_names(self.model), self._x)], self.prescribed.tables
+        self.inputs = VaryingInputs(self.conditions, self._t, state, folder, others)
         # rows of closures are written where they are wanted, before those of prescribed coordinates
         rows = dict(zip((*CLOSED, "closure.rate"), (self.phi, self.G, self.c, self.phi_t), strict=True))
         self._out = {

@@ -38,6 +38,7 @@ class Prescribed:
         """
         self.values, self._middle = np.zeros((len(given), 3)), sum(span) / 2
         self._tables: list[tuple[int, Any]] = []
+        self._meeting = np.ones((1, 0))
         scope = Scope(Graph())
         time = {"t": scope.graph.symbol("t")}
         formulas: dict[int, Expr] = {}
@@ -62,7 +63,8 @@ class Prescribed:
         names = list(given)
         for k, row in zip(formulas, rows, strict=True):
             _require_smooth(row, span, f"/prescribed/{escape(names[k])}", unit_of(names[k], ""))
-        self._graph, self._rows = scope.graph, rows
+        self._graph, self._rows = scope.graph, dict(zip(formulas, rows, strict=True))
+        self._second = np.zeros((1, len(self._tables)))
         self._run = self._compiled(scope.graph, rows)
 
     def _compiled(self, graph: Graph, rows: Sequence[tuple[Expr, Expr, Expr]]) -> Callable[[], None] | None:
@@ -79,14 +81,29 @@ class Prescribed:
         self.values[self._places] = self._found[0]
         return run if p.symbols else None
 
+    @property
+    def tables(self) -> list[tuple[Array, tuple[Array, Array]]]:
+        """Arrays (1,) for the second derivatives of tables, which :meth:`bound` reads, and what these are: times, and
+        coefficients of every piece, highest power first.
+        """
+        curves = [(x.x.copy(), np.ascontiguousarray(x.c[:, :, 2].T)) for _, x in self._tables]
+        return list(zip(self._second[0, :, None], curves, strict=True))
+
     def bound(self, t: Array, c: Array) -> tuple[Callable[[], None], ...] | None:
-        """Calls that write c = -s'' (1, k) at the time ``t`` (1,); None where there are tables, or pieces meet."""
-        if not self.index or self._run is None:
-            return () if not self._tables else None
-        if self._tables or self._meeting.size:
+        """Calls that write c = -s'' (1, k) at the time ``t`` (1,), of tables from their second derivatives; None where
+        pieces of expressions meet.
+        """
+        if self._run is None and not self._tables:
+            return ()
+        if self._meeting.size:
             return None
-        p = program(self._graph, {"c": array((len(self.index),), lambda k: -self._rows[k][2])}, {"t": TIME})
-        return (compile_program(p, ["c"], single=True).bind({"c": c}, {"t": t}),)
+        second = {k: row[2] for k, row in self._rows.items()}
+        names = [f"table.{k}" for k, _ in self._tables]
+        second |= {k: self._graph.symbol(name) for (k, _), name in zip(self._tables, names, strict=True)}
+        symbols = {"t": TIME} | {name: Symbol(name, "input", "") for name in names}
+        p = program(self._graph, {"c": array((len(self.index),), lambda k: -second[k])}, symbols)
+        kernel = compile_program(p, ["c"], single=True)
+        return (kernel.bind({"c": c}, {"t": t}, columns=[(names, self._second)] if names else []),)
 
     def at(self, t: float) -> Array:
         """``values`` at a time; the array is used again by the next call."""

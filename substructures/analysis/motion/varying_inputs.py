@@ -22,8 +22,17 @@ class VaryingInputs:
     are ``laws``. Not for several threads at a time.
     """
 
-    def __init__(self, conditions: Conditions, t: Array, state: Sequence[NamedColumns], folder: Path | None) -> None:
-        """``t`` (1,), ``state``: where time, coordinates and their rates are written before :meth:`fill`."""
+    def __init__(
+        self,
+        conditions: Conditions,
+        t: Array,
+        state: Sequence[NamedColumns],
+        folder: Path | None,
+        others: Sequence[tuple[Array, tuple[Array, Array]]] = (),
+    ) -> None:
+        """``t`` (1,), ``state``: where time, coordinates and their rates are written before :meth:`fill`; ``others``:
+        arrays (1,) for the values of other tables without breaks, which are no inputs, in machine code.
+        """
         self._t = t
         self._curves = dict(conditions.curves)
         found, self._table = np.zeros((1, len(conditions.formulas))), np.zeros((1, len(self._curves)))
@@ -35,8 +44,9 @@ class VaryingInputs:
             source = conditions.expressions.select(["inputs"])
             self.laws = (Laws(source, kernel, {"inputs": found}, conditions.values | {"t": t}, list(state)),)
         curves = [(np.array(c.times), np.array(c.pieces, dtype=np.float64)) for c in self._curves.values()]
+        tables = [*zip(self._table[0, :, None], curves, strict=True), *others]
         #: in machine code
-        self.tables = TimeTables(self._table, curves) if curves else None
+        self.tables = TimeTables([x for x, _ in tables], [curve for _, curve in tables]) if tables else None
         self._has_breaks, self._is_entered = any(curve.breaks for curve in self._curves.values()), False
 
     def runs(self) -> list[Callable[[], None]] | None:
