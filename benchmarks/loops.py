@@ -62,7 +62,7 @@ def per_call(model: Model, request: dict[str, Any], calls: int = 100_000) -> flo
     state = loop_state(model, **{k: v for k, v in request.items() if k in ("q", "qd", "fixed")}).consistent
     s = Constrained(model, Start(request["q"]), (0, 0))
     s.move(0, state.q, state.qd)
-    rates = s.compiled(s.independent_rows())
+    rates = s.compiled(s.equations(s.independent_rows()))
     if rates is None:
         return np.nan
     run, y = CompiledRun(TABLEAUX["DOP853"], rates, (1.0, 1.0)), np.concatenate((state.q, state.qd, (0.0,)))

@@ -6,7 +6,7 @@ POST: a server in a process of its own with one worker, on an SQLite file; media
 where another expression says; a known one has an arm with other numbers. Items: CPU time of the work of an item of the
 kind ``assemble`` in this process, and the bytes of what it stores; ``slow``: no shape is known, for a part of the
 items; and of as many with numbers bound in instances, with the hand elsewhere, with gravity in other directions, and
-with other names of instances.
+with other names of instances. Motions: CPU time of 1 s of trees of 6 + 6 dof, the first of their shapes.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from benchmarks.http import server
 from benchmarks.report import keep, options
 from service.jobs.kinds import run
 from service.jobs.kinds.shapes import SHARE
-from substructures import Definition, Part, catalogue, derive
+from substructures import Definition, Part, catalogue, couple, derive, simulate
 from substructures.client import Client
 
 ARM, HAND = "puma560", "spherical-wrist"
@@ -160,12 +160,26 @@ def jobs(count: int, figures: dict[str, float]) -> None:
     print(f"as many with numbers bound in instances: {bound * len(items) / 1e3:.1f} s of CPU, an item {bound:.2f} ms")
 
 
+def motions(count: int, figures: dict[str, float]) -> None:
+    """First motions of so many new shapes, behind one that makes what all have in common."""
+    parts = {"arm": derive(catalogue.load("ur5")), "hand": derive(catalogue.load(ARM))}
+    models = [couple(tree("first", "ur5", ARM, 0.01171 + 0.00131 * k), parts) for k in range(count + 1)]
+    found = []
+    for model in models:
+        start = process_time()
+        simulate(model, [0.3] * model.dof, (0, 1))
+        found.append(process_time() - start)
+    figures["first_motion_ms"] = median(found[1:]) * 1e3
+    print(f"first motion of a new shape, 6 + 6 dof: {figures['first_motion_ms']:.0f} ms of CPU")
+
+
 def main() -> None:
     """Measure."""
     given = options(__doc__, "fewer trees").parse_args()
     figures: dict[str, float] = {}
     posts(10 if given.quick else 30, figures)
     jobs(8 if given.quick else 64, figures)
+    motions(8 if given.quick else 16, figures)
     keep(figures, given.json)
 
 

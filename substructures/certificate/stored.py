@@ -65,13 +65,18 @@ def pruned(program: Stored, names: Iterable[str]) -> Pruned:
             needed[entry] = 1
     for i in range(len(needed) - 1, -1, -1):
         if needed[i]:
-            for k in operands(program.operations[i]):
+            operation = program.operations[i]
+            for k in operation[1:] if operation[0] in _BINARY else operands(operation):
                 needed[k] = 1
-    place, operations = dict[int, int](), list[Operation]()
+    place, operations = [0] * len(needed), list[Operation]()
     for i, operation in enumerate(program.operations):
         if needed[i]:
-            place[i], used = len(place), operands(operation)
-            operations.append((operation[0], *[place[k] for k in used], *operation[1 + len(used) :]))
+            place[i] = len(operations)
+            if operation[0] in _BINARY:
+                operations.append((operation[0], place[operation[1]], place[operation[2]]))
+            else:
+                used = operands(operation)
+                operations.append((operation[0], *[place[k] for k in used], *operation[1 + len(used) :]))
     moved = {name: replace(x, entries=tuple(place[entry] for entry in x.entries)) for name, x in outputs.items()}
     return Pruned(program.symbols, tuple(operations), moved)
 

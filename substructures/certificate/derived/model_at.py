@@ -8,7 +8,7 @@ from flint import arb, arb_mat
 
 from substructures.certificate.linear import Ball, Matrix
 from substructures.certificate.outputs import images_of
-from substructures.certificate.slopes import tangents
+from substructures.certificate.slopes import slopes, tangents
 from substructures.certificate.stored import Stored, operations_in_balls
 
 Index = tuple[int, ...]
@@ -42,6 +42,11 @@ class ModelAt:
         changes, zero = tangents(self.program, self.found, direction), arb(0)
         found = [changes.get(i, zero) for i in range(len(self.found))]
         return ModelAt(self.program, self.coordinates, direction, found)
+
+    def change(self, name: str, direction: Mapping[str, Ball]) -> Ball:
+        """The change of one output without axes, by backward differentiation."""
+        found = (slopes(self.program, entry, self.found) for entry in self.program.outputs[name].entries)
+        return total(x * direction[symbol] for some in found for symbol, x in some.items() if symbol in direction)
 
     def by(self, name: str) -> ModelAt:
         """The derivatives by one symbol."""
@@ -108,6 +113,8 @@ class ModelAt:
 
     def kinetic_change(self, direction: Mapping[str, Ball]) -> Ball:
         """The change of T in a direction at fixed velocities: T is linear in what it is made of."""
+        if direction.keys().isdisjoint(symbol.name for symbol in self.program.symbols):
+            return arb(0)
         return ModelAt(self.program, self.coordinates, self.values, self.along(direction).found).kinetic_energy()
 
     def energy(self) -> Ball:

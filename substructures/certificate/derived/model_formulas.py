@@ -262,7 +262,7 @@ def power_of(result: Outputs, name: str, m: ModelAt, balls: BallRows = ()) -> No
     """Q_a q'^a + V' - d_t T at fixed inputs; the metric depends on the time where motions are given. A power of zero is
     small beside the Q_a q'^a, which cancel V'.
     """
-    along = m.along(m.time() | moved(m, balls, m.rates))
+    gained = m.change("potential_energy", m.time() | moved(m, balls, m.rates))
     work = [Q * x for Q, x in zip(m.vector("forces"), m.rates, strict=True)]
-    result.scalar(name, total(work) + along.scalar("potential_energy") - m.kinetic_change(m.time()))
+    result.scalar(name, total(work) + gained - m.kinetic_change(m.time()))
     result[name].scale = total(map(abs, work)).abs_lower()

@@ -97,7 +97,8 @@ class DecidedContacts(ContactMotion):
         contacts = rows.pressing(self.rate.reshape(-1), velocities, laws)
         place = self.G.reshape(-1, self.n), self.bias.reshape(-1), Q, bias, rows.kept, np.arange(self.n)
         saddle = SaddlePoint(self.g, *place, pressing=contacts, velocities=velocities, power=self._out[2])
-        return replace(rates, calls=(*rates.calls, *calls), saddle=saddle)
+        # its own: zeros among what kernels write are not written again
+        return replace(rates, calls=(*rates.calls, *calls), written=np.zeros((1, self.n)), saddle=saddle)
 
     def evaluate(self, t: float, x: Array) -> tuple[Array, Array, float]:
         """(q'', pivots of the metric, power), in machine code where that may be."""
