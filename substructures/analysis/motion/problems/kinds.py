@@ -86,8 +86,16 @@ def usual_kind(model: Model, kind: ConstrainedMotion | None) -> ConstrainedMotio
     """The motion in quasi-velocities: the one that is given, that of the tree with its velocity constraints and all its
     closures, or of these alone; None where it has none.
     """
+    require_constrained(kind)
     constraints = closing(model) if kind is None else ()
     return ConstrainedMotion(constraints) if constraints else kind
+
+
+def require_constrained(kind: object) -> None:
+    """Raises InvalidArgument (``/kind``) for what is neither None nor a ConstrainedMotion."""
+    if kind is not None and not isinstance(kind, ConstrainedMotion):
+        message = f"a ConstrainedMotion(...) or None is needed, found {repr(kind)[:80]}"
+        raise InvalidArgument.at("/kind", "wrong-type", message)
 
 
 @dataclass(frozen=True)
