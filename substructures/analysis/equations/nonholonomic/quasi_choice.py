@@ -39,6 +39,8 @@ def quasi_velocity_rows(
     """
     p, coordinates = f.n - len(rows.rows), f.model.coordinates
     if velocities is not None:
+        if independent is not None:
+            f.scope.fault("/independent", "contradiction", "give 'velocities' or 'independent', not both")
         names = list(velocities)
         own = [linear_row(f, text, f"/velocities/{name}") for name, text in velocities.items()]
         for name in names:
