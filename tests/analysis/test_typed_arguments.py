@@ -63,6 +63,10 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: ClosedMotion(friction="loaded"), "/friction", "'loaded'"),  # type: ignore[arg-type]
     (lambda: ClosedMotion(reduction="none"), "/reduction", "'none'"),  # type: ignore[arg-type]
     (lambda: ConstrainedMotion([]), "/constraints", "none"),
+    (lambda: ConstrainedMotion([ROD, "rod"]), "/constraints/1", "'rod'"),  # type: ignore[list-item]
+    (lambda: TreeMotion(contacts="foot"), "/contacts", "'foot'"),  # type: ignore[arg-type]
+    (lambda: Outputs(events=[{"name": "top"}]), "/events/0", "'top'"),  # type: ignore[list-item]
+    (lambda: Outputs(events=Event("top", "p.q1")), "/events", "Event(...)"),  # type: ignore[arg-type]
     (lambda: Shooting(1.0, turns={"p.q1": 0.5}), "/turns/p.q1", "0.5"),  # type: ignore[dict-item]
     (lambda: ConstrainedMotion([ROD], form="lagrange"), "/form", "'lagrange'"),  # type: ignore[arg-type]
 ]
