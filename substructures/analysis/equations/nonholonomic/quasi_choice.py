@@ -54,9 +54,8 @@ def quasi_velocity_rows(
                 message = f"unknown coordinate '{name[:80]}'{among(name, coordinates, i)}"
                 f.scope.fault(f"/independent/{i}", "unknown-coordinate", message)
         require_read(f.scope)
-        index = [coordinates.index(name) for name in chosen]
         # v_i = q'^a: rows of the unit matrix
-        own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in index]
+        own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in map(coordinates.index, chosen)]
         names, pointer = [f"{name}'" for name in chosen], "/independent"
     require_read(f.scope)
     if len(names) != p:
