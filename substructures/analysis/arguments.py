@@ -84,6 +84,18 @@ def one_of(value: Any, name: str, known: Collection[str]) -> None:
         raise InvalidArgument.at(f"/{name}", "literal-error", message)
 
 
+def values_of(given: Any, name: str, *classes: type) -> tuple[Any, ...]:
+    """Values of these classes, of a list. Raises InvalidArgument (``/name``, ``/name/i``)."""
+    wanted = " or ".join(f"{each.__name__}(...)" for each in classes)
+    if not isinstance(given, list | tuple):
+        raise InvalidArgument.at(f"/{name}", "list-expected", f"a list of {wanted} is needed, found {repr(given)[:80]}")
+    for i, each in enumerate(given):
+        if not isinstance(each, classes):
+            message = f"{wanted} is needed, found {repr(each)[:80]}"
+            raise InvalidArgument.at(f"/{name}/{i}", "wrong-type", message)
+    return tuple(given)
+
+
 def exact(value: Any, pointer: str) -> int | Decimal | str:
     """A number without rounding, or the text of an expression. Raises InvalidArgument."""
     if isinstance(value, str):

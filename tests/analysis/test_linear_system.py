@@ -92,6 +92,14 @@ def test_a_pole_is_told() -> None:
     assert (found.status, found.message.startswith("0 rad/s is a pole")) == ("failed", True)
 
 
+def test_a_resonance_without_damping_is_a_pole(pendulum: Model) -> None:
+    found = frequency_response(pendulum, [0], frequencies=[np.sqrt(G)])
+    assert (found.status, found.message.startswith("3.13209 rad/s is a pole")) == ("failed", True)
+    beside = frequency_response(pendulum, [0], frequencies=[np.sqrt(G) * (1 + 1e-9)])
+    assert beside.status == "finished"
+    np.testing.assert_allclose(beside.magnitude, 1 / (2 * G * 1e-9), rtol=1e-5)
+
+
 def test_the_regulator_of_a_mass() -> None:
     """x'' = u: K = (1, sqrt 2), eigenvalues of a Butterworth filter (Kalman)."""
     free = alone({**OSCILLATOR, "bodies": [{"name": "b", "parent": "base", "mass": 1, "joint": {"type": "prismatic"}}]})

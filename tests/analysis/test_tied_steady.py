@@ -118,3 +118,17 @@ def test_what_means_nothing_says_so() -> None:
         with pytest.raises(InvalidInput) as caught:
             steady_motions(model, **given)  # type: ignore[arg-type]
         assert caught.value.faults[0].pointer == pointer
+
+
+@pytest.mark.parametrize("size", ["1", "1/10^12"])
+def test_a_spring_beyond_half_a_turn_is_one_however_weak(size: str) -> None:
+    """An arm on a sleigh with its rest at 5 rad; masses, inertias and springs of any size."""
+    part = sleigh_part()
+    joint = {"type": "revolute", "coordinate": "h", "stiffness": f"10*{size}", "rest": 5}
+    arm = {"name": "arm", "parent": "b", "joint": joint, "mass": size, "inertia": {"xx": size, "zz": size}}
+    numbers = part["parameters"] | {name: {"value": f"{x}*{size}"} for name, x in (("m", 2), ("I", 0.3))}
+    document = part | {"bodies": [*part["bodies"], arm], "parameters": numbers}
+    tree = {"gravity": [0, 0, 0], "velocity_constraints": [{"name": "blade", "type": "knife_edge", "frame": "s.b"}]}
+    tree["instances"] = [{"name": "s", "substructure": "p"}]
+    (found,) = equilibria(tree_model(tree, {"p": document}), starts=[[0, 0, 0, 4.5]], count=2).found
+    np.testing.assert_allclose(found.q, [0, 0, 0, 5])

@@ -29,6 +29,8 @@ from substructures import (
     catalogue,
     couple,
     derive,
+    linearise,
+    sensitivities,
     simulate,
 )
 from substructures.analysis.from_fields import motion_arguments
@@ -61,6 +63,10 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: ClosedMotion(friction="loaded"), "/friction", "'loaded'"),  # type: ignore[arg-type]
     (lambda: ClosedMotion(reduction="none"), "/reduction", "'none'"),  # type: ignore[arg-type]
     (lambda: ConstrainedMotion([]), "/constraints", "none"),
+    (lambda: ConstrainedMotion([ROD, "rod"]), "/constraints/1", "'rod'"),  # type: ignore[list-item]
+    (lambda: TreeMotion(contacts="foot"), "/contacts", "'foot'"),  # type: ignore[arg-type]
+    (lambda: Outputs(events=[{"name": "top"}]), "/events/0", "'top'"),  # type: ignore[list-item]
+    (lambda: Outputs(events=Event("top", "p.q1")), "/events", "Event(...)"),  # type: ignore[arg-type]
     (lambda: Shooting(1.0, turns={"p.q1": 0.5}), "/turns/p.q1", "0.5"),  # type: ignore[dict-item]
     (lambda: ConstrainedMotion([ROD], form="lagrange"), "/form", "'lagrange'"),  # type: ignore[arg-type]
 ]
@@ -81,6 +87,13 @@ def test_what_is_no_value_of_its_class_is_not_passed_over(argument: str, value: 
     where, message = fault(lambda: simulate(catalogue_model("simple-pendulum"), [1], (0, 1), **{argument: value}))
     assert where == f"/{argument}"
     assert repr(value)[:80] in message
+
+
+@pytest.mark.parametrize("kind", [TreeMotion(), "rolling"])
+def test_linearisations_and_sensitivities_are_with_constraints_or_without(kind: Any) -> None:
+    model = catalogue_model("simple-pendulum")
+    assert fault(lambda: linearise(model, [0], kind=kind))[0] == "/kind"
+    assert fault(lambda: sensitivities(model, [0], (0, 1), kind=kind))[0] == "/kind"
 
 
 def test_a_model_moves_as_it_can() -> None:

@@ -213,3 +213,8 @@ def test_what_is_given_twice_has_to_agree() -> None:
     assert quasi_velocity_equations(sleigh(), twice).dependent == ("two",)
     with pytest.raises(InvalidInput, match="'two' contradicts"):
         quasi_velocity_equations(sleigh(), [twice[0], Linear("two", "2*s.x' - 1")])
+
+
+def test_velocities_and_independent_coordinates_are_not_given_together() -> None:
+    with pytest.raises(InvalidInput, match="/independent: give 'velocities' or 'independent', not both"):
+        quasi_velocity_equations(sleigh(), [BLADE], velocities=FORWARD, independent=["s.x", "s.f"])

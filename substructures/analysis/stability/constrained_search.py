@@ -44,6 +44,8 @@ from substructures.tree.model import Model
 FREE = 1e-8
 #: steps of Newton's method, the longest one [rad, reach, 1/s, ...], and the least part of one that is tried
 STEPS, FARTHEST, SHORTEST = 100, 0.5, 1e-4
+#: what rounding leaves of forces that are the same after a full turn
+NOTHING = 1e-14
 
 
 @dataclass(frozen=True)
@@ -251,11 +253,13 @@ class ConstrainedSearch:
 
     def wound(self, y: Array) -> Array:
         """Angles in (-pi, pi], where a full turn changes nothing."""
-        before, wound = self.equations_at(y)[0], y.copy()
+        (before, J), wound = self.equations_at(y), y.copy()
+        sizes = np.nan_to_num(np.abs(J * self.length)).max(axis=1, initial=0)
+        least = np.fmax(SAME * sizes, NOTHING)
         for a in np.flatnonzero(self.turning):
             other = y.copy()
             other[a] = np.pi - np.mod(np.pi - y[a], 2 * np.pi)
-            if np.allclose(self.equations_at(other)[0], before, rtol=0, atol=1e-9):
+            if (np.abs(self.equations_at(other)[0] - before) <= least).all():
                 wound[a] = other[a]
         return wound
 

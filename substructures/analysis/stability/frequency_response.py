@@ -17,6 +17,8 @@ from substructures.tree.model import Model
 
 #: of frequencies where none are given, and how far they reach beyond those of the poles
 COUNT, BEYOND = 200, 10.0
+#: what rounding leaves between a frequency and a pole that it is, relative
+ROUNDED = 1e-14
 
 
 @dataclass(frozen=True, repr=False)
@@ -76,8 +78,11 @@ def frequency_response(
     shape = (len(w), len(system.outputs), len(system.inputs))
     response = np.full(shape, np.nan + 0j)
     one = np.eye(len(system.A))
+    nearest = np.abs(1j * w[:, None] - poles[None, :]).min(axis=1, initial=np.inf)
     for k, each in enumerate(w):
         try:
+            if nearest[k] <= ROUNDED * each:
+                raise np.linalg.LinAlgError
             response[k] = system.C @ np.linalg.solve(1j * each * one - system.A, system.B) + system.Dy
         except np.linalg.LinAlgError:
             message = f"{each:.6g} rad/s is a pole: the response is infinite there; take other frequencies"

@@ -25,7 +25,7 @@ from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.nonholonomic.linearised import Choice, linearised
 from substructures.analysis.equations.nonholonomic.positions import start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
-from substructures.analysis.motion.problems.kinds import ConstrainedMotion
+from substructures.analysis.motion.problems.kinds import ConstrainedMotion, require_constrained
 from substructures.analysis.stability.linearisation_result import ConstrainedLinearisation
 from substructures.analysis.stability.operating_point import OperatingPoint, fault_of
 from substructures.analysis.stability.vibrations import NEUTRAL, Mode, Stability, normed, stability
@@ -54,6 +54,7 @@ def linearise_constrained(point: OperatingPoint, kind: ConstrainedMotion) -> Con
     are not determined is ``failed``, with advice. Raises InvalidInput as quasi_velocity_equations, and MissingValue.
     """
     model = point.model
+    require_constrained(kind)
     require_ungiven(model, "take the tree without 'driven'")
     values, chosen = values_at(point), point.chosen_inputs()
     place = {name: values[name] for name in model.coordinates}

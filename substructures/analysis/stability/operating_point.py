@@ -159,7 +159,8 @@ def forces_that_are(source: Program, values: Mapping[str, Any], sizes: Array, le
     if (sizes > AT_REST * np.diag(interpret(source, values, ["metric"])["metric"])).any():
         return sizes
     noise = rounding(source, values, ["residual", "stiffness"])
-    most = np.column_stack((noise["residual"], noise["stiffness"] * length)).max(axis=1, initial=0)
+    far = float(length.max(initial=0))
+    most = np.column_stack((noise["residual"], noise["stiffness"] * far)).max(axis=1, initial=0)
     return sizes if (sizes > most).any() else np.zeros_like(sizes)
 
 

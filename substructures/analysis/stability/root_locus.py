@@ -91,7 +91,9 @@ def root_locus(
         found = _nearest(model, near, conditions)
         if found is None or (before is not None and _is_lost(model, (near, before), (found, conditions), rows[-1][1])):
             status = "failed"
-            message = f"there is no equilibrium near the last one at {parameter} = {value:g}: take smaller steps"
+            near_to = "the last one" if rows else "'q'"
+            way = "take smaller steps" if rows else "give another 'q'"
+            message = f"there is no equilibrium near {near_to} at {parameter} = {value:g}: {way}"
             break
         near, before, roots = found.q, conditions, _eigenvalues(found.at)
         rows.append((near, _followed(rows[-1][1], roots) if rows else roots, found.verdict))

@@ -37,6 +37,8 @@ def quasi_velocity_rows(
     """
     p, coordinates = f.n - len(rows.rows), f.model.coordinates
     if velocities is not None:
+        if independent is not None:
+            f.scope.fault("/independent", "contradiction", "give 'velocities' or 'independent', not both")
         names = list(velocities)
         own = [linear_row(f, text, f"/velocities/{name}") for name, text in velocities.items()]
         for name in names:
@@ -50,9 +52,8 @@ def quasi_velocity_rows(
                 message = f"unknown coordinate '{name[:80]}'{among(name, coordinates, i)}"
                 f.scope.fault(f"/independent/{i}", "unknown-coordinate", message)
         require_read(f.scope)
-        index = [coordinates.index(name) for name in chosen]
         # v_i = q'^a: rows of the unit matrix
-        own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in index]
+        own = [[f.graph.one if a == b else f.graph.zero for a in range(f.n)] for b in map(coordinates.index, chosen)]
         names, pointer = [f"{name}'" for name in chosen], "/independent"
     require_read(f.scope)
     if len(names) != p:

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, get_args
 
-from substructures.analysis.arguments import one_of
+from substructures.analysis.arguments import one_of, values_of
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint, closing
 from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.problem import StateVector
@@ -31,6 +31,7 @@ class TreeMotion:
 
     def __post_init__(self) -> None:
         one_of(self.friction, "friction", ("regularised", "exact", "loaded"))
+        values_of(self.contacts, "contacts", Contact)
         if self.friction == "loaded" and self.bearings is None:
             message = "friction by the load of joints needs the reactions of the tree, 'bearings'"
             raise InvalidArgument.at("/friction", "needs-parts", message)
@@ -79,6 +80,7 @@ class ConstrainedMotion:
     def __post_init__(self) -> None:
         if not self.constraints:
             raise InvalidArgument.at("/constraints", "too-short", "at least one constraint is needed, found none")
+        values_of(self.constraints, "constraints", *get_args(Constraint))
         one_of(self.form, "form", ("voronets", "boltzmann-hamel"))
 
 
@@ -86,8 +88,16 @@ def usual_kind(model: Model, kind: ConstrainedMotion | None) -> ConstrainedMotio
     """The motion in quasi-velocities: the one that is given, that of the tree with its velocity constraints and all its
     closures, or of these alone; None where it has none.
     """
+    require_constrained(kind)
     constraints = closing(model) if kind is None else ()
     return ConstrainedMotion(constraints) if constraints else kind
+
+
+def require_constrained(kind: object) -> None:
+    """Raises InvalidArgument (``/kind``) for what is neither None nor a ConstrainedMotion."""
+    if kind is not None and not isinstance(kind, ConstrainedMotion):
+        message = f"a ConstrainedMotion(...) or None is needed, found {repr(kind)[:80]}"
+        raise InvalidArgument.at("/kind", "wrong-type", message)
 
 
 @dataclass(frozen=True)
