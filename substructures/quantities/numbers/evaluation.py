@@ -121,8 +121,8 @@ def evaluate(
     sources = Sources(model) if isinstance(model, Model) else model
     form = Form(options.packed, options.float32)
     asked = read_arguments(sources, quantities, given, form, options.limit, options.evaluator)
-    states, values = asked.states, asked.values
-    return _answered(asked, states, values, _told_of_values(asked, states.q, values, options.first))
+    warnings = _told_of_values(asked, asked.states.q, asked.values, options.first)
+    return _answered(asked, asked.states, asked.values, warnings)
 
 
 def evaluate_in_parts(
