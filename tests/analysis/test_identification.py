@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from identified_motions import IN_PLANE, UP, base_of, motion, tree
 from in_depth import deep, seeds
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
@@ -22,6 +21,8 @@ from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
+
+from .identified_motions import IN_PLANE, UP, base_of, motion, tree
 
 
 def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int:
