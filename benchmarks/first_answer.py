@@ -23,8 +23,9 @@ from service.store.kernels import Way, quickest
 from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, derive
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.from_parts import CompiledParts, NumericTree
+from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.numbers.states import default_number
+from substructures.quantities.part_kernels import CompiledParts
 
 NAMES = ("forces", "metric")
 STATES = (1, 16, 256, 4096, 65536)

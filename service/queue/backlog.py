@@ -1,18 +1,24 @@
-"""Attempts that are claimed ahead of the engine, so that short items need not wait for a round each."""
+"""What a supervisor remembers between rounds: attempts that are claimed ahead of the engine, so that short items need
+not wait for a round each, and what results of a job have in common and is stored already, so that it is not sent again.
+"""
 
 from __future__ import annotations
 
 from collections import Counter, OrderedDict, deque
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import median
 from time import monotonic
 
+from service.content.tree_content import TreeSummary
+from service.database.connections import Connection
+from service.queries import content
 from service.queries.attempts import Attempt
+from service.queue.rounds import Ended
 
 GATHER = 0.2  # seconds for which ends are gathered while there is work to go on with
 STALE = 2.0  # seconds without an end or a start after which what is claimed ahead goes back to the queue
 AHEAD = 200  # items claimed ahead at most
-JOBS, LATEST = 64, 32  # durations are remembered of so many jobs and items
+JOBS, LATEST = 64, 32  # durations and digests are remembered of so many jobs, and so many of each
 
 
 class Backlog:
@@ -65,3 +71,36 @@ class Backlog:
             return ends - waiting[job]
 
         return of
+
+
+class Known:
+    """Digests of programs and forms of summaries that trees of a job have, by job. For one thread."""
+
+    def __init__(self) -> None:
+        self._of: OrderedDict[str, OrderedDict[str, None]] = OrderedDict()
+
+    def of(self, job: str) -> Sequence[str]:
+        """Digests of a job, the latest ones."""
+        return list(self._of.get(job, ()))
+
+    def note(self, connection: Connection, ended: Iterable[Ended]) -> None:
+        """Remember what came with these ends, where it is stored."""
+        for each in ended:
+            if each.attempt.kind != "assemble" or each.outcome is None or each.outcome.problem is not None:
+                continue
+            sent = _sent(each.outcome.summary["program"], each.outcome.files)
+            known = self._of.setdefault(each.attempt.job, OrderedDict())
+            self._of.move_to_end(each.attempt.job)
+            for digest in content.stored_of(connection, sent - known.keys()):
+                known[digest] = None
+            while len(known) > LATEST:
+                known.popitem(last=False)
+        while len(self._of) > JOBS:
+            self._of.popitem(last=False)
+
+
+def _sent(program: str, files: Mapping[str, bytes]) -> set[str]:
+    """The digests of what came along."""
+    form = TreeSummary.of_files(files)
+    found = {program} if "program" in files else set()
+    return found | ({form.form_digest} if form.form is not None and form.form_digest is not None else set())

@@ -24,12 +24,12 @@ from service.jobs.engines.engine import AttemptReport, Budget, Engine, Outcome, 
 from service.jobs.kinds.shapes import KNOWN, SHARE
 from service.messages.refusals import Refused, problem
 from service.queries.attempts import Attempt
-from service.queries.common import is_conflict, is_outage
+from service.queries.common import is_conflict, is_outage, now
 from service.queries.jobs import jobs, queue
-from service.queue.backlog import GATHER, Backlog
-from service.queue.known import Known
+from service.queries.jobs.uploads import remove_unused
+from service.queries.removal import remove_finished
+from service.queue.backlog import GATHER, Backlog, Known
 from service.queue.mirroring import WithMirrors
-from service.queue.retention import sweep
 from service.queue.rounds import Ended, Round, lock_owned, play, put_back_all
 from service.store.store import Store
 from substructures.documents import read_json
@@ -38,6 +38,7 @@ POLL = 0.5  # seconds between looks at the queue when nothing wakes us
 SOON = 0.05  # seconds for which the last ends of a job are gathered
 PATIENCE = 20.0  # seconds for the last round
 NEWS = 0.05  # seconds to wait for news of what runs
+CHUNKS = 10  # uploads that are removed together
 SWEEP = 60.0  # seconds between looks for jobs and uploads to be removed
 _log = logging.getLogger(__name__)
 
@@ -254,3 +255,16 @@ class Supervisor:
                 put_back_all(connection, self._owner, None, is_counted=False)
         except Exception:
             _log.exception("items could not be handed back; they are taken over when their lease ends")
+
+
+def sweep(store: Store, stop: threading.Event) -> None:
+    """Remove what has been kept long enough, finished jobs with their results and uploads that no job refers to: little
+    in a transaction, so that nobody waits for long.
+    """
+    limits = store.settings.limits
+    old, unused = now(-timedelta(days=limits.job_days)), now(-timedelta(hours=limits.upload_hours))
+    for remove, before, most in ((remove_finished, old, 1), (remove_unused, unused, CHUNKS)):
+        removed = most
+        while removed and not stop.is_set():
+            with store.database.write() as connection:
+                removed = remove(connection, before, most)

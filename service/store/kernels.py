@@ -40,8 +40,9 @@ from substructures.expr.interpret import interpret_entries
 from substructures.expr.program import Program
 from substructures.part.part import Part
 from substructures.quantities.accelerations import Evaluator
-from substructures.quantities.from_parts import NumericTree, Scalars, gives, kernel_entries
+from substructures.quantities.from_parts import NumericTree, gives
 from substructures.quantities.numbers.evaluation import interpreted
+from substructures.quantities.part_kernels import Scalars, kernel_entries
 from substructures.tree.coupling import asked
 
 #: from this many states on compiling first is quicker

@@ -17,7 +17,7 @@ from service.queries.trees import Tree
 from service.queries.uses import Withdrawn
 from substructures.expr.units.unit_check import Notice
 from substructures.part.parameters import uncounted
-from substructures.quantities.numbers.warnings import no_coordinates
+from substructures.tree.model import no_coordinates
 
 #: what there is at addresses below that of a version
 _BELOW = ("definition", "formulas", "picture", "scene", "report", "uses", "levels")

@@ -11,10 +11,11 @@ Sources: RFC 8259 (JSON), RFC 6901 (pointers), YAML 1.2.2 section 10.3 (core sch
 """
 
 from substructures.documents.faults import message_of, require_object
+from substructures.documents.fields import DocumentPart
 from substructures.documents.from_json import read_json
 from substructures.documents.from_yaml import located, places, read_yaml
 from substructures.documents.numbers import MAX_DIGITS
-from substructures.documents.schema import Document, DocumentPart, read_model
+from substructures.documents.schema import Document, read_model
 from substructures.documents.text import DOCUMENTS, MAX_DEPTH, escape, pointer_step
 from substructures.documents.to_json import write_json
 from substructures.documents.to_yaml import write_yaml

@@ -1,4 +1,4 @@
-"""Types of fields that documents share: names, exact and finite numbers with their units, vectors."""
+"""Parts of documents, and what their fields share: names, exact and finite numbers with their units, vectors."""
 
 from __future__ import annotations
 
@@ -10,11 +10,10 @@ from collections.abc import Mapping
 from decimal import Decimal
 from typing import Annotated, Any
 
-from pydantic import AfterValidator, BeforeValidator, Field, ValidationInfo, WithJsonSchema
+from pydantic import AfterValidator, BaseModel, BeforeValidator, ConfigDict, Field, ValidationInfo, WithJsonSchema
 from pydantic_core import PydanticCustomError
 
 from substructures.documents.faults import PATTERNS
-from substructures.documents.schema import DocumentPart
 from substructures.documents.units import Unit, UnknownUnitError, read_unit
 
 NAME = r"^[A-Za-z][A-Za-z0-9_]{0,63}$"
@@ -77,6 +76,12 @@ def _readable(text: str, info: ValidationInfo) -> str:
 
 #: text for people
 Words = Annotated[str, AfterValidator(_readable)]
+
+
+class DocumentPart(BaseModel):
+    """Base of all parts of documents: frozen, unknown fields refused."""
+
+    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 class Quantity(DocumentPart):

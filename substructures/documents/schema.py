@@ -8,9 +8,10 @@ from decimal import Decimal
 from functools import cached_property
 from typing import Any, Self, TypeVar
 
-from pydantic import BaseModel, ConfigDict, ValidationError
+from pydantic import BaseModel, ValidationError
 
 from substructures.documents.faults import faults_of, require_object
+from substructures.documents.fields import DocumentPart
 from substructures.documents.from_json import read_json
 from substructures.documents.to_json import write_json
 from substructures.errors import InvalidDocument
@@ -19,12 +20,6 @@ from substructures.errors import InvalidDocument
 NESTED = 3
 #: values that are put into lists of one
 MOST_LISTED = 200
-
-
-class DocumentPart(BaseModel):
-    """Base of all parts of documents: frozen, unknown fields refused."""
-
-    model_config = ConfigDict(frozen=True, extra="forbid", defer_build=True)
 
 
 class Document(DocumentPart):

@@ -102,12 +102,17 @@ def render(
     if interface is None:
         message = "code needs the interface, which says what stands where in its arguments: interface_of_model(model)"
         raise InvalidArgument.at("/interface", "missing", message)
+    function = _function(program, quantity, interface)
+    exported = Exported(check_name(name), interface, (function,), form, warnings=tuple(warnings))
+    return text_of(exported, LANGUAGES[format], limit)
+
+
+def _function(program: Program, quantity: str, interface: Interface) -> Function:
     if made_of(quantity) is not None:  # without what tells whether it could be computed
         program = program.select([name for name in program.outputs if name in outputs_of(quantity)])
     function = Function(quantity or "_".join(program.outputs)[:64], program, interface)
     function.require_signature()
-    exported = Exported(check_name(name), interface, (function,), form, warnings=tuple(warnings))
-    return text_of(exported, LANGUAGES[format], limit)
+    return function
 
 
 def text_of(exported: Exported, language: type[Code], limit: int) -> str:

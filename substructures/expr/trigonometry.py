@@ -12,8 +12,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-from substructures.expr.construction.circle import added, multiplied
-from substructures.expr.construction.fingerprint import PRIME, circle_point
+from substructures.expr.construction.fingerprint import PRIME, added, circle_point, multiplied
 from substructures.expr.graph import Expr, Graph
 
 LinearForm = tuple[dict[Expr, Fraction], Fraction]

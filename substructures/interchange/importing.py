@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Any
 
 from substructures.errors import InvalidArgument
 from substructures.interchange.as_part import PartOfFile, as_part
-from substructures.interchange.cut import MAIN, cut_robot, gravity_of, part_name
+from substructures.interchange.cut import MAIN, TreeOfFile, cut_robot, gravity_of, part_name
 from substructures.interchange.files.wanted import Options, text_of_file
 from substructures.interchange.kinds import read_robot, read_rows
 from substructures.interchange.names import library_name
@@ -79,26 +80,17 @@ def import_file(
         raise InvalidArgument.at("/name", "invalid-name", message)
     rows = read_rows(data, kind, options.parameters != "none")
     if rows is not None:
-        definition = _with_losses(rows[1], rows[2]) | ({} if name is None else {"name": library_name(name)})
-        tree = cut_rows(definition, cut) if cut else None
-        for each in [] if tree is None else tree["instances"]:
-            each["definition"] = _told(each["definition"], rows[0], data, file, license_of_file)
-        definition = _told(definition, rows[0], data, file, license_of_file)
-        return Imported(rows[0], definition, tree, rows[2].plain(), rows[2].checks(), {}, [])
+        return _of_rows(
+            rows, name, cut, partial(_told, kind=rows[0], data=data, file=file, license_of_file=license_of_file)
+        )
     found, robot = read_robot(data, kind, included)
     tell_of_missing_masses(robot, floats=options.base == "floating")
     _require_open(robot, options)
+    told = partial(_told, kind=found, data=data, file=file, license_of_file=license_of_file)
     if cut:
-        made = cut_robot(robot, cut, options, name)
-        first = made.tree["instances"][0]
-        first["definition"] = _with_losses(first["definition"], robot.report)
-        for instance in made.tree["instances"]:
-            instance["definition"] = _told(instance["definition"], found, data, file, license_of_file)
-        main, report = made.tree["instances"][0]["definition"], robot.report
-        told = report.plain(), report.checks(), made.names, made.bindings, gravity_of(robot).get("gravity")
-        return Imported(found, main, made.tree, *told)
+        return _of_links(found, robot, cut_robot(robot, cut, options, name), told)
     part = as_part(robot, options, name)
-    definition = _told(_with_losses(part.definition, robot.report), found, data, file, license_of_file)
+    definition = told(_with_losses(part.definition, robot.report))
     tree, report = _tree(robot, part, definition), robot.report
     gravity = gravity_of(robot).get("gravity")
     if tree is None and robot.gravity_place is not None:
@@ -132,6 +124,31 @@ def _with_losses(document: dict[str, Any], report: Report) -> dict[str, Any]:
     """With what is left out of the file."""
     left_out = [*document.get("left_out", ()), *report.losses()]
     return document | ({"left_out": left_out[:MOST_REMARKS]} if left_out else {})
+
+
+def _of_links(kind: str, robot: Robot, made: TreeOfFile, told: Callable[[dict[str, Any]], dict[str, Any]]) -> Imported:
+    """A robot whose links begin parts of a tree; ``told``: a document with its source."""
+    instances, report = made.tree["instances"], robot.report
+    instances[0]["definition"] = _with_losses(instances[0]["definition"], report)
+    for instance in instances:
+        instance["definition"] = told(instance["definition"])
+    found = report.plain(), report.checks(), made.names, made.bindings, gravity_of(robot).get("gravity")
+    return Imported(kind, instances[0]["definition"], made.tree, *found)
+
+
+def _of_rows(
+    rows: tuple[str, dict[str, Any], Report],
+    name: str | None,
+    cut: Sequence[str],
+    told: Callable[[dict[str, Any]], dict[str, Any]],
+) -> Imported:
+    """Of a table of rows; ``told``: a document with its source."""
+    kind, read, report = rows
+    definition = _with_losses(read, report) | ({} if name is None else {"name": library_name(name)})
+    tree = cut_rows(definition, cut) if cut else None
+    for each in [] if tree is None else tree["instances"]:
+        each["definition"] = told(each["definition"])
+    return Imported(kind, told(definition), tree, report.plain(), report.checks(), {}, [])
 
 
 def _told(document: dict[str, Any], kind: str, data: bytes, file: str, license_of_file: str) -> dict[str, Any]:

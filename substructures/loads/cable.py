@@ -16,8 +16,7 @@ from typing import ClassVar, Literal
 
 from pydantic import Field
 
-from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, NumberVector
+from substructures.documents.fields import DocumentPart, Name, NumberVector
 from substructures.loads.document import NONE, ElasticLoad, FrameOfTree, LoadFormulas, OfTree
 from substructures.loads.names import Elastic, End, Names
 from substructures.loads.pairs import Reach, rate, scaled

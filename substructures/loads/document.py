@@ -9,8 +9,7 @@ from typing import Annotated, Any, ClassVar, Protocol
 from pydantic import ConfigDict, Field, TypeAdapter, ValidationError, WithJsonSchema, model_validator
 from pydantic_core import PydanticCustomError
 
-from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number, NumberVector
+from substructures.documents.fields import DocumentPart, Name, Number, NumberVector
 from substructures.documents.units import Dimension
 from substructures.expr.graph import Expr
 from substructures.expr.units.unit_check import Place

@@ -11,8 +11,7 @@ from typing import Literal
 
 from pydantic import Field
 
-from substructures.documents import DocumentPart
-from substructures.documents.fields import Name, Number
+from substructures.documents.fields import DocumentPart, Name, Number
 from substructures.documents.units import Dimension
 from substructures.expr.graph import Expr
 from substructures.expr.laws import tanh

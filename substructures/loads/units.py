@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
-from substructures.documents import DocumentPart
+from substructures.documents.fields import DocumentPart
 from substructures.documents.units import NUMBER, Dimension, read_unit
 from substructures.expr.units.unit_check import Place
 

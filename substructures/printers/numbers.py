@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from fractions import Fraction
 
-from substructures.textbook.collect import is_fraction
+from substructures.textbook.divisors import is_fraction
 
 #: digits of a decimal number in a formula for people; smaller ones than LEAST, and integers that end in more zeros than
 #: ZEROS, have an exponent

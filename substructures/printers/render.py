@@ -8,25 +8,19 @@ from math import prod
 from typing import Any, NamedTuple
 
 from substructures.errors import InvalidDocument, TooLarge
-from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import MAX_ELEMENTS
-from substructures.expr.program import Formulas, Program
-from substructures.expr.program import program as collect
-from substructures.expr.replay import replay
-from substructures.expr.rings.expand import LIMIT as TERMS
-from substructures.expr.rings.expand import Expander
+from substructures.expr.program import Program
 from substructures.printers.definitions import Definitions, defined, joined
 from substructures.printers.language import Language, Listing
 from substructures.printers.latex import Latex
 from substructures.printers.latex_document import LatexDocument
-from substructures.printers.listing import check_size, compact, expanded, inlined
+from substructures.printers.listing import compact, expanded, inlined
 from substructures.printers.mathml import MathML
 from substructures.printers.meanings import LETTERS, OUTPUTS, Label, meanings
 from substructures.printers.names import instance_of, short_names
+from substructures.printers.stored import stored_form
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms, at_once, textbook, textbook_inlined
-from substructures.textbook import read
-from substructures.textbook.forms import to_expr
 
 LANGUAGES: Mapping[str, type[Language]] = {
     "text": Text,
@@ -80,7 +74,7 @@ def write(
     if form == "readable":
         return _readable(program, format, name, limit, definitions, glossary, notes)
     if format == "json":
-        return _json(program, form, limit)
+        return stored_form(program, form, limit)
     for output in program.outputs.values():
         if prod(output.shape) > MAX_ELEMENTS:
             raise TooLarge("an array (in elements)", prod(output.shape), MAX_ELEMENTS)
@@ -267,37 +261,3 @@ def check_form(form: str) -> None:
     """Raises InvalidDocument for an unknown form."""
     if form not in FORMS:
         raise InvalidDocument.at("/form", "unknown-form", f"{form[:40]!r} is not one of {', '.join(FORMS)}")
-
-
-def _json(program: Program, form: str, limit: int) -> str:
-    """The program in the stored format; expanded, a program that computes the canonical sums."""
-    if form == "expanded":
-        graph, new = Graph(), Graph()
-        outputs = replay(program, graph, {})
-        nodes = [e for f in outputs.values() for e in f.entries.values() if isinstance(e, Expr)]
-        expander = Expander(nodes, min(limit, TERMS)) if nodes else None
-        if expander:
-            check_size(sum(expander.size(e) for e in nodes), limit)
-        forms = {e: expander.expand(e) for e in dict.fromkeys(nodes)} if expander else {}
-        check_size(sum(len(t.powers) + 2 for e in nodes for t in forms[e].terms), limit)
-        rebuilt = {e: form.to_expr(new) for e, form in forms.items()}
-        formulas = {
-            n: Formulas(f.shape, {i: rebuilt[e] for i, e in f.entries.items() if isinstance(e, Expr)}, f.symmetry)
-            for n, f in outputs.items()
-        }
-        program = collect(new, formulas, {s.name: s for s in program.symbols})
-    if form == "textbook":
-        program = _textbook_program(program)
-    check_size(len(program), limit)
-    return program.to_bytes().decode()
-
-
-def _textbook_program(program: Program) -> Program:
-    """A program that computes the textbook forms."""
-    reading, new = read(program), Graph()
-    moved = reading.atoms_in(new)
-    formulas = {}
-    for name, output in program.outputs.items():
-        entries = {i: to_expr(f, new, moved) for i, f in zip(output.index, reading.outputs[name], strict=True)}
-        formulas[name] = Formulas(output.shape, entries, output.symmetry)
-    return collect(new, formulas, {s.name: s for s in program.symbols})

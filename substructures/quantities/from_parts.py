@@ -7,16 +7,14 @@ once for all trees. The evaluated square commutes with the symbolic one.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from itertools import product
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from substructures.array import Array
-from substructures.compile import Kernel, compile_program
 from substructures.errors import MissingValue
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret_entries
@@ -27,17 +25,15 @@ from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.quantities.numbers.array_scalars import Lanes, Supports, is_array, lanes, plain
 from substructures.quantities.numbers.states import default_number
+from substructures.quantities.part_kernels import PartEvaluator, Scalars
 from substructures.tree.assembly import assemble
-from substructures.tree.coupling import asked, couple_parts
+from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec, require_full, require_ungiven
 from substructures.tree.forces.load_potentials import found_potential, has_steady_loads, placed_parts
 from substructures.tree.forces.loads import load_formulas
 from substructures.tree.model_outputs import model_outputs, rate_symbols
 from substructures.tree.mounted_part import MountedPart, balls_in
 
-Scalars = list[Any]
-#: the independent elements of outputs of a part's program for (program, values, names): floats, or arrays (N,)
-PartEvaluator = Callable[[Program, Mapping[str, Any], Sequence[str]], Mapping[str, Scalars]]
 EQUATIONS = ("metric", "christoffel", "gravity", "forces", "bias", "inverse_dynamics", "potential_energy")
 #: the potential of loads that is found by integration, a formula of the tree
 FOUND = "found_potential"
@@ -61,35 +57,6 @@ DENSE = 20_000_000
 def gives(names: Iterable[str]) -> bool:
     """Whether a tree of parts gives these outputs: all but rows of closures, which only the formulas of a tree have."""
     return not any(name.startswith("closure.") for name in names)
-
-
-class CompiledParts:
-    """An engine of kernels of stored programs, each compiled when it is first needed, and kept.
-
-    ``folder``: a cache of compiled kernels, see :func:`substructures.compile.compile_program`.
-    """
-
-    def __init__(self, folder: Path | None = None) -> None:
-        self.folder = folder
-        self._kernels: dict[tuple[str, tuple[str, ...]], Kernel] = {}
-
-    def __call__(self, program: Program, values: Mapping[str, Any], names: Sequence[str]) -> dict[str, Scalars]:
-        """Elements by the kernel for these outputs."""
-        key = program.digest, tuple(names)
-        if key not in self._kernels:
-            self._kernels[key] = compile_program(program, names, self.folder)
-        return kernel_entries(self._kernels[key], values)
-
-    def warm(self, part: Part) -> None:
-        """Compile all that coupling can ask of a part."""
-        for names in asked(part):
-            key = part.program.digest, names
-            self._kernels[key] = compile_program(part.program, names, self.folder)
-
-
-def kernel_entries(kernel: Kernel, values: Mapping[str, Any]) -> dict[str, Scalars]:
-    """The independent elements of all outputs of a kernel as an engine gives them."""
-    return {name: _scalars(x) for name, x in kernel.evaluate(values, packed=True).items()}
 
 
 class NumericTree:
@@ -271,11 +238,6 @@ class _Layout:
         if out.size:
             # a view: the array is contiguous
             out.reshape((*batch, -1))[..., self.place] = elements[..., self.source] * self.sign
-
-
-def _scalars(x: Array) -> Scalars:
-    """The elements along the last axis: floats, or contiguous arrays of shape (N,)."""
-    return x.tolist() if x.ndim == 1 else list(np.ascontiguousarray(x.T))
 
 
 def _formulas(output: Output, values: Scalars) -> Formulas:

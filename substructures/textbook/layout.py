@@ -14,7 +14,8 @@ from typing import Any
 
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, Polynomial, monomial_key, times
-from substructures.textbook.collect import WAYS, Collector, common_number, content, factored, is_fraction, length
+from substructures.textbook.collect import WAYS, Collector, length
+from substructures.textbook.divisors import common_number, content, factored, is_fraction
 from substructures.textbook.factors import factors
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.harmonics import Mode, Wave, Waves, angle_key, normal, shortest, wave_key

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Sequence
 from fractions import Fraction
 from math import gcd, lcm
 
-from substructures.textbook.collect import is_fraction
+from substructures.textbook.divisors import is_fraction
 
 #: integers that are written as such
 LARGE = 1000

@@ -11,7 +11,8 @@ from fractions import Fraction
 
 from substructures.expr.graph import Expr
 from substructures.textbook.atoms import MOVING, Atoms
-from substructures.textbook.collect import common_number, opened
+from substructures.textbook.collect import opened
+from substructures.textbook.divisors import common_number
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 
 #: terms of a sum that is looked at as a whole

@@ -164,3 +164,9 @@ def require_stored(program: Program, names: Iterable[str]) -> None:
             "them (bias, inverse_dynamics, forward_dynamics)"
         )
         raise InvalidDocument.at("", "not-stored", message)
+
+
+def no_coordinates(dof: int) -> list[dict[str, str]]:
+    """Of a tree in which nothing moves."""
+    message = "the tree has no coordinates: nothing moves, and metric and forces are empty"
+    return [] if dof else [{"pointer": "", "code": "no-coordinates", "message": message}]

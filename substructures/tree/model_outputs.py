@@ -69,21 +69,10 @@ def model_outputs(
         """Whether all outputs are wanted, or one of these."""
         return names is None or not names.isdisjoint(some)
 
-    outputs = {"metric": Formulas((n, n), coupled.metric, "symmetric")}
-    if coupled.christoffel is not None:
-        outputs["christoffel"] = Formulas((n, n, n), coupled.christoffel, "christoffel")
-    outputs |= {
-        "gravity": array((n,), lambda a: coupled.gravity[a]),
-        "forces": array((n,), lambda a: coupled.forces[a]),
-        "potential_energy": array((), lambda: coupled.potential),
-    }
+    outputs = _equations(coupled, n)
     # by recursion, so that neither needs the Christoffel symbols
     if wanted("inverse_dynamics"):
-        inverse = inverse_dynamics(placed, rates, accelerations)
-        # loads between parts are no wrenches of carriers here, which the recursion would have taken in
-        for a, Q in coupled.loads.items():
-            inverse[a] = inverse[a] - Q
-        outputs["inverse_dynamics"] = array((n,), lambda a: inverse[a])
+        outputs["inverse_dynamics"] = _inverse_dynamics(coupled, rates, accelerations)
     if wanted("bias", "nonlinear_effects"):
         found = by_recursion(coupled, rates) if forces is None else forces()
         outputs |= {name: array((n,), lambda a, some=some: some[a]) for name, some in found.items()}
@@ -99,6 +88,26 @@ def model_outputs(
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
     # by joint up to here: rates of balls for single joints first, then coordinates for joints (section 6)
     return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
+
+
+def _equations(coupled: Coupled, n: int) -> dict[str, Formulas]:
+    """g_ab, Gamma_abc where they are stored, and Q_a with its parts."""
+    found = {"metric": Formulas((n, n), coupled.metric, "symmetric")}
+    if coupled.christoffel is not None:
+        found["christoffel"] = Formulas((n, n, n), coupled.christoffel, "christoffel")
+    return found | {
+        "gravity": array((n,), lambda a: coupled.gravity[a]),
+        "forces": array((n,), lambda a: coupled.forces[a]),
+        "potential_energy": array((), lambda: coupled.potential),
+    }
+
+
+def _inverse_dynamics(coupled: Coupled, rates: Sequence[Scalar], accelerations: Sequence[Scalar]) -> Formulas:
+    found = inverse_dynamics(coupled.placed, rates, accelerations)
+    # loads between parts are no wrenches of carriers here, which the recursion would have taken in
+    for a, Q in coupled.loads.items():
+        found[a] = found[a] - Q
+    return array((len(found),), lambda a: found[a])
 
 
 def _position_rates(assembly: Assembly, rates: Sequence[Scalar]) -> Formulas:

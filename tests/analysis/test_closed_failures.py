@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, right
 from closed_trees import at, closed_entry, four_bar, slider_crank
 from random_trees import Plain
 from simulated import simulated
@@ -14,6 +13,8 @@ from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.simulate import Closed, Event, Linear, Table, simulate
+
+from .closed_motions import METHODS, right
 
 
 def test_a_locked_motion_fails_with_the_motion_up_to_there() -> None:

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, held_bar, tree_model
 from in_depth import deep
 from random_trees import Plain
@@ -26,6 +25,8 @@ from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 from substructures.compile import target
 from substructures.compile.motion import CompiledRun
+
+from .closed_motions import METHODS, crank_inertia, piston, right, slope
 
 Laws = dict[str, tuple[str, str]]
 

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, crank_inertia, piston, right, slope
 from closed_trees import at, bricard, closed_entry, four_bar, slider_crank, stewart, stewart_points
 from random_trees import Plain
 from simulated import simulated
@@ -14,6 +13,8 @@ from simulated import simulated
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Event, Outputs, Table, simulate
 from substructures.quantities.numbers.evaluation import evaluate
+
+from .closed_motions import METHODS, crank_inertia, piston, right, slope
 
 
 @pytest.mark.parametrize("method", METHODS)

@@ -6,13 +6,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, right
 from closed_trees import at, bricard, closed_entry
 from random_trees import Plain
 from simulated import simulated
 
 from substructures import Model
 from substructures.analysis.closed.loops import loop_state
+
+from .closed_motions import METHODS, right
 
 LENGTHS = {"l0": 0.4, "l1": 0.1, "l2": 0.35, "l3": 0.25}
 PIN: Plain = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}

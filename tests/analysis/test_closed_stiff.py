@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from closed_motions import METHODS
 from closed_trees import at, held_bar, slider_crank
 from random_trees import Plain
 from simulated import simulated
@@ -14,6 +13,8 @@ from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.problems.problem import Integrator, Start
+
+from .closed_motions import METHODS
 
 IMPLICIT = ["Radau", "BDF"]
 

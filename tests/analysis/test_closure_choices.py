@@ -7,7 +7,6 @@ from functools import partial
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, right
 from closed_trees import at, bricard, closed_entry, governor, parallelogram, slides
 from in_depth import deep, seeds
 from random_trees import Plain
@@ -19,6 +18,8 @@ from substructures.analysis.closed.constrained import Singular
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.simulate import ClosedMotion, Integrator, Outputs, simulate
+
+from .closed_motions import METHODS, right
 
 PIN: Plain = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
 PLANAR = ("pin.z", "pin.rx", "pin.ry")

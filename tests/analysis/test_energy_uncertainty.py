@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS
 from closed_trees import at, closed_entry
 from in_depth import deep
 from simulated import simulated
@@ -16,6 +15,8 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check
+
+from .closed_motions import METHODS
 
 PIN = {"name": "pin", "type": "pin", "from": "x.coupler_end", "to": "x.rocker_end"}
 #: the crank [rad] of the parallelogram below goes from 0.5 to the singular position at 0

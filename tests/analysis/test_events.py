@@ -7,13 +7,14 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis_models import oscillator
-from closed_motions import METHODS as REDUCTIONS
 from closed_trees import slides
 from random_trees import Plain, model_of
 from rolling_bodies import BLADE, FORWARD, sleigh
 from simulated import simulated
 
 from substructures.analysis.simulate import ClosedMotion, Event, Outputs, simulate
+
+from .closed_motions import METHODS as REDUCTIONS
 
 G, V = 9.81, 10.0
 #: by how much levels are below the top [m]; the others know the height less well

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from closed_motions import right
 from closed_trees import at, governor, governor_accelerations, lift
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import Outputs, simulate
+
+from .closed_motions import right
 
 
 @pytest.mark.parametrize(("angle", "rate", "spin"), [(0.6, 0, 7.0), (0.4, 1.5, 9.0), (0.9, -2.0, 3.0)])

@@ -8,13 +8,12 @@ from typing import Any
 
 import numpy as np
 import pytest
-from identified_motions import IN_PLANE, UP, base_of, motion, tree
 from in_depth import deep, seeds
 from random_trees import Kind, Plain, random_definition, tree_of, with_parameters
 
 from substructures import Definition, InvalidInput, TooLarge, TreeSpec, couple, derive
 from substructures.analysis.equations import dependencies
-from substructures.analysis.identification import base_parameters as base_module
+from substructures.analysis.identification import columns
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.export import FORMATS, Interface, render
@@ -22,6 +21,8 @@ from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
+
+from .identified_motions import IN_PLANE, UP, base_of, motion, tree
 
 
 def numeric_rank(model: RegressorModel, samples: int = 60, seed: int = 0) -> int:
@@ -106,7 +107,7 @@ def test_general_axes(kinds: str, parents: tuple[int, ...], count: int, monkeypa
 
     Counts: H. Mayeda, K. Yoshida and K. Osuka, 1990 (revolute joints); M. Gautier and W. Khalil, 1990.
     """
-    monkeypatch.setattr(base_module, "MAX_FIELDS", 1)
+    monkeypatch.setattr(columns, "MAX_FIELDS", 1)
     document = general(kinds, parents)
     Y = regressor(tree_of(document, OBLIQUE), {"x": derive(Definition.read(document))})
     monkeypatch.setattr(dependencies, "MAX_SAMPLES", 0 if kinds[0] == "F" else dependencies.COARSE)

@@ -8,7 +8,6 @@ from functools import cache
 
 import numpy as np
 import pytest
-from identified_motions import IN_PLANE, base_of, motion, tree
 
 from substructures import Definition, InvalidInput, Model, TreeSpec, couple, derive
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
@@ -21,6 +20,8 @@ from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.regressor import RegressorModel, regressor
+
+from .identified_motions import IN_PLANE, base_of, motion, tree
 
 ARM = ("planar-3r", IN_PLANE)
 

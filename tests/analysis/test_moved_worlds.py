@@ -8,10 +8,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS
 from closed_trees import tree_model
 from in_depth import deep
-from moved_worlds import motions, moved
 from random_trees import Plain
 from simulated import simulated
 
@@ -19,6 +17,9 @@ from substructures import Model, equilibria, evaluate, linearise, simulate
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Outputs
 from substructures.mechanics.closure_rows import RowBounds, row_sizes
+
+from .closed_motions import METHODS
+from .moved_worlds import motions, moved
 
 INERTIA = {"xx": 0.01, "yy": 0.01, "zz": 0.01}
 RIGHT_ANGLE = 1.5707963267948966

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from orbit_trees import slider, tree_of
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
@@ -14,6 +13,8 @@ from substructures.analysis.orbits.orbit import Family
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
+
+from .orbit_trees import slider, tree_of
 
 F, D = 0.1, 0.1
 

@@ -7,7 +7,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from orbit_trees import slider, tree_of
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
@@ -22,6 +21,8 @@ from substructures.analysis.orbits.quadrature import period_by_quadrature
 from substructures.analysis.orbits.sections import poincare_section
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
+
+from .orbit_trees import slider, tree_of
 
 G = 9.81
 

@@ -8,7 +8,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from orbit_trees import tree_of
 from rolling_bodies import A, C, M, R, disc_part
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipk
@@ -19,6 +18,8 @@ from substructures.analysis.orbits.lyapunov import lyapunov_exponents
 from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 from substructures.analysis.orbits.sections import poincare_section
 from substructures.errors import InvalidInput
+
+from .orbit_trees import tree_of
 
 Plain = dict[str, Any]
 G, L = 9.81, 0.7

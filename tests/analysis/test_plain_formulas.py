@@ -10,12 +10,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from compared import HINGES, Case, close, constrained, jacobian, random_case, residuals
 from in_depth import seeds
 from independent import value as read
-from jets import gradient, space, values
-from plain_constraints import constraint_rows, random_closures, random_constraints, random_velocities
-from plain_mechanics import riemann
 from random_trees import Kind, Plain, with_parameters
 
 from substructures.analysis.closed.loops import loop_state
@@ -27,6 +23,11 @@ from substructures.analysis.equations.routh import routh
 from substructures.analysis.simulate import Closed, Linear
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
+
+from .compared import HINGES, Case, close, constrained, jacobian, random_case, residuals
+from .jets import gradient, space, values
+from .plain_constraints import constraint_rows, random_closures, random_constraints, random_velocities
+from .plain_mechanics import riemann
 
 
 def same(found: Any, expected: Any, tolerance: float = 1e-9) -> None:

@@ -12,11 +12,8 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS
-from compared import HINGES, Case, close, constrained, integrated, random_case
 from in_depth import seeds
 from independent import value as read
-from plain_constraints import constraint_rows, random_closures, random_constraints
 from random_trees import Kind, Plain
 from scipy.optimize import brentq
 from simulated import simulated
@@ -28,6 +25,10 @@ from substructures.analysis.control.from_fields import control_arguments
 from substructures.analysis.control.optimal_control import optimal_control
 from substructures.analysis.control.problem import Cost
 from substructures.analysis.simulate import Event
+
+from .closed_motions import METHODS
+from .compared import HINGES, Case, close, constrained, integrated, random_case
+from .plain_constraints import constraint_rows, random_closures, random_constraints
 
 SPAN, FINE = 0.15, {"relative_tolerance": 1e-11, "absolute_tolerance": 1e-12}
 

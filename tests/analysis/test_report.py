@@ -26,7 +26,7 @@ from substructures.analysis.report.text import text_report
 from substructures.part.part import Part
 from substructures.pictures.latex import latex_picture
 from substructures.pictures.tree import picture
-from substructures.printers.mathml import named
+from substructures.printers.mathml_names import named
 from substructures.printers.names import latex_names, look
 from substructures.printers.text import Text
 from substructures.quantities.regressor import regressor

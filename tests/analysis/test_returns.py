@@ -7,13 +7,14 @@ from typing import Any
 
 import numpy as np
 import pytest
-from orbit_trees import slider, tree_of
 from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 from substructures.analysis.orbits.periodic import Section, Shooting, periodic_orbits
 from substructures.errors import InvalidInput
 from substructures.tree.model import Model
+
+from .orbit_trees import slider, tree_of
 
 G = 9.81
 

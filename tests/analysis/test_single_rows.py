@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, right
 from closed_trees import parallelogram, slides
 
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, simulate
+
+from .closed_motions import METHODS, right
 
 
 @pytest.mark.parametrize("method", METHODS)

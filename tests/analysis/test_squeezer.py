@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from closed_motions import METHODS, right
 from closed_trees import SQUEEZER, at, closed_entry, tree_model
 from random_trees import Plain
 from simulated import simulated
@@ -14,6 +13,8 @@ from simulated import simulated
 from substructures import Model, catalogue
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.simulate import ClosedMotion, Integrator, simulate
+
+from .closed_motions import METHODS, right
 
 #: F. Mazzia, F. Iavernaro, C. Magherini, Test Set for IVP Solvers; IFToMM benchmark A03: start, and values at 0.03 s
 START = [-0.0617138900142764496, 0, 0.455279819163070380, 0.222668390165885885, 0.487364979543842550]

@@ -12,7 +12,6 @@ from analysis_models import catalogue_model, values_at
 from closed_trees import at as state_at
 from closed_trees import governor, governor_accelerations, lift, resized, tree_model
 from in_depth import deep
-from moved_worlds import motions, moved
 from random_trees import Plain, model_of
 
 from substructures import InvalidInput, Model
@@ -27,6 +26,8 @@ from substructures.analysis.stability.steady_search import SteadySearch
 from substructures.analysis.stability.vibrations import first_order
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
+
+from .moved_worlds import motions, moved
 
 G, LENGTH, MASS, FRAME = 9.81, 0.5, 2.0, 0.3
 

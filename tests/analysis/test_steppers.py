@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import pytest
 from analysis_models import catalogue_model
-from closed_motions import METHODS
 from closed_trees import at, closed_entry, four_bar
 from random_trees import Plain
 from rolling_bodies import FLOOR, R, disc
@@ -14,6 +13,8 @@ from simulated import simulated
 from substructures import Model
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
+
+from .closed_motions import METHODS
 
 ACROBOT: Plain = {"q": [1.2, 0.4], "span": [0, 1]}
 

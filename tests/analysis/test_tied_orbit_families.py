@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 import pytest
 from analysis.test_orbit_families import D, F
-from orbit_trees import slider, tree_of
 
 from substructures import Model, couple, derive
 from substructures.analysis.orbits.orbit import Family
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
+
+from .orbit_trees import slider, tree_of
 
 Plain = dict[str, Any]
 RANGE: Plain = {"vary": "p.w", "between": (1.6, 1.1), "steps": 4}

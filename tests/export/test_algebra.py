@@ -9,12 +9,13 @@ from pathlib import Path
 
 import pytest
 import sympy
-from algebra_systems import fricas, maxima, numbers_in_maxima, values
 from exported_models import exported_of, tree_of, write
 from mixed_program import mixed_program
 from run_code import agree, alone, load_python, tool
 
 from substructures.export import Exported
+
+from .algebra_systems import fricas, maxima, numbers_in_maxima, values
 
 
 def cases() -> list[Exported]:

@@ -21,7 +21,8 @@ from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402
-from fmu_instances import instance  # noqa: E402
+
+from .fmu_instances import instance  # noqa: E402
 
 STUB = Path(__file__).with_name("simulink")
 QUANTITIES = (

@@ -9,7 +9,6 @@ from pathlib import Path
 
 import pytest
 from catalogue_entries import shipped_part
-from cuda_on_cpu import LIMIT, call, library
 from mixed_program import POINT, mixed_program
 from run_code import agree, alone, state
 
@@ -17,6 +16,8 @@ from substructures import Model, TreeSpec, couple
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.languages import cuda
 from substructures.quantities.sources import Sources
+
+from .cuda_on_cpu import LIMIT, call, library
 
 QUANTITIES = ("metric", "christoffel", "forces", "inverse_dynamics", "forward_dynamics")
 

@@ -24,7 +24,8 @@ from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402
-from fmu_instances import instance  # noqa: E402
+
+from .fmu_instances import instance  # noqa: E402
 
 QUANTITIES = ("forward_dynamics", "metric", "christoffel", "forces", "kinetic_energy", "potential_energy")
 QUANTITIES += ("position", "rotation", "inverse_dynamics")

@@ -22,7 +22,8 @@ from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402
-from fmu_instances import instance  # noqa: E402
+
+from .fmu_instances import instance  # noqa: E402
 
 TARGETS = {"3.0": "fmu", "2.0": "fmu2"}
 CORNERS = ("c00", "c01", "c10", "c11")

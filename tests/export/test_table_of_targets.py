@@ -16,16 +16,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from algebra_systems import numbers_in_maxima
-from algebra_systems import values as values_for_algebra
-from cuda_on_cpu import call as call_cuda
-from cuda_on_cpu import library
 from exported_models import tree_of, write
 from run_code import STRICT, agree, arguments, by_output, load_python, octave, shared, state, tool
 
 from substructures import catalogue
 from substructures.export import Exported, exported_model, interface_of_model, reference
 from substructures.quantities.sources import Sources
+
+from .algebra_systems import numbers_in_maxima
+from .algebra_systems import values as values_for_algebra
+from .cuda_on_cpu import call as call_cuda
+from .cuda_on_cpu import library
 
 pytestmark = pytest.mark.deep
 
@@ -144,7 +145,7 @@ def by_maxima(exported: Exported, folder: Path) -> dict[str, float]:
 
 def by_fmpy(exported: Exported, folder: Path) -> dict[str, float]:
     pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
-    from fmu_instances import instance  # noqa: PLC0415 -- needs the wheel
+    from .fmu_instances import instance  # noqa: PLC0415 -- needs the wheel
 
     values = state(exported.interface)
     vectors = exported.interface.vectors

@@ -30,7 +30,8 @@ from substructures.quantities.sources import Sources
 
 fmpy = pytest.importorskip("fmpy", reason="the wheel FMPy is not installed")
 from fmpy.validation import validate_fmu  # noqa: E402
-from fmu_instances import instance  # noqa: E402
+
+from .fmu_instances import instance  # noqa: E402
 
 EDGE = {"name": "blade", "type": "knife_edge", "frame": "s.b"}
 FLOOR = {"name": "floor", "type": "rolling", "frame": "s.disc", "radius": "s.r"}

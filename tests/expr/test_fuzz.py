@@ -17,7 +17,6 @@ from typing import Any
 import flint
 import numpy as np
 import pytest
-from fuzzing import NAMES, PRECISION, Texts, agrees, balls, built, measure
 
 from substructures.compile import compile_program
 from substructures.errors import InvalidDocument, TooLarge
@@ -32,6 +31,8 @@ from substructures.expr.replay import replay
 from substructures.expr.rings.expand import Expander
 from substructures.expr.syntax import ExpressionError
 from substructures.printers import entries
+
+from .fuzzing import NAMES, PRECISION, Texts, agrees, balls, built, measure
 
 SYMBOLS = {n: Symbol(n, "coordinate", "") for n in NAMES}
 DEEP = int(os.environ.get("FUZZ_TEXTS", "16000"))

@@ -29,7 +29,7 @@ from substructures.expr.bind import bind
 from substructures.expr.program import Program
 from substructures.pictures.scene import scene
 from substructures.quantities.reactions import reactions
-from substructures.tree import assembly
+from substructures.tree import reading
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
@@ -174,8 +174,8 @@ def test_a_wrong_closure_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
         found = right(*given)
         return found._replace(position=(found.position[0] + 1, *found.position[1:]))
 
-    right = assembly.cut_frames
-    monkeypatch.setattr(assembly, "cut_frames", shifted)
+    right = reading.cut_frames
+    monkeypatch.setattr(reading, "cut_frames", shifted)
     with pytest.raises(VerificationFailed, match="closure"):
         closed()
 

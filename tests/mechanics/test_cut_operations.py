@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from catalogue_cuts import bare, in_pieces
 from catalogue_entries import CHAINS, all_entries
 from random_cuts import all_cuts
 from random_trees import Plain
@@ -12,6 +11,8 @@ from random_trees import Plain
 from substructures import Definition, Program, catalogue
 from substructures.expr.hoist import hoisted
 from substructures.part.one_piece import derive_in_one_piece
+
+from .catalogue_cuts import bare, in_pieces
 
 #: outputs that are counted, and counted together
 COUNTED = (

@@ -6,7 +6,6 @@ from typing import Any
 
 import numpy as np
 import pytest
-from catalogue_cuts import bare
 from random_trees import Kind, Plain, random_definition
 from serial_chains import IIWA, RX90, SIX, SIX14, revolute
 
@@ -20,6 +19,8 @@ from substructures.mechanics.kinematics import Link, base_functions, links, path
 from substructures.mechanics.linear3 import Planar, Rotation, Turn
 from substructures.part import formulas
 from substructures.part.mechanism import Mechanism, mechanism
+
+from .catalogue_cuts import bare
 
 MANY = Kind(7, joints=("revolute", "prismatic", "universal", "fixed"), depth=8)
 EQUATIONS = ("metric", "christoffel")

@@ -12,8 +12,9 @@ from catalogue_entries import shipped_part
 from substructures import MissingValue, Model, Part, TreeSpec, catalogue, couple
 from substructures.compile import compile_program
 from substructures.expr.interpret import interpret
-from substructures.quantities.from_parts import EQUATIONS, CompiledParts, NumericTree
+from substructures.quantities.from_parts import EQUATIONS, NumericTree
 from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.part_kernels import CompiledParts
 
 
 def parts_of(spec: TreeSpec) -> dict[str, Part]:
@@ -102,7 +103,7 @@ def test_parts_that_are_warm_are_not_compiled(monkeypatch: pytest.MonkeyPatch) -
     engine = CompiledParts()
     for part in parts.values():
         engine.warm(part)
-    monkeypatch.setattr("substructures.quantities.from_parts.compile_program", None)
+    monkeypatch.setattr("substructures.quantities.part_kernels.compile_program", None)
     evaluator = NumericTree(TREES["springs"], parts, engine)
     evaluator.evaluate(values_of(evaluator, ()))
     evaluator.evaluate(values_of(evaluator, ()), ["metric"])

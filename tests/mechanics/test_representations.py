@@ -9,7 +9,6 @@ from typing import Any
 import numpy as np
 import pytest
 from random_trees import GRAVITY, Plain, model_of, random_states
-from samples import SEEDS, flat, pair, request_for, same
 
 from substructures import Definition, Part, derive
 from substructures.expr.bind import bind
@@ -27,6 +26,8 @@ from substructures.mechanics.linear3 import Rotation, Turn, dot, packed
 from substructures.part.one_piece import derive_in_one_piece
 from substructures.part.outputs import with_own_inertia
 from substructures.quantities.numbers.evaluation import evaluate
+
+from .samples import SEEDS, flat, pair, request_for, same
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -11,11 +11,12 @@ from typing import Any
 import numpy as np
 import pytest
 from random_trees import GRAVITY
-from samples import COUNT, SEEDS, flat, pair, request_for
 
 from substructures import Definition, Model, Part, TreeSpec, couple, derive
 from substructures.documents import write_json
 from substructures.quantities.numbers.evaluation import evaluate
+
+from .samples import COUNT, SEEDS, flat, pair, request_for
 
 
 @pytest.mark.parametrize("seed", SEEDS)

@@ -13,11 +13,12 @@ from in_depth import seeds
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")
 from random_trees import Plain, random_states  # noqa: E402 -- the engine is optional
-from tree_loads import ByHand, one_definition, random_tree, two_definitions  # noqa: E402
 
 from substructures import Definition, TreeSpec, couple, derive  # noqa: E402
 from substructures.quantities.from_parts import NumericTree  # noqa: E402
 from substructures.quantities.numbers.evaluation import evaluate  # noqa: E402
+
+from .tree_loads import ByHand, one_definition, random_tree, two_definitions  # noqa: E402
 
 TOLERANCE = 1e-10
 QUANTITIES = ["forces", "inverse_dynamics", "potential_energy"]

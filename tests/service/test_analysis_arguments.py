@@ -7,7 +7,6 @@ from inspect import Parameter
 from typing import Any
 
 import pytest
-from flat_arguments import flat_arguments
 
 from service.models.numbers import ANALYSES
 from service.models.requests import arguments, read_request
@@ -23,6 +22,8 @@ from substructures.analysis.stability.linearise import linearise
 from substructures.analysis.stability.root_locus import root_locus
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.documents import DocumentPart
+
+from .flat_arguments import flat_arguments
 
 #: functions, and what of their arguments no body has
 FUNCTIONS: dict[str, tuple[Callable[..., Any], set[str]]] = {

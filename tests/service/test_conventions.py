@@ -14,7 +14,7 @@ from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.jobs.engines import process
-from service.queue.retention import sweep
+from service.queue.supervisor import sweep
 from service.schemas.resources import Problem
 from service.settings import Limits, Settings, SettingsError, from_environment
 from service.store.store import Store

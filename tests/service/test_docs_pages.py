@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import re
 
-from drawings import DRAWINGS
 from fastapi.testclient import TestClient
 
 from service.pages.documents import FOLDER, names
 
+from .drawings import DRAWINGS
 from .reading import Page
 
 

@@ -17,7 +17,7 @@ from service.app import open_store
 from service.database.job_tables import job_items, job_uploads, jobs, results, uploads
 from service.operations.jobs import batches
 from service.queries.common import now
-from service.queue.retention import sweep
+from service.queue.supervisor import sweep
 from service.settings import Limits, Settings
 from service.store.store import Store
 from substructures.formats.arrays import read_npz, write_npz

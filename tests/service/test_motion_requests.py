@@ -8,7 +8,6 @@ from typing import Any
 
 import pytest
 from closed_trees import at, slider_crank
-from flat_arguments import flat_arguments
 from random_trees import Plain
 from rolling_bodies import sleigh
 
@@ -33,6 +32,8 @@ from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import Event, FixedStep, KnifeEdge, Table, simulate
 from substructures.quantities.sources import Sources
+
+from .flat_arguments import flat_arguments
 
 CRANK, SLEIGH = slider_crank(), sleigh()
 BLADE = {"name": "blade", "type": "knife_edge", "frame": "s.b"}

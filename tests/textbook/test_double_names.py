@@ -18,7 +18,7 @@ from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
-from substructures.printers.mathml import named
+from substructures.printers.mathml_names import named
 from substructures.printers.names import latex_names, short_names
 from substructures.quantities.formulas import DERIVED, derived
 from substructures.tree.glossary import glossary

@@ -15,7 +15,6 @@ import pytest
 from catalogue_entries import all_entries, open_entry
 from closed_trees import tree_model
 from random_trees import Plain
-from written_formula import formula
 
 from substructures import Model, Program, catalogue
 from substructures.errors import TooLarge
@@ -28,6 +27,8 @@ from substructures.expr.program import program as collect
 from substructures.printers import entries
 from substructures.quantities.formulas import derived
 from substructures.textbook import AT_ONCE, LIMITS, Sum, Trig, read
+
+from .written_formula import formula
 
 PRECISION = 400
 #: what is not read at once, of those asked for here

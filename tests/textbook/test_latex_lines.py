@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import pytest
-from textbook_models import program
 
 from substructures.export import render
+
+from .textbook_models import program
 
 PUMA_22 = r"""
 g_{22} &= I_{yy3} + I_{zz2} + J_{m2} G_{2}^{2} + m_{2} \bigl((a_{2} + c_{x2})^{2} + c_{y2}^{2}\bigr)

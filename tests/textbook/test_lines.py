@@ -11,11 +11,12 @@ from typing import NamedTuple
 
 import numpy as np
 import pytest
-from textbook_models import program
 
 from substructures.export import render
 from substructures.expr.direct import ball
 from substructures.expr.syntax import read
+
+from .textbook_models import program
 
 
 class Line(NamedTuple):

@@ -7,12 +7,13 @@ from fractions import Fraction
 
 import pytest
 from closed_trees import tree_model
-from written_formula import formula
 
 from substructures import catalogue
 from substructures.export import render
 from substructures.expr.bind import bind
 from substructures.printers.numbers import shortest_decimal
+
+from .written_formula import formula
 
 
 def test_decimals() -> None:

@@ -21,7 +21,7 @@ from substructures.expr.parse import parse
 from substructures.expr.program import Formulas
 from substructures.expr.program import program as collect
 from substructures.printers import entries
-from substructures.printers.mathml import named
+from substructures.printers.mathml_names import named
 from substructures.printers.names import latex_names
 from substructures.printers.pages import BREAK, CLOSING, LINE, OPENING, broken, width
 from substructures.quantities.formulas import derived

@@ -46,11 +46,8 @@ def show(
     with server.client() as client:
         path, found = _found(client, name, tree)
         if quantity:
-            inner = "" if path.startswith("/v1/trees") else "formulas/"
-            if quantity in OF_FRAMES and "frames" in found and format == "text" and not json:
-                print(f"# frames: {', '.join(f'{k} {frame}' for k, frame in enumerate(found['frames'], 1))}")
             style = {"format": "json" if json else format, "form": form, "bind": bind}
-            print(client.request("GET", f"{path}/{inner}{step(quantity)}", params=style).text.rstrip("\n"))
+            _tell_formula(client, path, found, quantity, style)
             return 0
         if svg is not None:
             svg.write_bytes(client.request("GET", f"{path}/picture").content)
@@ -83,6 +80,13 @@ def _found(client: Client, name: str, is_tree: bool) -> tuple[str, dict[str, Any
             if error.status == 404:
                 raise ValueError(further(unknown.problem["detail"], error.problem["detail"])) from None
             raise
+
+
+def _tell_formula(client: Client, path: str, found: Mapping[str, Any], quantity: str, style: dict[str, str]) -> None:
+    if quantity in OF_FRAMES and "frames" in found and style["format"] == "text":
+        print(f"# frames: {', '.join(f'{k} {frame}' for k, frame in enumerate(found['frames'], 1))}")
+    inner = "" if path.startswith("/v1/trees") else "formulas/"
+    print(client.request("GET", f"{path}/{inner}{step(quantity)}", params=style).text.rstrip("\n"))
 
 
 def _tell(found: Mapping[str, Any]) -> None:

@@ -27,10 +27,9 @@ from substructures.part.definition import Definition
 from substructures.part.derive import derive
 from substructures.part.parameters import described
 from substructures.part.part import Part
-from substructures.quantities.numbers.warnings import no_coordinates
 from substructures.tree.couple import couple_shape
 from substructures.tree.document import Instance, TreeSpec, misplaced, with_levels
-from substructures.tree.model import Model
+from substructures.tree.model import Model, no_coordinates
 from substructures.tree.units import DescribedParameters, check_tree_units
 
 NAMED = "named"  # field of an item whose parts that come along are to be called by name

@@ -10,7 +10,7 @@ from service.models.exporting import ALL_TARGETS, FMI, NAME, PRECISIONS, STANDAR
 from service.models.formulas import WITH_DOCUMENT
 from service.models.numbers import ANALYSES
 from service.schemas.shapes import one_of, refused
-from substructures.documents.schema import DocumentPart
+from substructures.documents.fields import DocumentPart
 from substructures.export import FORMATS
 from substructures.formats import arrays, arrow
 from substructures.printers.render import FORMS

@@ -14,7 +14,7 @@ from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_
 from substructures.analysis.motion.contacts.contact_run import ContactRun, again, integrate_contacts, with_contacts
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
-from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
+from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, with_friction
 from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide, with_loads
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
@@ -232,13 +232,7 @@ def _judged(
     states = _states(conditions, f, t, x)
     along = AlongMotion.of(model, integrals, states)
     series = along.series
-    more: tuple[Check, ...] = ()
-    if isinstance(motion, ContactRun) and isinstance(f, DecidedContacts):
-        more = with_contacts(f, motion, t, x, series)
-    elif isinstance(motion, DryRun):
-        more = (_with_friction(series, _dry(conditions, f), motion, t, x, problem.drift_limit),)
-    if isinstance(f, LoadedRightHandSide):
-        more = (with_loads(series, f, states, x, problem.drift_limit),)
+    more = _of_kind(series, conditions, f, motion, states, x, problem.drift_limit)
     checks = judge(along, problem.drift_limit)
     if states.work is not None and f.has_power and "energy" in series:
         series["work"] = states.work
@@ -261,20 +255,31 @@ def _judged(
     )
 
 
+def _of_kind(
+    series: dict[str, Array],
+    conditions: Conditions,
+    f: RightHandSide,
+    motion: IntegratedMotion,
+    states: MotionStates,
+    x: Array,
+    limit: float,
+) -> tuple[Check, ...]:
+    """What contacts, dry friction and the load of joints add: checks, and series at all states."""
+    more: tuple[Check, ...] = ()
+    if isinstance(motion, ContactRun) and isinstance(f, DecidedContacts):
+        more = with_contacts(f, motion, states.t, x, series)
+    elif isinstance(motion, DryRun):
+        more = (with_friction(series, _dry(conditions, f), motion, states.t, x, limit),)
+    if isinstance(f, LoadedRightHandSide):
+        more = (with_loads(series, f, states, x, limit),)
+    return more
+
+
 def _told(conditions: Conditions, f: RightHandSide, motion: IntegratedMotion) -> Sequence[Crossing]:
     """What contacts did, and joints with exact friction."""
     if isinstance(f, DecidedContacts):
         return f.told
     return motion.told(conditions.model.coordinates, _dry(conditions, f).laws) if isinstance(motion, DryRun) else ()
-
-
-def _with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: Array, x: Array, limit: float) -> Check:
-    """Accelerations and friction as further series; whether nothing sticks with more than it can."""
-    second, force = motion.forces(dry, t, x)
-    if "power" in series:
-        series["power"] = series["power"] + dry.instead(force, x)
-    series |= {"qdd": second, "friction": force}
-    return sticking(dry, motion, t, force, limit)
 
 
 def _states(conditions: Conditions, f: RightHandSide, t: Array, x: Array) -> MotionStates:

@@ -18,7 +18,8 @@ from substructures.analysis.report.report import (
 )
 from substructures.analysis.report.statements import MARK
 from substructures.analysis.report.words import DERIVATION, REFERENCE
-from substructures.printers.mathml import MathML, named
+from substructures.printers.mathml import MathML
+from substructures.printers.mathml_names import named
 from substructures.printers.names import latex_names, latex_of
 from substructures.printers.render import LIMIT
 

@@ -14,8 +14,8 @@ import secrets
 from fractions import Fraction
 from hashlib import blake2b
 
-from substructures.expr.construction.circle import point_of
-
+#: (cos, sin) of an angle modulo a prime
+Point = tuple[int, int]
 _ROOTS = (2, 3, 5, 7)
 _WITNESSES = (2, 3, 5, 7, 11, 13, 17, 19, 23, 29, 31, 37, 41)
 
@@ -59,10 +59,33 @@ def square_root(value: int) -> int | None:
     return root if value == 1 else None
 
 
-_points: dict[object, tuple[int, int]] = {}
+def point_of(t: int, prime: int) -> Point:
+    """((1 - t^2)/(1 + t^2), 2t/(1 + t^2)). Raises ValueError where t^2 = -1, which has no root for prime = 3 mod 4."""
+    inverse = pow(1 + t * t, -1, prime)
+    return (1 - t * t) * inverse % prime, 2 * t * inverse % prime
 
 
-def circle_point(key: object) -> tuple[int, int]:
+def added(a: Point, b: Point, prime: int) -> Point:
+    """The point of the sum of two angles."""
+    return (a[0] * b[0] - a[1] * b[1]) % prime, (a[0] * b[1] + a[1] * b[0]) % prime
+
+
+def multiplied(point: Point, n: int, prime: int) -> Point:
+    """The point of n times an angle, n any integer."""
+    if n < 0:
+        point, n = (point[0], -point[1] % prime), -n
+    result = (1, 0)
+    while n:
+        if n & 1:
+            result = added(result, point, prime)
+        point, n = added(point, point, prime), n >> 1
+    return result
+
+
+_points: dict[object, Point] = {}
+
+
+def circle_point(key: object) -> Point:
     """(cos, sin) of the angle with this key: a random point of the circle."""
     found = _points.get(key)
     if found is None:

@@ -15,7 +15,7 @@ from math import lcm
 
 from flint import fmpz
 
-from substructures.expr.construction.circle import Point, added, multiplied, point_of
+from substructures.expr.construction.fingerprint import Point, added, multiplied, point_of
 from substructures.expr.operations import Operation
 from substructures.expr.program import Program
 

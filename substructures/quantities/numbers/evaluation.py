@@ -26,7 +26,6 @@ from substructures.quantities.numbers.conditioning import Look, solved_anew
 from substructures.quantities.numbers.levels import singular_loops
 from substructures.quantities.numbers.reaction_numbers import reaction_numbers
 from substructures.quantities.numbers.result import Evaluation, Failure, failures_of, without_axis
-from substructures.quantities.numbers.result_warnings import advice, result_of, state_warnings, told_of
 from substructures.quantities.numbers.states import (
     ArgumentsByName,
     StateInput,
@@ -34,7 +33,15 @@ from substructures.quantities.numbers.states import (
     ValueInput,
     require,
 )
-from substructures.quantities.numbers.warnings import Notice, doubted, value_warnings
+from substructures.quantities.numbers.warnings import (
+    Notice,
+    advice,
+    doubted,
+    result_of,
+    state_warnings,
+    told_of,
+    value_warnings,
+)
 from substructures.quantities.quantity import (
     CONDITION,
     FORWARD,
@@ -121,8 +128,8 @@ def evaluate(
     sources = Sources(model) if isinstance(model, Model) else model
     form = Form(options.packed, options.float32)
     asked = read_arguments(sources, quantities, given, form, options.limit, options.evaluator)
-    states, values = asked.states, asked.values
-    return _answered(asked, states, values, _told_of_values(asked, states.q, values, options.first))
+    warnings = _told_of_values(asked, asked.states.q, asked.values, options.first)
+    return _answered(asked, asked.states, asked.values, warnings)
 
 
 def evaluate_in_parts(

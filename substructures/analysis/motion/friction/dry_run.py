@@ -8,7 +8,7 @@ from typing import Any, ClassVar, Protocol, TypeVar
 
 import numpy as np
 
-from substructures.analysis.motion.friction.dry_friction import FrictionLaws, Signs
+from substructures.analysis.motion.friction.dry_friction import DryMotion, FrictionLaws, Signs
 from substructures.analysis.motion.integrators.integration import (
     IntegratedMotion,
     IntegratorSettings,
@@ -164,3 +164,12 @@ def sticking(f: Sticking, run: DryRun, t: Array, force: Array, limit: float) -> 
     stuck = np.array([run.at(at) == 0 for at in t.tolist()]).reshape(len(t), -1)
     beyond = np.abs(force[:, f.laws.places]) / np.maximum(f.laws.static, 1e-300) - 1
     return Check.of(about, np.where(stuck, np.maximum(beyond, 0), 0).max(axis=1, initial=0), t, 1.0, limit)
+
+
+def with_friction(series: dict[str, Array], dry: DryMotion, motion: DryRun, t: Array, x: Array, limit: float) -> Check:
+    """Accelerations and friction as further series; whether nothing sticks with more than it can."""
+    second, force = motion.forces(dry, t, x)
+    if "power" in series:
+        series["power"] = series["power"] + dry.instead(force, x)
+    series |= {"qdd": second, "friction": force}
+    return sticking(dry, motion, t, force, limit)

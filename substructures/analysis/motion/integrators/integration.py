@@ -106,12 +106,7 @@ def integrate(
     """
     run = _Run(f, span, outputs, settings, watches, progress)
     motion = run.motion
-    motion.step_t.append(span[0])
-    motion.step_x.append(x)
-    run.last = span[0], x
-    run.collect(span[0], lambda _: x)
-    run.levels = [w.function(span[0], x) for w in watches]
-    run.sizes = np.abs(run.levels).tolist()
+    run.begin(span[0], x)
     # the method's order holds where the right-hand side is smooth: from break to break
     ends = [*breaks, span[1]]
     start = span[0]
@@ -153,6 +148,15 @@ class _Run:
         self.last: tuple[float, Array] | None = None
         #: where the integrator begins anew
         self.corner: tuple[float, Array] | None = None
+
+    def begin(self, t: float, x: Array) -> None:
+        """The first state."""
+        self.motion.step_t.append(t)
+        self.motion.step_x.append(x)
+        self.last = t, x
+        self.collect(t, lambda _: x)
+        self.levels = [w.function(t, x) for w in self.watches]
+        self.sizes = np.abs(self.levels).tolist()
 
     def keep_last(self) -> None:
         """The last state that was reached, as a result."""

@@ -18,7 +18,9 @@ def found() -> dict[str, str]:
 
 
 def test_digests_are_those_of_the_entries() -> None:
-    assert catalogue.digests() == found(), "run `python -m tests.test_shipped_digests`, which writes them anew"
+    assert catalogue.digests() == found(), (
+        "run `python -m tests.catalogue.test_shipped_digests`, which writes them anew"
+    )
 
 
 if __name__ == "__main__":

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-DOCS = Path(__file__).parents[1] / "docs" / "explanation"
+DOCS = Path(__file__).parents[2] / "docs" / "explanation"
 SCALE, TURNED, RAISED = 130.0, 0.45, 0.45  # from where it is seen
 Points = Sequence[np.ndarray]
 STYLE = (

@@ -6,13 +6,12 @@ import re
 from typing import Any
 
 import pytest
+from bad_documents import GOOD, TREE, Plain, changed
 
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
 from substructures.part.topology import topology
 from substructures.tree.document import TreeSpec
-
-from .bad_documents import GOOD, TREE, Plain, changed
 
 SPRING = {"type": "spring", "from": {"body": "base"}, "to": {"body": "b2"}, "stiffness": 3}
 UNTYPED = {name: value for name, value in SPRING.items() if name != "type"}

@@ -8,13 +8,14 @@ from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
-from compared import Case, angular_columns, frame
 from independent import value as read
-from jets import slopes, space, value
-from plain_mechanics import Dynamics, cross
 from random_trees import Plain
 
 from substructures.analysis.simulate import KnifeEdge, Linear, Rolling
+
+from .compared import Case, angular_columns, frame
+from .jets import slopes, space, value
+from .plain_mechanics import Dynamics, cross
 
 Array = Any
 KINDS = (["ball"], ["rod"], ["rod", "rod"], ["planar"], ["universal"], ["pin"], ["slider"])

@@ -14,8 +14,9 @@ from typing import Any
 
 import numpy as np
 from independent import value as read
-from jets import Jet, gradient, slopes, values
 from pinocchio_trees import CHAINS
+
+from .jets import Jet, gradient, slopes, values
 
 Plain = dict[str, Any]
 Array = Any

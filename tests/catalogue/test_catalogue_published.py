@@ -19,7 +19,7 @@ from substructures.quantities.numbers.evaluation import evaluate
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 
-REFERENCE = Path(__file__).parent / "reference"
+REFERENCE = Path(__file__).parents[1] / "reference"
 HUMANOID = [(i["name"], i["substructure"], i["at"]) for i in load_tree("humanoid")["instances"]]
 
 

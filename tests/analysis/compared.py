@@ -11,13 +11,14 @@ from typing import Any
 
 import numpy as np
 from independent import value as read
-from jets import gradient, slopes, space, values
-from plain_mechanics import Dynamics, Mechanism, angular, turn
 from random_trees import GRAVITY, Kind, Plain, model_of, random_definition
 from scipy.integrate import solve_ivp
 
 from substructures import Definition, Model, TreeSpec, couple, derive
 from substructures.part.topology import topology
+
+from .jets import gradient, slopes, space, values
+from .plain_mechanics import Dynamics, Mechanism, angular, turn
 
 Array = Any
 HINGES = ("revolute", "revolute", "prismatic")
