@@ -132,6 +132,7 @@ def test_a_tree_that_was_removed_and_stored_again_has_its_pages(filled: TestClie
         answer = filled.get(path)
         assert (answer.status_code, "again@1" in answer.text) == (200, False), path
     assert "/trees/again@2/difference?to=again@3" in filled.get("/trees/again").text
+    assert 'data-first="2"' in filled.get("/trees/again/edit").text
 
 
 def test_changes_of_another_window_are_told(filled: TestClient) -> None:
