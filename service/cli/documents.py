@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
+from errno import EACCES, EISDIR, ENOENT
 from pathlib import Path
 from typing import IO, Any
 
@@ -64,3 +66,15 @@ def _placed(path: Path, faults: Sequence[Fault]) -> list[Fault]:
         replace(each, pointer=f"{path}#{each.pointer}" if each.pointer.startswith("/") else each.pointer or str(path))
         for each in found
     ]
+
+
+def require_place(out: Path | None) -> None:
+    """Raise OSError where a file cannot be written: told before anything is computed for it, not afterwards."""
+    if out is None:
+        return
+    if out.is_dir():
+        raise IsADirectoryError(EISDIR, "a folder", str(out))
+    if not out.absolute().parent.is_dir():
+        raise FileNotFoundError(ENOENT, "no folder", str(out))
+    if not os.access(out if out.exists() else out.absolute().parent, os.W_OK):
+        raise PermissionError(EACCES, os.strerror(EACCES), str(out))

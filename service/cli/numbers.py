@@ -13,7 +13,7 @@ import orjson
 import typer
 
 from service.cli import completion
-from service.cli.documents import is_document, named, read_document
+from service.cli.documents import is_document, named, read_document, require_place
 from service.cli.options import Server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
@@ -59,6 +59,7 @@ def numbers(wanted: Wanted, name: str, given: Path | None, log: Path | None = No
     if log is not None:
         request = {**request, "log": log_of(log)}
     media = _media(wanted.out, name)
+    require_place(wanted.out)
     source = local_source(Path(wanted.tree)) if is_document(wanted.tree) else None
     with waiting(name), nullcontext() if given is None else named(given):
         if source is not None:
@@ -123,7 +124,8 @@ def _members(told: Mapping[str, Any]) -> None:
         print(f"member {each['member']} at t = {each['t']:.9g} s: {each['message']}")
     tell_warnings(told)
     for name, column in told["statistics"].items():
-        print(f"{name}: " + ", ".join(f"{key} {x:.6g}" for key, x in column.items() if key != "quantiles"))
+        known = {key: x for key, x in column.items() if key != "quantiles" and x is not None}
+        print(f"{name}: " + ", ".join(f"{key} {x:.6g}" for key, x in known.items()))
 
 
 def _found(check: Mapping[str, Any]) -> str:

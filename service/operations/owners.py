@@ -9,7 +9,7 @@ from service.database.connections import Connection
 from service.messages.references import parse_reference
 from service.messages.refusals import Refused, not_found
 from service.messages.viewer import CATALOGUE, OPEN, PRIVATE, PUBLIC, Viewer
-from service.queries import audit, catalogue, owners, uses
+from service.queries import audit, catalogue, owners, trees, uses
 from service.queries.owners import Kind, Ownership
 from service.schemas.entries import Entry
 from substructures.errors import Fault, meant
@@ -85,6 +85,12 @@ def absent_part(connection: Connection, viewer: Viewer, text: str, what: str = "
 
 def absent_tree(connection: Connection, viewer: Viewer, text: str) -> str:
     """Why a reference to a tree means nothing that the viewer sees, and what may help."""
+    ref = parse_reference(text)
+    if ref is not None and ref.number is not None:
+        found = owners.ownership(connection, "tree", ref.name)
+        is_seen = found is not None and viewer.sees(found.owner, found.visibility)
+        if is_seen and ref.number <= trees.latest_revision(connection, ref.name):
+            return f"the tree '{text}' was removed"
     return f"there is no tree '{text[:160]}'{candidates(connection, viewer, 'tree', text)}"
 
 

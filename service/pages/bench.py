@@ -70,7 +70,7 @@ def _steps(bench: Bench) -> Html:
     parts: list[Content] = []
     if bench.before is not None:
         before = f"{name}@{bench.before.revision}"
-        parts += [tag("button", "undo", type="button", id="undo", data_of=before)]
+        parts += [tag("button", "undo", type="button", id="undo", data_of=before, data_first=bench.newest[-1])]
         parts += [link(f"what changed since @{bench.before.revision}", f"/trees/{before}/difference?to={name}@{n}")]
         parts += [link("revision before", f"/trees/{before}/edit")]
     if n < bench.newest[0]:

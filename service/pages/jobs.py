@@ -110,15 +110,15 @@ def _about(job: Job, progress: Progress, path: str) -> Html:
 def _buttons(job: Job, path: str) -> Html:
     """What can be done with it now."""
 
-    def one(text: str, method: str, address: str, to: str) -> Html:
-        """A button."""
-        return tag("button", text, type="button", data_method=method, data_address=address, data_to=to)
+    def one(text: str, method: str, address: str, to: str, sure: str | None = None) -> Html:
+        """A button; ``sure``: what is asked first."""
+        return tag("button", text, type="button", data_method=method, data_address=address, data_to=to, data_sure=sure)
 
     found = [] if job.is_final else [one("Cancel", "POST", f"{path}/cancel", "here")]
     if job.failed or job.state == "cancelled":
         found.append(one("Try again what failed", "POST", f"{path}/retry", "job"))
     if job.is_final:
-        found.append(one("Remove", "DELETE", path, "jobs"))
+        found.append(one("Remove", "DELETE", path, "jobs", "Remove this job with all its results?"))
     return tag("p", found, class_="bar")
 
 

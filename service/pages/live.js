@@ -17,7 +17,8 @@ function follow(source) {
   };
 }
 async function act(button) {
-  const {method, address, to} = button.dataset;
+  const {method, address, to, sure} = button.dataset;
+  if (sure && !confirm(sure)) return;
   button.disabled = true;
   const options = {method, headers: {"Content-Type": "application/json"}, body: method === "POST" ? "{}" : undefined};
   const answer = await fetch(address, options), json = answer.status === 204 ? {} : await answer.json();

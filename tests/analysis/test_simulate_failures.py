@@ -55,6 +55,17 @@ def test_a_singular_start_fails_with_advice() -> None:
     assert "no inertia" in motion.message
 
 
+@pytest.mark.filterwarnings("ignore::RuntimeWarning")  # SciPy divides by what is 0
+@pytest.mark.parametrize("method", ["DOP853", "BDF"])
+def test_no_absolute_tolerance_at_rest_is_named(method: str) -> None:
+    integrator = Integrator(method=method, absolute_tolerance=0)
+    motion = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 1), integrator=integrator)
+    assert motion.status == "failed"
+    assert "an 'absolute_tolerance' of 0 allows no error of what is 0" in motion.message
+    moving = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 1), qd=[1, 1], integrator=integrator)
+    assert moving.status == "finished"
+
+
 def test_steps_are_limited() -> None:
     motion = simulate(catalogue_model("double-pendulum"), [1, 1], (0, 100), integrator=Integrator(max_steps=20))
     assert motion.status == "failed"

@@ -49,6 +49,22 @@ def test_members_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
         assert "\ntop: count 2, mean 0.15, deviation 0.0707107, least 0.1, largest 0.2" in shown
     assert main([*command, "--json"]) == 0
     assert json.loads(capsys.readouterr().out)["columns"] == {"top": [0.1, 0.2]}
+    (folder / "one.yaml").write_text(f"q: [[0.1]]\nspan: [0, 1]\n{columns}")
+    assert main(["analyse", str(folder / "cell.yaml"), "ensembles", str(folder / "one.yaml")]) == 0
+    assert "\ntop: count 1, mean 0.1, least 0.1, largest 0.1" in capsys.readouterr().out
+
+
+def test_a_place_that_cannot_be_written_is_told_before_anything_is_computed(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """A motion of minutes is not lost by a folder that is not there."""
+    monkeypatch.delattr("service.cli.numbers.local_source")
+    command = ["simulate", str(folder / "cell.yaml"), str(folder / "swing.yaml"), "--out"]
+    (folder / "taken.npz").mkdir()
+    assert main([*command, str(folder / "nowhere" / "x.npz")]) == 1
+    assert f"there is no folder {folder / 'nowhere'}" in capsys.readouterr().err
+    assert main([*command, str(folder / "taken.npz")]) == 1
+    assert "is a folder; the name of a file is needed" in capsys.readouterr().err
 
 
 def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

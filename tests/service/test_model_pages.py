@@ -22,6 +22,7 @@ from service.pages.model import assets
 from service.store.store import Store
 
 from .conftest import HAND, PENDULUM, TREE
+from .fake_engine import export, submitted
 from .one_store import filled, store
 
 __all__ = ["filled", "store"]
@@ -243,6 +244,23 @@ def test_parameters_that_differ_come_first_and_count(browser: Any, address: str,
     tab.page.click("#reset")
     tab.until("document.getElementById('changed').textContent === ''")
     tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_results_are_removed_when_somebody_is_sure(browser: Any, address: str, filled: TestClient) -> None:
+    job = submitted(filled, export("cell", "metric"))
+    assert filled.post(f"/v1/jobs/{job}/cancel").status_code == 200
+    page = browser.new_page()
+    page.goto(f"{address}/jobs/{job}")
+    for act, status in (("dismiss", 200), ("accept", 404)):
+        page.once("dialog", lambda dialog, act=act: getattr(dialog, act)())
+        with page.expect_event("dialog"):
+            page.get_by_role("button", name="Remove").click()
+        if act == "accept":
+            page.wait_for_url("**/jobs")
+        assert filled.get(f"/v1/jobs/{job}").status_code == status
+    page.close()
 
 
 @in_browser

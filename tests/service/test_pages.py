@@ -132,6 +132,9 @@ def test_a_tree_that_was_removed_and_stored_again_has_its_pages(filled: TestClie
         answer = filled.get(path)
         assert (answer.status_code, "again@1" in answer.text) == (200, False), path
     assert "/trees/again@2/difference?to=again@3" in filled.get("/trees/again").text
+    assert 'data-first="2"' in filled.get("/trees/again/edit").text
+    assert filled.get("/v1/trees/again@1").json()["detail"] == "the tree 'again@1' was removed"
+    assert filled.get("/v1/trees/again@9").json()["detail"] == "there is no tree 'again@9'; did you mean 'again'?"
 
 
 def test_changes_of_another_window_are_told(filled: TestClient) -> None:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from errno import EISDIR
 from pathlib import Path
 from typing import Annotated
 
@@ -10,7 +9,7 @@ import typer
 
 from service.cli import completion
 from service.cli.choices import one_of
-from service.cli.documents import is_document
+from service.cli.documents import is_document, require_place
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, waiting
 from service.cli.tree_files import coupled_source, part_or_tree
@@ -75,8 +74,7 @@ def export(
 ) -> int:
     """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""
     names = tuple(text for text in quantities.split(",") if text)
-    if out is not None and out.is_dir():
-        raise IsADirectoryError(EISDIR, "a folder", str(out))
+    require_place(out)
     own = tuple(text for text in independent.split(",") if text)
     request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard, own)
     with waiting("writing"):

@@ -10,7 +10,7 @@ from typing import Annotated, Any
 import typer
 
 from service.cli import completion
-from service.cli.documents import named, read_document
+from service.cli.documents import named, read_document, require_place
 from service.cli.options import Server, with_server
 from service.cli.output import print_json, table
 from service.cli.progress import follow
@@ -85,6 +85,7 @@ def rows(
 def _suffix(out: Path | None) -> None:
     if out is not None and out.suffix not in MEDIA:
         raise typer.BadParameter(f"the name of a table ends in one of {', '.join(MEDIA)}", param_hint="--out")
+    require_place(out)
 
 
 def _print(

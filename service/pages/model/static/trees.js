@@ -16,6 +16,8 @@ async function begin() {
         gravity: value("gravity").split(",").map(number),
         instances: [{ name: /^[A-Za-z]/.test(instance) ? instance : `part_${instance}`, substructure: part }],
     };
+    const there = await fetch(`/v1/trees/${encodeURIComponent(body.name)}/revisions?page_size=1`);
+    if (there.ok && (await there.json()).items.length) throw new Error(`there is a tree '${body.name}': choose another name`);
     const headers = { "Content-Type": "application/json" };
     const answer = await fetch("/v1/trees", { method: "POST", headers, body: JSON.stringify(body) });
     const found = await answer.json();

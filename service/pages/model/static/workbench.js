@@ -42,7 +42,7 @@ async function back(to) {
 }
 
 const [undo, redo] = ["undo", "redo"].map((id) => document.getElementById(id));
-if (undo) undo.hidden = of < 2;
+if (undo) undo.hidden = of <= Number(undo.dataset.first);
 redo.hidden = of >= top;
 undo?.addEventListener("click", () => tried(back(of - 1)));
 redo.addEventListener("click", () => tried(back(of + 1)));

@@ -30,6 +30,7 @@ LEAST = 1e-300
 #: of the largest level so far: what a level that jumps changes by at least
 JUMP = 1e-9
 STIFF = "try the method 'Radau' for stiff equations"
+NO_ERROR = "an 'absolute_tolerance' of 0 allows no error of what is 0"
 
 
 @dataclass(frozen=True)
@@ -182,7 +183,8 @@ class _Run:
             solver = s.stepper(self.f, start, x, end)
             if np.isnan(getattr(solver, "h_abs", 0.0)):
                 # of it SciPy makes steps without end
-                raise ArithmeticError("the equations have no finite value")
+                is_tolerance = (x == 0).any() and np.isfinite(self.f(start, x)).all()
+                raise ArithmeticError(NO_ERROR if is_tolerance else "the equations have no finite value")
             while solver.status == "running" and motion.status == "finished" and self.corner is None:
                 message = solver.step()
                 if solver.status == "failed":
