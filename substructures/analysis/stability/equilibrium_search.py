@@ -98,7 +98,7 @@ class RestSearch:
 
     def _without_rounding(self, sizes: Array) -> Array:
         """Sizes (n,) of forces, 0 of all where they are nothing but rounding, as of gravity along an axis."""
-        if self.model.closures or self.model.balls:
+        if self.model.closures:
             return sizes
         place = dict(zip(self.model.positions, self._anywhere()[0].tolist(), strict=True))
         return forces_that_are(perturbation(self.model), {**self._values, **place}, sizes, self.length)

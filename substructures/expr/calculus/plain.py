@@ -18,8 +18,15 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from substructures.expr.construction.circle import Point, added, multiplied
-from substructures.expr.construction.fingerprint import PRIME, circle_point, keyed, square_root
+from substructures.expr.construction.fingerprint import (
+    PRIME,
+    Point,
+    added,
+    circle_point,
+    keyed,
+    multiplied,
+    square_root,
+)
 from substructures.expr.graph import Expr
 from substructures.expr.trigonometry import linear_form
 from substructures.expr.walk import reachable
