@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from service.cli.choices import one_of
-from service.cli.documents import named, require_place
+from service.cli.documents import named
 from service.cli.options import Json, Server, Wait, with_server
 from service.cli.output import print_json, waiting
 from service.cli.tree_files import part_or_tree
@@ -110,7 +110,6 @@ def read(
     json: Annotated[bool, typer.Option("--json", help="Print JSON: also the report, and what was stored.")] = False,
 ) -> int:
     """Read a robot file as a definition, with a report of what became of everything in it."""
-    require_place(out)
     chosen = Options(parameters, fixed, base, rotations)
     links = [text.strip() for text in cut.split(",") if text.strip()]
     found = read_robot_file(file, chosen, kind=kind, name=name, license_of_file=license, cut=links)
