@@ -6,7 +6,7 @@ The equations of motion of a tree of rigid bodies, g_ab q''^b + Gamma_abc q'^b q
 step           folder                  what is there
 =============  ======================  ===========================================================================
 definition     part.definition         what a mechanism is, as a document: bodies, joints, ports, loads, parameters
-part           part                    its formulas, derived once and stored: U_ka and Omega_ka by
+part           part                    its formulas, derived once (part.derive) and stored: U_ka and Omega_ka by
                                        mechanics.kinematics, own g_ab and Gamma_abc by mechanics.composite_form,
                                        and what couples them to any host; all outputs are listed in part.formulas
 tree           tree                    parts on ports of parts: tree.coupling makes g_ab, Gamma_abc and the gravity
