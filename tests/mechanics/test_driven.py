@@ -7,6 +7,8 @@ d/dt dT/dq' - dT/dq by differences shares nothing with the formulas, nor with th
 
 from __future__ import annotations
 
+import json
+from functools import lru_cache
 from itertools import pairwise
 from typing import Any
 
@@ -20,10 +22,11 @@ from related import joints_of, with_relations
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline, PchipInterpolator, PPoly
 
-from substructures import Definition, InvalidDocument, Model, TreeSpec, couple, derive, evaluate
+from substructures import Definition, InvalidDocument, Model, Part, TreeSpec, couple, derive, evaluate
 from substructures.analysis.simulate import Integrator, simulate
 from substructures.errors import VerificationFailed
 from substructures.expr.graph import Expr
+from substructures.part.topology import topology
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.given import driven
 
@@ -73,8 +76,13 @@ def document(definition: Plain, given: Plain) -> Plain:
     return tree | ({"driven": given} if given else {})
 
 
+@lru_cache(maxsize=4)
+def derived(definition: str) -> Part:
+    return derive(Definition.read(json.loads(definition)))
+
+
 def sources(definition: Plain, given: Plain) -> Sources:
-    spec, parts = TreeSpec.read(document(definition, given)), {"x": derive(Definition.read(definition))}
+    spec, parts = TreeSpec.read(document(definition, given)), {"x": derived(json.dumps(definition, default=str))}
     return Sources(couple(spec, parts), of_parts=of_parts(spec, parts))
 
 
@@ -90,7 +98,7 @@ def random_driven(seed: int, relations: int = 0) -> tuple[Plain, list[str], list
         definition = random_definition(rng, Kind(4, True, loads=3, springs=1))
     if relations:
         definition = with_relations(rng, definition, relations)
-    names = list(model(definition, {}).coordinates)
+    names = [f"x.{name}" for name in topology(Definition.read(definition)).coordinates]
     chosen = sorted(rng.choice(len(names), int(rng.integers(1, max(2, len(names)))), replace=False).tolist())
     return definition, names, chosen
 
