@@ -72,18 +72,19 @@ def require_finite(motion: Columns, divisors: Columns, span: tuple[float, float]
     """
     start, end = span
     h = BESIDE * max(1.0, abs(start), abs(end))
-    times = np.linspace(start, end, LOOKS)[1:-1]
+    times = np.linspace(start, end, LOOKS if end > start else 1)
     values = motion(times)[:, :2]
     is_finite = np.isfinite(values).all(axis=1)
     most = POLE * np.abs(values[is_finite]).max(axis=0, initial=0)
-    nowhere = [(t - h, t + h) for t in times[~is_finite].tolist()]
+    nowhere = [(max(start, t - h), min(end, t + h)) for t in times[~is_finite].tolist()]
     for a, b in sorted([*nowhere, *_changes(divisors, times, h)]):
-        # 0/0 at one time alone has a limit
-        beside = np.abs(motion(np.array([a, b]))[:, :2])
-        if start < a and b < end and not (beside <= most).all():
+        # 0/0 at one time alone, but for the ends, has a limit
+        t = (a + b) / 2
+        t = t if abs(t) > 4 * h else 0.0
+        if not (np.abs(motion(np.array([a, b]))[:, :2]) <= most).all():
             message = (
-                f"the given motion has no finite value at t = {(a + b) / 2:.6g} s: end the span before it, or give a "
-                "motion that is finite all the time"
+                f"the given motion has no finite value at t = {t:.6g} s: leave it out of the span, or give "
+                "a motion that is finite all the time"
             )
             raise InvalidArgument.at(pointer, "not-finite", message)
 
