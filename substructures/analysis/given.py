@@ -25,7 +25,10 @@ def unknown(field: str, kind: str, given: Mapping[str, Any] | Sequence[str], kno
 
 
 def require_known(field: str, kind: str, given: Mapping[str, Any] | Sequence[str], known: Collection[str]) -> None:
-    """Raises InvalidArgument for names that are not known, see :func:`unknown`."""
+    """Raises InvalidArgument for names that are not known, see :func:`unknown`, and for what is no list of names."""
+    if isinstance(given, str) or not isinstance(given, Collection):
+        message = f"names in a list are needed, found {repr(given)[:80]}"
+        raise InvalidArgument.at(f"/{field}", "list-expected", message)
     faults = unknown(field, kind, given, known)
     if faults:
         raise InvalidArgument(faults)

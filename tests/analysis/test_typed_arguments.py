@@ -15,6 +15,7 @@ import substructures
 from substructures import (
     ClosedMotion,
     ConstrainedMotion,
+    ControlProblem,
     Definition,
     Event,
     FixedStep,
@@ -104,6 +105,19 @@ BY_NAME: dict[str, Callable[[Any], Any]] = {
     "momenta": lambda x: steady_motions(PENDULUM, momenta=x),
     "columns": lambda x: simulate_ensemble(PENDULUM, [[1]], (0, 1), columns=x),
 }
+
+
+OF_NAMES: dict[str, Callable[[Any], Any]] = {
+    "of_inputs": lambda x: linearise(PENDULUM, [0], of_inputs=x),
+    "by": lambda x: sensitivities(PENDULUM, [1], (0, 1), by=x),
+    "controls": lambda x: ControlProblem(controls=x, horizon=1, intervals=2, q=[0]),
+}
+
+
+@pytest.mark.parametrize("given", ["p.q1", 5], ids=repr)
+@pytest.mark.parametrize("argument", OF_NAMES)
+def test_names_are_given_in_a_list(argument: str, given: Any) -> None:
+    assert fault(lambda: OF_NAMES[argument](given))[0] == f"/{argument}"
 
 
 @pytest.mark.parametrize("given", [["p.q1"], "p.q1", 5], ids=repr)
