@@ -229,3 +229,12 @@ def test_a_nanokilogram_is_moved_as_well_as_a_kilogram(segments: int) -> None:
     found = optimal_control(nanokilogram(), problem, Demands(End([1], [0]), segments=segments))
     assert found.status == "optimal"
     assert found.cost == pytest.approx(12e-18, rel=1e-6)
+
+
+def test_of_a_nanokilogram_a_free_end_is_as_good() -> None:
+    """(tau/m)^2 and (x(T) - 1)^2: the least is 3/4, and told as that, in one segment without demands, too."""
+    cost = Cost("(tau.x.s*10^9)^2", "(x.s-1)^2")
+    problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, steps=2, q=[0], cost=cost)
+    found = optimal_control(nanokilogram(), problem, Demands(segments=1))
+    assert found.status == "optimal"
+    assert found.cost == pytest.approx(0.75, rel=1e-6)

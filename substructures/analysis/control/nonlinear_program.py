@@ -242,11 +242,12 @@ class ShootingProgram:
         """
         z = self.guess()
         unit = np.ones(len(z))
-        if not (self.rows and self.m):
+        if not self.m:
             return unit, 1.0
-        run, slope = self.evaluated(z)
+        shooting, ends = self.shooting_at(z), np.repeat(np.eye(self.size)[:, None], self.S, axis=1)
+        run = shooting.run(*self.parts(z))
         # sum over nodes of |d end/d u|
-        effect = np.abs(slope.parts[1:]).sum(axis=(1, 2)).max(axis=0)
+        effect = np.abs(shooting.pullback(run, ends, np.zeros(self.size)).parts).sum(axis=(1, 2)).max(axis=0)
         unit[: self.split] = np.tile([_power(1 / x) if x > 0 else 1.0 for x in effect], self.problem.nodes)
         z[: self.split] += unit[: self.split]
         return unit, _power(min(abs(self.cost(z)[0] - run.cost), 1.0))

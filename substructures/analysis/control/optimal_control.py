@@ -147,23 +147,23 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
     wanted, (unit, price) = search.wanted, search.units
     bounds = scipy.optimize.Bounds(*(limit / unit for limit in search.limits()))
     common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": lambda y: note(y * unit)}
-    if not search.rows and search.limits_on_path is None:
-        options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance, "gtol": 1e-10}
-        return scipy.optimize.minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
-    conditions: list[dict[str, Any]] = []
-    if search.rows:
-        conditions.append(_scaled("eq", search.residual, search.jacobian, unit))
-    if search.limits_on_path is not None:
-        one, by = (lambda z: search.on_path(z)[0]), (lambda z: search.on_path(z)[1])
-        conditions.append(_scaled("ineq", one, by, unit))
 
     def cost(y: Array) -> tuple[float, Array]:
         """J and its gradient."""
         value, slope = search.cost(y * unit)
         return value / price, slope * unit / price
 
-    options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}
-    found = scipy.optimize.minimize(cost, z / unit, method="SLSQP", constraints=conditions, options=options, **common)
+    options, conditions = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}, list[dict[str, Any]]()
+    if search.rows:
+        conditions.append(_scaled("eq", search.residual, search.jacobian, unit))
+    if search.limits_on_path is not None:
+        one, by = (lambda z: search.on_path(z)[0]), (lambda z: search.on_path(z)[1])
+        conditions.append(_scaled("ineq", one, by, unit))
+    if conditions:
+        common |= {"method": "SLSQP", "constraints": conditions, "options": options}
+    else:
+        common |= {"method": "L-BFGS-B", "options": options | {"gtol": 1e-10}}
+    found = scipy.optimize.minimize(cost, z / unit, **common)
     found.x = found.x * unit
     return found
 
