@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
 from decimal import Decimal
 from fractions import Fraction
 from numbers import Real
@@ -82,6 +82,14 @@ def one_of(value: Any, name: str, known: Collection[str]) -> None:
         words = ", ".join(f"'{word}'" for word in known)
         message = f"'{name}' must be one of {words}, found {repr(value)[:80]}"
         raise InvalidArgument.at(f"/{name}", "literal-error", message)
+
+
+def by_name(given: Mapping[str, Any] | None, field: str) -> Mapping[str, Any]:
+    """What is given by name, none for None. Raises InvalidArgument (``/field``)."""
+    if given is not None and not isinstance(given, Mapping):
+        message = f"'{field}' are given by name: {{name: value}} is needed, found {repr(given)[:80]}"
+        raise InvalidArgument.at(f"/{field}", "object-expected", message)
+    return given or {}
 
 
 def values_of(given: Any, name: str, *classes: type) -> tuple[Any, ...]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from typing import Any
 
-from substructures.analysis.arguments import real
+from substructures.analysis.arguments import by_name, real
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
@@ -25,12 +25,15 @@ def unknown(field: str, kind: str, given: Mapping[str, Any] | Sequence[str], kno
 
 
 def require_known(field: str, kind: str, given: Mapping[str, Any] | Sequence[str], known: Collection[str]) -> None:
-    """Raises InvalidArgument for names that are not known, see :func:`unknown`."""
+    """Raises InvalidArgument for names that are not known, see :func:`unknown`, and for what is no list of names."""
+    if isinstance(given, str) or not isinstance(given, Collection):
+        message = f"names in a list are needed, found {repr(given)[:80]}"
+        raise InvalidArgument.at(f"/{field}", "list-expected", message)
     faults = unknown(field, kind, given, known)
     if faults:
         raise InvalidArgument(faults)
 
 
 def numbers(given: Mapping[str, Any] | None, field: str) -> dict[str, float]:
-    """Finite numbers by name. Raises InvalidArgument (``/field/name``)."""
-    return {name: real(value, f"/{field}/{escape(name)}") for name, value in (given or {}).items()}
+    """Finite numbers by name. Raises InvalidArgument (``/field``, ``/field/name``)."""
+    return {name: real(value, f"/{field}/{escape(name)}") for name, value in by_name(given, field).items()}

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.arguments import by_name
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import state_names
@@ -45,7 +46,7 @@ class MotionColumns:
     @classmethod
     def read(cls, sources: Sources, columns: Mapping[str, MotionColumn]) -> MotionColumns:
         """Check them against a model. Raises InvalidInput (pointers ``/columns/name/...``)."""
-        for name, column in columns.items():
+        for name, column in by_name(columns, "columns").items():
             if column.quantity is not None:
                 check_quantity(_as_quantity(column), f"/columns/{name}")
         texts = {

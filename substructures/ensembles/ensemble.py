@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.arguments import values_of
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
 from substructures.analysis.motion.ball_motion import conditions_in_rates, with_lengths
@@ -74,7 +75,7 @@ def simulate_ensemble(
     >>> simulate_ensemble(model, [[0.1], [0.2], [0.3]], (0, 2), columns=top)
     Ensemble of 3: 3 right, 0 failed; columns: angle
     """
-    sources = Sources(model) if isinstance(model, Model) else model
+    sources, events = Sources(model) if isinstance(model, Model) else model, values_of(events, "events", Event)
     _require_explicit(integrator)
     times = OutputTimes(span, grid)
     members = read_members(sources.model, q, qd, parameters, inputs, times.span, kind)

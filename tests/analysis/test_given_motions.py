@@ -16,7 +16,7 @@ from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Curve, Table
-from substructures.analysis.simulate import ClosedMotion, Outputs
+from substructures.analysis.simulate import ClosedMotion, Integrator, Outputs
 from substructures.compile import target
 from substructures.compile.motion import CompiledRun
 
@@ -87,6 +87,30 @@ def test_kinks_of_expressions_are_named(slide: Model, motion: str, time: float, 
     with pytest.raises(InvalidArgument, match=f"kink at t = {time:g} s: .*{jump}") as caught:
         simulate(slide, [0], (0, 3), kind=ClosedMotion(prescribed={"s.x": motion}))
     assert caught.value.faults[0].pointer == "/prescribed/s.x"
+
+
+@pytest.mark.parametrize(
+    ("motion", "time"),
+    [
+        ("1/(t-1.3)", 1.3),
+        ("2+1/(t-1.3)^3", 1.3),
+        ("tan(t)", 1.5708),
+        ("exp(1/(t-1.3))", 1.3),
+        ("sqrt(2-t)", 2.0),
+        ("log(t)", 0.0),
+        ("1/(t-3)", 3.0),
+    ],
+)
+def test_a_motion_that_is_not_finite_is_named_with_its_time(slide: Model, motion: str, time: float) -> None:
+    with pytest.raises(InvalidArgument, match=r"no finite value at t = ([\d.]+) s: leave it out of the span") as caught:
+        simulate(slide, [0], (0, 3), kind=ClosedMotion(prescribed={"s.x": motion}), integrator=Integrator(max_steps=50))
+    (fault,) = caught.value.faults
+    assert fault.pointer == "/prescribed/s.x"
+    assert float(fault.message.split("t = ")[1].split(" s")[0]) == pytest.approx(time, abs=2e-3)
+
+
+def test_a_motion_divided_by_what_vanishes_with_it_is_taken(slide: Model) -> None:
+    np.testing.assert_allclose(moved(slide, "(t^2-1.69)/(t-1.3)"), np.linspace(0, 3, 7) + 1.3, atol=1e-9)
 
 
 @pytest.mark.parametrize(

@@ -209,11 +209,32 @@ def test_failures_are_values() -> None:
     assert len(few.history) >= 2
 
 
-def test_a_control_of_a_nanonewton_has_bounds_of_its_own() -> None:
-    """1 nkg is held by up to 1 nN: that the search does not move is not called optimal."""
+def nanokilogram() -> Model:
     body = {"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "s"}, "mass": "1/10^9"}
+    return model_of({"name": "x", "bodies": [body]}, (0, 0, 0))
+
+
+def test_a_control_of_a_nanonewton_has_bounds_of_its_own() -> None:
+    """1 nkg is held by up to 1 nN as 1 kg is by 1 N: x = 1 - t^2/2 costs 1 - 1/3 + 1/20 times 1e-9, on nodes."""
     problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, q=[1], cost=Cost("1/10^9*x.s^2"))
-    bounds = {"tau.x.s": (-1e-9, 1e-9)}
-    found = optimal_control(model_of({"name": "x", "bodies": [body]}, (0, 0, 0)), problem, Demands(bounds=bounds))
-    assert found.cost > 0.9e-9  # the least is 0.72e-9
-    assert (found.status, found.is_right) == ("feasible", False)
+    found = optimal_control(nanokilogram(), problem, Demands(bounds={"tau.x.s": (-1e-9, 1e-9)}))
+    assert found.cost == pytest.approx((1 - 1 / 3 + 1 / 20) * 1e-9, rel=1e-4)
+    assert (found.status, found.is_right) == ("optimal", True)
+
+
+@pytest.mark.parametrize("segments", [1, 4])
+def test_a_nanokilogram_is_moved_as_well_as_a_kilogram(segments: int) -> None:
+    """tau = 6 m (1 - 2 t) moves m over 1 m in 1 s, at the cost of 12 m^2."""
+    problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, steps=2, q=[0], cost=Cost("tau.x.s^2"))
+    found = optimal_control(nanokilogram(), problem, Demands(End([1], [0]), segments=segments))
+    assert found.status == "optimal"
+    assert found.cost == pytest.approx(12e-18, rel=1e-6)
+
+
+def test_of_a_nanokilogram_a_free_end_is_as_good() -> None:
+    """(tau/m)^2 and (x(T) - 1)^2: the least is 3/4, and told as that, in one segment without demands, too."""
+    cost = Cost("(tau.x.s*10^9)^2", "(x.s-1)^2")
+    problem = ControlProblem(controls=["tau.x.s"], horizon=1, intervals=20, steps=2, q=[0], cost=cost)
+    found = optimal_control(nanokilogram(), problem, Demands(segments=1))
+    assert found.status == "optimal"
+    assert found.cost == pytest.approx(0.75, rel=1e-6)

@@ -124,6 +124,15 @@ def test_a_free_body_about_its_principal_axes(z: float, verdict: str) -> None:
     assert "coordinates are singular" in found.message
 
 
+@pytest.mark.parametrize("size", [1e-14, 1e14])
+def test_a_free_body_of_any_size_turns_as_one_of_a_metre(size: float) -> None:
+    """The verdict of the energy does not hang on radians beside metres."""
+    upright = at(steady_motions(free_body((2 * size, 2.5 * size, size)), rates={"x.yaw": 3.0}, count=12), 0.0, 0.0)
+    assert upright.stability is not None
+    assert upright.stability.verdict == "stable"
+    assert "the energy has a strict maximum" in upright.stability.reason
+
+
 A, C, REACH = 0.4, 0.1, 0.25
 WEIGHT = MASS * G * REACH
 

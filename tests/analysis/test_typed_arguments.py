@@ -15,6 +15,7 @@ import substructures
 from substructures import (
     ClosedMotion,
     ConstrainedMotion,
+    ControlProblem,
     Definition,
     Event,
     FixedStep,
@@ -30,13 +31,17 @@ from substructures import (
     couple,
     derive,
     linearise,
+    regulator,
     sensitivities,
     simulate,
+    simulate_ensemble,
+    steady_motions,
 )
 from substructures.analysis.from_fields import motion_arguments
 from substructures.analysis.orbits.orbit import Shooting
 
 TREE = {"name": "clock", "instances": [{"name": "p", "substructure": "simple-pendulum"}]}
+PENDULUM = catalogue_model("simple-pendulum")
 ROD = Linear("rod", "p.q1'")
 
 
@@ -66,6 +71,7 @@ WRONG: list[tuple[Callable[[], Any], str, str]] = [
     (lambda: ConstrainedMotion([ROD, "rod"]), "/constraints/1", "'rod'"),  # type: ignore[list-item]
     (lambda: TreeMotion(contacts="foot"), "/contacts", "'foot'"),  # type: ignore[arg-type]
     (lambda: Outputs(events=[{"name": "top"}]), "/events/0", "'top'"),  # type: ignore[list-item]
+    (lambda: simulate_ensemble(PENDULUM, [[1]], (0, 1), events=["top"]), "/events/0", "'top'"),  # type: ignore[list-item]
     (lambda: Outputs(events=Event("top", "p.q1")), "/events", "Event(...)"),  # type: ignore[arg-type]
     (lambda: Shooting(1.0, turns={"p.q1": 0.5}), "/turns/p.q1", "0.5"),  # type: ignore[dict-item]
     (lambda: ConstrainedMotion([ROD], form="lagrange"), "/form", "'lagrange'"),  # type: ignore[arg-type]
@@ -87,6 +93,39 @@ def test_what_is_no_value_of_its_class_is_not_passed_over(argument: str, value: 
     where, message = fault(lambda: simulate(catalogue_model("simple-pendulum"), [1], (0, 1), **{argument: value}))
     assert where == f"/{argument}"
     assert repr(value)[:80] in message
+
+
+BY_NAME: dict[str, Callable[[Any], Any]] = {
+    "series": lambda x: Outputs(series=x),
+    "prescribed": lambda x: ClosedMotion(prescribed=x),
+    "inputs": lambda x: simulate(PENDULUM, [1], (0, 1), inputs=x),
+    "parameters": lambda x: simulate(PENDULUM, [1], (0, 1), parameters=x),
+    "outputs": lambda x: linearise(PENDULUM, [0], outputs=x),
+    "weights": lambda x: regulator(PENDULUM, [0], weights=x),
+    "momenta": lambda x: steady_motions(PENDULUM, momenta=x),
+    "columns": lambda x: simulate_ensemble(PENDULUM, [[1]], (0, 1), columns=x),
+}
+
+
+OF_NAMES: dict[str, Callable[[Any], Any]] = {
+    "of_inputs": lambda x: linearise(PENDULUM, [0], of_inputs=x),
+    "by": lambda x: sensitivities(PENDULUM, [1], (0, 1), by=x),
+    "controls": lambda x: ControlProblem(controls=x, horizon=1, intervals=2, q=[0]),
+}
+
+
+@pytest.mark.parametrize("given", ["p.q1", 5], ids=repr)
+@pytest.mark.parametrize("argument", OF_NAMES)
+def test_names_are_given_in_a_list(argument: str, given: Any) -> None:
+    assert fault(lambda: OF_NAMES[argument](given))[0] == f"/{argument}"
+
+
+@pytest.mark.parametrize("given", [["p.q1"], "p.q1", 5], ids=repr)
+@pytest.mark.parametrize("argument", BY_NAME)
+def test_what_is_given_by_name_is_no_list(argument: str, given: Any) -> None:
+    where, message = fault(lambda: BY_NAME[argument](given))
+    assert where == f"/{argument}"
+    assert repr(given) in message
 
 
 @pytest.mark.parametrize("kind", [TreeMotion(), "rolling"])

@@ -1,4 +1,6 @@
-"""Kinks of given motions: where a motion or its velocity jumps, the force of its actuator would have to be infinite."""
+"""Kinks and poles of given motions: where a motion or its velocity jumps, or has no finite value, the force of its
+actuator would have to be infinite.
+"""
 
 from __future__ import annotations
 
@@ -18,6 +20,8 @@ JUMP = 1e-6
 BESIDE = 1e-12
 #: times at which signs are looked at
 LOOKS = 2001
+#: a motion has a pole where it is more than this many times what it is elsewhere, so near to it
+POLE = 1e3
 
 #: columns (K, k) at times (K,)
 Columns = Callable[[Array], Array]
@@ -59,6 +63,30 @@ def require_smooth(motion: Columns, places: Columns, span: tuple[float, float], 
         _require(
             t if abs(t) > 4 * h else 0.0, before, after, JUMP * greatest[:2] + 4 * (b - a) * greatest[1:], pointer, unit
         )
+
+
+def require_finite(motion: Columns, divisors: Columns, span: tuple[float, float], pointer: str) -> None:
+    """Raises InvalidArgument (``not-finite``) where a motion or its velocity has no finite value within the span.
+
+    ``motion``: s, s', s'' at times; ``divisors``: what it is divided by, which changes its sign at a pole.
+    """
+    start, end = span
+    h = BESIDE * max(1.0, abs(start), abs(end))
+    times = np.linspace(start, end, LOOKS if end > start else 1)
+    values = motion(times)[:, :2]
+    is_finite = np.isfinite(values).all(axis=1)
+    most = POLE * np.abs(values[is_finite]).max(axis=0, initial=0)
+    nowhere = [(max(start, t - h), min(end, t + h)) for t in times[~is_finite].tolist()]
+    for a, b in sorted([*nowhere, *_changes(divisors, times, h)]):
+        # 0/0 at one time alone, but for the ends, has a limit
+        t = (a + b) / 2
+        t = t if abs(t) > 4 * h else 0.0
+        if not (np.abs(motion(np.array([a, b]))[:, :2]) <= most).all():
+            message = (
+                f"the given motion has no finite value at t = {t:.6g} s: leave it out of the span, or give "
+                "a motion that is finite all the time"
+            )
+            raise InvalidArgument.at(pointer, "not-finite", message)
 
 
 def _changes(places: Columns, times: Array, h: float) -> Iterator[tuple[float, float]]:

@@ -9,7 +9,7 @@ import numpy as np
 import scipy
 
 from substructures.analysis.arguments import exact, require_read
-from substructures.analysis.closed.kinks import require_smooth, require_smooth_table
+from substructures.analysis.closed.kinks import require_finite, require_smooth, require_smooth_table
 from substructures.analysis.motion.problems.signals import Signal, Table, polynomials, require_covered
 from substructures.array import Array
 from substructures.compile import compile_program
@@ -19,6 +19,7 @@ from substructures.expr.calculus.corners import corners, inner, rates
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Symbol, array, program
+from substructures.expr.walk import reachable
 from substructures.loads.scope import Scope
 from substructures.tree.model import Model
 
@@ -125,18 +126,23 @@ class Prescribed:
 
 
 def _require_smooth(row: tuple[Expr, Expr, Expr], span: tuple[float, float], pointer: str, unit: str) -> None:
-    """Raises InvalidArgument where an expression has a kink."""
+    """Raises InvalidArgument where an expression has a kink, or no finite value."""
     found = [inner(node) for node in corners(row[:1])]
-    if not found:
-        return
-    outputs = {"motion": array((3,), lambda i: row[i]), "places": array((len(found),), lambda k: found[k])}
+    divisors = [node.args[1] for node in reachable(row[:1]) if node.op == "div"]
+    outputs = {
+        "motion": array((3,), lambda i: row[i]),
+        "places": array((len(found),), lambda k: found[k]),
+        "divisors": array((len(divisors),), lambda k: divisors[k]),
+    }
     p = program(row[0].graph, outputs, {"t": TIME})
 
     def columns(name: str) -> Callable[[Array], Array]:
         """An output at times."""
-        return lambda t: interpret(p, {"t": t}, [name])[name]
+        return lambda t: np.broadcast_to(interpret(p, {"t": t}, [name])[name], (len(t), *outputs[name].shape))
 
-    require_smooth(columns("motion"), columns("places"), span, pointer, unit)
+    if found:
+        require_smooth(columns("motion"), columns("places"), span, pointer, unit)
+    require_finite(columns("motion"), columns("divisors"), span, pointer)
 
 
 def _rates(curve: Any) -> Any:

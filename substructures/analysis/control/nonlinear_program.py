@@ -8,6 +8,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 
 from substructures.analysis.control.adjoint import HORIZON
@@ -233,6 +235,23 @@ class ShootingProgram:
         low, high = (np.broadcast_to(b, (self.problem.nodes, self.m)).ravel() for b in self.bounds)
         return np.concatenate([low, -free, self.ranges[0]]), np.concatenate([high, free, self.ranges[1]])
 
+    @cached_property
+    def units(self) -> tuple[Array, float]:
+        """What variables (size,) and the cost are measured in: a control in what moves the end by 1 [rad, m; s], all
+        others in 1; the cost in what such controls change it by, at most in 1. Powers of 2: nothing is rounded.
+        """
+        z = self.guess()
+        unit = np.ones(len(z))
+        if not self.m:
+            return unit, 1.0
+        shooting, ends = self.shooting_at(z), np.repeat(np.eye(self.size)[:, None], self.S, axis=1)
+        run = shooting.run(*self.parts(z))
+        # sum over nodes of |d end/d u|
+        effect = np.abs(shooting.pullback(run, ends, np.zeros(self.size)).parts).sum(axis=(1, 2)).max(axis=0)
+        unit[: self.split] = np.tile([_power(1 / x) if x > 0 else 1.0 for x in effect], self.problem.nodes)
+        z[: self.split] += unit[: self.split]
+        return unit, _power(min(abs(self.cost(z)[0] - run.cost), 1.0))
+
     def violation(self, z: Array) -> float:
         """The largest violation of a demand."""
         outside = -float(self.on_path(z)[0].min(initial=0))
@@ -241,6 +260,11 @@ class ShootingProgram:
     def progress(self, z: Array) -> tuple[float, float]:
         """Cost, and the largest violation."""
         return self.cost(z)[0], self.violation(z)
+
+
+def _power(x: float) -> float:
+    """The power of 2 next to a positive number; 1 where it is none."""
+    return float(np.exp2(np.round(np.log2(x)))) if 0 < x < np.inf else 1.0
 
 
 def _warm(problem: ControlProblem, earlier: WarmStart, controls: Array) -> None:

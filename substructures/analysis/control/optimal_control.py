@@ -143,20 +143,34 @@ def _searched(search: ShootingProgram, limit: float, progress: IterationReport |
 
 
 def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
-    """SLSQP; L-BFGS-B without conditions."""
-    wanted, bounds = search.wanted, scipy.optimize.Bounds(*search.limits())
-    common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": note}
-    if not search.rows and search.limits_on_path is None:
-        options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance, "gtol": 1e-10}
-        return scipy.optimize.minimize(search.cost, z, method="L-BFGS-B", options=options, **common)
-    conditions: list[dict[str, Any]] = []
+    """SLSQP; L-BFGS-B without conditions. In the units of the program, whatever those of controls and cost."""
+    wanted, (unit, price) = search.wanted, search.units
+    bounds = scipy.optimize.Bounds(*(limit / unit for limit in search.limits()))
+    common: dict[str, Any] = {"jac": True, "bounds": bounds, "callback": lambda y: note(y * unit)}
+
+    def cost(y: Array) -> tuple[float, Array]:
+        """J and its gradient."""
+        value, slope = search.cost(y * unit)
+        return value / price, slope * unit / price
+
+    options, conditions = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}, list[dict[str, Any]]()
     if search.rows:
-        conditions.append({"type": "eq", "fun": search.residual, "jac": search.jacobian})
+        conditions.append(_scaled("eq", search.residual, search.jacobian, unit))
     if search.limits_on_path is not None:
-        one, by = (lambda x: search.on_path(x)[0]), (lambda x: search.on_path(x)[1])
-        conditions.append({"type": "ineq", "fun": one, "jac": by})
-    options = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}
-    return scipy.optimize.minimize(search.cost, z, method="SLSQP", constraints=conditions, options=options, **common)
+        one, by = (lambda z: search.on_path(z)[0]), (lambda z: search.on_path(z)[1])
+        conditions.append(_scaled("ineq", one, by, unit))
+    if conditions:
+        common |= {"method": "SLSQP", "constraints": conditions, "options": options}
+    else:
+        common |= {"method": "L-BFGS-B", "options": options | {"gtol": 1e-10}}
+    found = scipy.optimize.minimize(cost, z / unit, **common)
+    found.x = found.x * unit
+    return found
+
+
+def _scaled(kind: str, one: Callable[[Array], Array], by: Callable[[Array], Array], unit: Array) -> dict[str, Any]:
+    """A condition and its derivatives by z/unit."""
+    return {"type": kind, "fun": lambda y: one(y * unit), "jac": lambda y: by(y * unit) * unit}
 
 
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:
@@ -199,12 +213,13 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
 
 def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     """Multipliers nu of the equations, and |d(J + nu . residual - mu . path)/dz| in the free variables relative to
-    |dJ/dz| (J/|z| where that is larger), with mu >= 0 of the limits that are reached.
+    |dJ/dz| (J/|z| where that is larger), with mu >= 0 of the limits that are reached; all in the units of the program.
     """
+    unit, _ = search.units
     cost, gradient = search.cost(z)
-    A = search.jacobian(z)
+    gradient, A = gradient * unit, search.jacobian(z) * unit
     low, high = search.limits()
-    margin = 1e-9 * np.minimum(1 + np.abs(z), high - low)
+    margin = 1e-9 * np.minimum(unit + np.abs(z), high - low)
     below, above = z <= low + margin, z >= high - margin
     free = ~(below | above)
     # A^T nu = -dJ/dz in the free variables, and dJ/dz + A^T nu is what is left (Karush, Kuhn and Tucker)
@@ -212,16 +227,16 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     if search.rows:
         nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
     # without demands dJ/dz itself vanishes: the cost over the size of the variables is the measure then
-    typical = abs(cost) / (1 + float(np.abs(z).max(initial=0)))
+    typical = abs(cost) / (1 + float(np.abs(z / unit).max(initial=0)))
     size = max(float(np.abs(gradient).max(initial=0)), typical) or 1.0
     largest = _left(gradient + A.T @ nu, below, above) / size
     values, by = search.on_path(z)
-    reached = by[values <= REACHED * max(float(np.abs(values).max(initial=0)), 1.0)]
+    reached = (by * unit)[values <= REACHED * max(float(np.abs(values).max(initial=0)), 1.0)]
     if largest <= STATIONARY or not (len(reached) or below.any() or above.any()):
         return nu, largest
     # dJ/dz + A^T nu - C^T mu - low + high = 0 with mu, low, high >= 0: they are not unique, least squares find some
-    unit = np.eye(len(z))
-    columns = np.concatenate([A, -reached, -unit[below], unit[above]]).T
+    one = np.eye(len(z))
+    columns = np.concatenate([A, -reached, -one[below], one[above]]).T
     least = np.zeros(columns.shape[1])
     least[: search.rows] = -np.inf
     found = scipy.optimize.lsq_linear(columns, -gradient, (least, np.inf), method="bvls").x

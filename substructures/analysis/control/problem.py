@@ -9,13 +9,13 @@ velocities (``x.q1'``), inputs (``tau.x.q1``), free parameters and ``t``.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
-from substructures.analysis.arguments import NumberOrExpression, exact, one_of, positive, real, whole
+from substructures.analysis.arguments import NumberOrExpression, by_name, exact, one_of, positive, real, whole
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.given import StateArray, numbers, require_known, unknown
 from substructures.array import Array
@@ -79,7 +79,7 @@ class ControlProblem:
     parameters: Mapping[str, float] | None = None
 
     def __post_init__(self) -> None:
-        if isinstance(self.controls, str):
+        if isinstance(self.controls, str) or not isinstance(self.controls, Collection):
             raise InvalidArgument.at("/controls", "list-expected", "a list of inputs is needed")
         object.__setattr__(self, "controls", tuple(self.controls))
         object.__setattr__(self, "horizon", positive(self.horizon, "horizon"))
@@ -123,7 +123,7 @@ def require_solvable(model: Model, problem: ControlProblem) -> None:
 def per_node(problem: ControlProblem, given: Mapping[str, Any], field: str) -> Array:
     """Values of the controls from lists (or one number each) by name, (nodes, controls). Raises InvalidArgument."""
     values = np.zeros((problem.nodes, len(problem.controls)))
-    require_known(field, KIND[field], given, problem.controls)
+    require_known(field, KIND[field], by_name(given, field), problem.controls)
     for name, value in given.items():
         pointer = f"/{field}/{escape(name)}"
         numbers = numeric(value, pointer)

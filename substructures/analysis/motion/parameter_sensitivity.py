@@ -18,6 +18,7 @@ from substructures.analysis.equations.formulas import ModelFormulas, require_mov
 from substructures.analysis.equations.nonholonomic.positions import closed_positions, start_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
+from substructures.analysis.given import require_known
 from substructures.analysis.motion.ball_motion import conditions_in_rates, reached_in_rates, with_lengths
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
@@ -53,7 +54,7 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
 
     Raises InvalidInput for unknown parameters (``/parameters/i``) and quantities, and forces without derivative.
     """
-    _require_parameters(model, parameters, "parameters")
+    require_known("parameters", "parameter", parameters, model.parameters)
     known = list(model.program.outputs)
     faults = [
         Fault(f"/quantities/{i}", "unknown-quantity", f"unknown quantity '{str(name)[:80]}'{among(name, known, i)}")
@@ -74,21 +75,6 @@ def sensitivity_formulas(model: Model, parameters: Sequence[str], quantities: Se
             outputs[f"{quantity}:{name}"] = Formulas(formulas.shape, entries, formulas.symmetry)
     result = program(f.graph, outputs, f.symbols)
     return certified(result, model, by_parameters(parameters, quantities), "parameter_sensitivity", needs=quantities)
-
-
-def _require_parameters(model: Model, names: Sequence[str], argument: str) -> None:
-    """Raises InvalidArgument for names that are no parameters of the model."""
-    faults = [
-        Fault(
-            f"/{argument}/{i}",
-            "unknown-parameter",
-            f"unknown parameter '{str(name)[:80]}'{among(name, model.parameters)}",
-        )
-        for i, name in enumerate(names)
-        if name not in model.parameters
-    ]
-    if faults:
-        raise InvalidArgument(faults)
 
 
 def sensitivities(
@@ -121,7 +107,7 @@ def sensitivities(
     difference is the stated error of the motion and of each derivative and may reach ``drift_limit``; both runs take
     about three times as long as one. Raises InvalidInput (pointers start with names of arguments) and MissingValue.
     """
-    _require_parameters(model, by, "by")
+    require_known("by", "parameter", by, model.parameters)
     require_smooth(model)
     problem = MotionProblem(
         model=model,

@@ -53,10 +53,13 @@ def bounded_by_integrals(
     found = interpret(source, {s.name: values[s.name] for s in source.symbols}, ["first", "second"])
     if not all(np.isfinite(x).all() for x in found.values()):
         return None
-    found = _sized(found)
+    H = names.index("energy")
+    unit = _units(model, found["second"][H])
+    shifts = shifts / unit
+    shifts /= np.linalg.norm(shifts, axis=1, keepdims=True)
+    found = _sized({"first": found["first"] * unit, "second": found["second"] * unit * unit[:, None]})
     # z = (x, q'): without the shifts s
     z = scipy.linalg.null_space(shifts) if len(shifts) else np.eye(shifts.shape[1])
-    H = names.index("energy")
     used = [k for k in range(len(names)) if k != H and _is_invariant(found["first"][k], shifts)]
     dH, dI = found["first"][H] @ z, found["first"][used] @ z
     second = np.einsum("kab,ai,bj->kij", found["second"], z, z)
@@ -108,6 +111,17 @@ def shifts_along(model: Model, values: Mapping[str, float], displacements: Array
     states = model.positions, model.coordinates, model.balls
     displaced = np.linalg.pinv(by_displacements(*states, np.array([values[name] for name in model.positions])))
     return np.concatenate((displacements @ displaced.T, np.zeros((len(displacements), model.dof))), axis=1)
+
+
+def _units(model: Model, second: Array) -> Array:
+    """What a state (m + n,) is measured in, whatever the masses and lengths: coordinates and their rates in what has
+    the same energy, g_aa^(-1/2) beside the largest; quaternions in 1. ``second``: derivatives of the energy.
+    """
+    inertia = np.diag(second)[len(model.positions) :]
+    rates = np.where(inertia > 0, 1 / np.sqrt(np.where(inertia > 0, inertia, 1.0)), 0.0)
+    rates = np.where(rates > 0, rates / (rates.max(initial=0) or 1.0), 1.0)
+    by_name = dict(zip(model.coordinates, rates.tolist(), strict=True))
+    return np.array([*(by_name.get(name, 1.0) for name in model.positions), *rates])
 
 
 def _sized(found: Mapping[str, Array]) -> dict[str, Array]:

@@ -12,7 +12,7 @@ import numpy as np
 from flint import arb, ctx
 from numpy.typing import NDArray
 
-from substructures.analysis.arguments import NumberOrExpression, exact, real
+from substructures.analysis.arguments import NumberOrExpression, by_name, exact, real
 from substructures.analysis.equations.energy import has_even_dissipation
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
@@ -64,7 +64,8 @@ class OperatingPoint:
 
     def output_matrices(self, chosen: tuple[str, ...], values: Mapping[str, Any], count: int) -> tuple[Array, Array]:
         """C (N, k, 2n) and D (N, k, m) in all coordinates and velocities. Raises InvalidInput (``/outputs/y``)."""
-        given = [(exact(x, f"/outputs/{name}"), f"/outputs/{name}") for name, x in self.outputs.items()]
+        named = by_name(self.outputs, "outputs").items()
+        given = [(exact(x, f"/outputs/{name}"), f"/outputs/{name}") for name, x in named]
         y = read_expressions(self.model, {"output": given}, inputs=True)
         found = interpret_in_blocks(output_jacobian(self.model, y, chosen), values, ["C", "D"], count)
         return found["C"], found["D"]

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import scipy
 
-from substructures.analysis.arguments import real
+from substructures.analysis.arguments import by_name, real
 from substructures.analysis.given import StateArray
 from substructures.analysis.stability.linear_system import SURE, Reach, eigenvalues, is_complete, linear_system, reach
 from substructures.analysis.stability.linearisation_result import (
@@ -187,7 +187,7 @@ def _diagonal(
     positive: bool = False,
 ) -> list[float]:
     faults = []
-    for name, x in (given or {}).items():
+    for name, x in by_name(given, field).items():
         if name not in names:
             message = f"there is no '{name[:80]}'{among(name, names)}"
             faults.append(Fault(f"/{field}/{escape(name)}", "unknown-name", message))

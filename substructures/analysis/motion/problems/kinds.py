@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Literal, get_args
 
-from substructures.analysis.arguments import one_of, values_of
+from substructures.analysis.arguments import by_name, one_of, values_of
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint, closing
 from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.problems.problem import StateVector
@@ -58,6 +58,7 @@ class ClosedMotion:
     friction: Literal["regularised", "exact"] = "regularised"
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "prescribed", by_name(self.prescribed, "prescribed"))
         one_of(self.reduction, "reduction", ("projection", "partitioning"))
         one_of(self.friction, "friction", ("regularised", "exact"))
 

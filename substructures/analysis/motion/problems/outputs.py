@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 
-from substructures.analysis.arguments import NumberOrExpression, values_of
+from substructures.analysis.arguments import NumberOrExpression, by_name, values_of
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid
 from substructures.quantities.part_models import ReactionModel
@@ -29,7 +29,7 @@ class Outputs(OutputGrid):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        object.__setattr__(self, "series", dict(self.series or {}))
+        object.__setattr__(self, "series", dict(by_name(self.series, "series")))
         object.__setattr__(self, "events", values_of(self.events, "events", Event))
 
 
