@@ -79,9 +79,22 @@ def test_the_rest_is_refused_by_name(expression: Any, message: str) -> None:
         from_sympy(expression)
 
 
-def test_texts_are_never_evaluated(tmp_path: Path) -> None:
-    """SymPy evaluates texts that it is given; what comes from outside is often a text."""
+class Converted:
+    """What SymPy would ask for another object in its place."""
+
+    def __init__(self, text: str) -> None:
+        self.text = text
+
+    def _sympy_(self) -> str:
+        return self.text
+
+
+@pytest.mark.parametrize(
+    "within", [str, lambda x: [x], lambda x: (x,), lambda x: {x}, lambda x: {"a": x}, lambda x: {x: 1}, Converted]
+)
+def test_texts_are_never_evaluated(within: Any, tmp_path: Path) -> None:
+    """SymPy evaluates texts that it is given, also within tuples; what comes from outside is often a text."""
     file = tmp_path / "made"
     with pytest.raises(InvalidArgument, match="is no expression of SymPy"):
-        from_sympy(f"open({str(file)!r}, 'w')")
+        from_sympy(within(f"open({str(file)!r}, 'w')"))
     assert not file.exists()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping
+from numbers import Number
 from typing import Any
 
 import sympy
@@ -48,13 +49,12 @@ def from_sympy(expression: Any, names: Mapping[Any, str] | None = None) -> str:
 
 
 def expression_of(given: Any) -> Any:
-    """An expression of SymPy, or a number as such a one. A text is refused: SymPy would evaluate it. Raises
-    InvalidArgument.
+    """An expression of SymPy, or a number as such a one. A text is refused, and what may hold one: SymPy would evaluate
+    it. Raises InvalidArgument.
     """
-    try:
-        return sympy.sympify(given, strict=True)
-    except sympy.SympifyError:
-        raise _refused(given, "is no expression of SymPy") from None
+    if not isinstance(given, (sympy.Basic, sympy.MatrixBase, Number)):
+        raise _refused(given, "is no expression of SymPy")
+    return sympy.sympify(given, strict=True)
 
 
 def _refused(what: Any, why: str) -> InvalidArgument:
