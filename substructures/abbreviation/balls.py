@@ -12,6 +12,7 @@ import flint
 
 from substructures.expr.direct import BALL_FUNCTIONS, ball_power
 from substructures.expr.graph import Expr
+from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.walk import reachable
 
 #: bits of the arithmetic
@@ -28,7 +29,7 @@ _STEPS: dict[str, Callable[..., Any]] = {
 
 def exact(x: Fraction | int) -> Any:
     """A rational number as a ball."""
-    return flint.arb(flint.fmpq(x.numerator, x.denominator))
+    return flint.arb(to_fmpq(x))
 
 
 def between(low: Fraction, high: Fraction) -> Any:

@@ -25,6 +25,7 @@ from substructures.errors import InvalidArgument, among
 from substructures.export.exported import Function
 from substructures.export.interface import Interface
 from substructures.expr.program import Program
+from substructures.expr.rings.rationals import to_fmpq
 
 #: of single precision: unit roundoff, smallest normal number
 UNIT, SMALLEST = 2.0**-24, 2.0**-126
@@ -180,7 +181,7 @@ def _constant(op: str, rest: list[object]) -> _Rounded:
     if op == "pi":
         return _Rounded(flint.arb.pi(), 4 * UNIT)
     number = Fraction(int(str(rest[0])), int(str(rest[1])) if op == "rat" else 1)
-    exact = flint.arb(flint.fmpq(number.numerator, number.denominator))
+    exact = flint.arb(to_fmpq(number))
     is_float = number.denominator == 1 and abs(number.numerator) <= 2**24
     return _Rounded(exact, 0.0 if is_float else float(abs(exact).upper()) * UNIT)
 

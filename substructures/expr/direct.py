@@ -17,6 +17,7 @@ import flint
 import numpy as np
 
 from substructures.expr import direct_laws
+from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.syntax import ExpressionError, Knots, Step, decimal_number, read
 
 SHORT = 100  # characters of a decimal number
@@ -186,7 +187,7 @@ def _float_power(x: Any, n: int) -> Any:
 
 
 def _ball(kind: Callable[[Any], Any], x: Fraction) -> Any:
-    return kind(flint.fmpq(x.numerator, x.denominator))
+    return kind(to_fmpq(x))
 
 
 def ball_power(x: Any, n: int) -> Any:

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_series, fmpq, fmpq_mat
 
+from substructures.expr.rings.rationals import fraction, to_fmpq
 from substructures.expr.syntax import Knots
 
 UNKNOWN = arb("nan")
@@ -153,22 +154,18 @@ def _spline(knots: Knots) -> list[Fraction]:
     right = fmpq_mat(last + 1, 1)
     for i in range(last):
         for row, other in ((i, i + 1), (i + 1, i)):
-            system[row, row] += _exactly(2 * h[i])
-            system[row, other] += _exactly(h[i])
-        slope = _exactly(6 * rise[i] / h[i])
+            system[row, row] += to_fmpq(2 * h[i])
+            system[row, other] += to_fmpq(h[i])
+        slope = to_fmpq(6 * rise[i] / h[i])
         right[i, 0] += slope
         right[i + 1, 0] -= slope
-    M = [Fraction(int(row.p), int(row.q)) for row in system.solve(right).entries()]
+    M = [fraction(row) for row in system.solve(right).entries()]
     exact = [rise[i] / h[i] - h[i] / 6 * (2 * M[i] + M[i + 1]) for i in range(last)]
     return [*(Fraction(str(float(s))) for s in exact), Fraction(0)]
 
 
-def _exactly(x: Fraction) -> Any:
-    return fmpq(x.numerator, x.denominator)
-
-
 def _ball(x: Fraction) -> Any:
-    return arb(fmpq(x.numerator, x.denominator))
+    return arb(to_fmpq(x))
 
 
 def _in_balls(parted: Callable[..., Parted]) -> Callable[..., Any]:

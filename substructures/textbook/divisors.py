@@ -7,8 +7,9 @@ from fractions import Fraction
 from math import gcd, lcm
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx
 
+from substructures.expr.rings.rationals import fraction, to_fmpq
 from substructures.textbook.atoms import Monomial, Polynomial, monomial_key, times
 from substructures.textbook.work import Work
 
@@ -66,10 +67,10 @@ def factored(polynomial: Polynomial, number: Fraction, work: Work) -> tuple[Frac
     exponents = {tuple(dict(m).get(i, 0) for i in used): c for m, c in polynomial.items()}
     if any(n < 0 for k in exponents for n in k):
         return number, [(polynomial, 1)]
-    c, parts = work.factor(context.from_dict({k: fmpq(x.numerator, x.denominator) for k, x in exponents.items()}))
+    c, parts = work.factor(context.from_dict({k: to_fmpq(x) for k, x in exponents.items()}))
     if len(parts) == 1 and parts[0][1] == 1:
         return number, [(polynomial, 1)]
-    number *= Fraction(int(c.p), int(c.q))
+    number *= fraction(c)
     found: list[tuple[Polynomial, int]] = []
     for part, n in parts:
         inner = _read_polynomial(part, used)
@@ -82,6 +83,5 @@ def factored(polynomial: Polynomial, number: Fraction, work: Work) -> tuple[Frac
 def _read_polynomial(poly: Any, used: Sequence[int]) -> Polynomial:
     """A polynomial of FLINT, whose variables are the atoms ``used``."""
     return {
-        tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): Fraction(int(x.p), int(x.q))
-        for k, x in poly.to_dict().items()
+        tuple((i, int(e)) for i, e in zip(used, k, strict=True) if e): fraction(x) for k, x in poly.to_dict().items()
     }

@@ -11,8 +11,9 @@ from fractions import Fraction
 from math import isqrt
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx
 
+from substructures.expr.rings.rationals import fraction, to_fmpq
 from substructures.textbook.divisors import is_fraction
 from substructures.textbook.exponentials import Laurent, harmonics_of, spread, tangent
 from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest
@@ -36,7 +37,7 @@ def factors(waves: Waves, work: Work) -> Factors:
         return whole
     found = _trigonometric(parts, angles, degrees, work)
     if found is not None:
-        found = Fraction(int(number.p), int(number.q)) * found[0], found[1]
+        found = fraction(number) * found[0], found[1]
         if not all(is_fraction(c / waves[0][0]) for c, _ in waves):
             found = _number_inside(found)
     if found is None or sum(3 + cost(form) for form, _ in found[1]) >= 3 + cost(waves):
@@ -85,7 +86,7 @@ def _polynomial(waves: Waves, angles: Sequence[Mode], degrees: Sequence[int]) ->
     ts = context.gens()
     result = context.constant(0)
     for c, some in waves:
-        term = context.constant(fmpq(c.numerator, c.denominator))
+        term = context.constant(to_fmpq(c))
         left = list(degrees)
         for op, k, n in some:
             i = angles.index(k)

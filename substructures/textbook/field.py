@@ -13,11 +13,12 @@ from fractions import Fraction
 from math import comb, gcd
 from typing import Any
 
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
 from substructures.expr.rings.expand import classified
 from substructures.expr.rings.generators import Angle, Generators, Product, Sum, is_function, turned
+from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
 
@@ -157,16 +158,6 @@ class Field:
             if poly.degrees()[n] > 1:
                 poly = poly % relation
         return poly
-
-
-def to_fmpq(value: Fraction) -> fmpq:
-    """A number for FLINT."""
-    return fmpq(value.numerator, value.denominator)
-
-
-def fraction(value: fmpq) -> Fraction:
-    """A number of FLINT."""
-    return Fraction(int(value.p), int(value.q))
 
 
 def unit_of(multiples: Iterable[Fraction]) -> Fraction:

@@ -12,12 +12,13 @@ from fractions import Fraction
 from typing import Any
 
 from substructures.expr.graph import Expr
+from substructures.expr.rings.rationals import fraction, to_fmpq
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, times
 from substructures.textbook.collect import length
 from substructures.textbook.contents import Ring, divided, monomial_of
 from substructures.textbook.divisors import content as content_of
 from substructures.textbook.divisors import is_fraction
-from substructures.textbook.field import Field, fraction, to_fmpq
+from substructures.textbook.field import Field
 from substructures.textbook.forces import Grouped, grouped
 from substructures.textbook.forms import Factor, Sum, Term, Trig, leaves, product
 from substructures.textbook.layout import Layout

@@ -27,6 +27,7 @@ from substructures.errors import TooLarge
 from substructures.expr.calculus.plain import PlainFormulas
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.rings.expand import is_zero
+from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.walk import reachable
 
 #: points, and at how many of them a formula must have a value to be called zero
@@ -123,7 +124,7 @@ class Vanishing:
             if node.op == "sym" and node not in symbols:
                 for point, x in zip(self.symbols, self._drawn(), strict=True):
                     point[node] = x
-            x = flint.fmpq(node.value.numerator, node.value.denominator) if node.is_number else symbols[node]
+            x = to_fmpq(node.value) if node.is_number else symbols[node]
             return flint.arb(x)
         args = [known[a] for a in node.args]
         function = _OPERATIONS.get(node.op)

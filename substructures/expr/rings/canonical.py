@@ -12,6 +12,7 @@ from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.graph import Expr
 from substructures.expr.rings.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
 from substructures.expr.rings.laurent import Laurent, Quotient, Ring
+from substructures.expr.rings.rationals import fraction
 
 Terms = tuple[tuple[Basis, Fraction], ...]
 
@@ -131,7 +132,7 @@ class RingEvaluator:
             leading = next((n for n in k if n), 0)
             if leading < 0:
                 continue
-            value = Fraction(int(c.p), int(c.q))
+            value = fraction(c)
             bits = max(value.numerator.bit_length(), value.denominator.bit_length())
             if bits > MAX_BITS:
                 raise TooLarge("a coefficient of the expanded form (in bits)", bits, MAX_BITS)

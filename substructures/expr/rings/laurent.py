@@ -16,6 +16,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from substructures.errors import TooLarge
+from substructures.expr.rings.rationals import to_fmpq
 
 #: a product may need this many times ``limit`` products of terms, and all results together have as many terms
 WORK = 100
@@ -60,7 +61,7 @@ class Ring:
 
     def monomial(self, exponents: Sequence[int], value: Fraction = Fraction(1)) -> Any:
         """value * product of powers, as polynomial."""
-        return self.context.term(coeff=fmpq(value.numerator, value.denominator), exp_vec=tuple(exponents))
+        return self.context.term(coeff=to_fmpq(value), exp_vec=tuple(exponents))
 
     def laurent(self, poly: Any, bits: int) -> Laurent:
         """A polynomial as Laurent polynomial."""
@@ -69,7 +70,7 @@ class Ring:
     def constant(self, value: Fraction) -> Quotient:
         """A number."""
         bits = value.numerator.bit_length() + value.denominator.bit_length()
-        poly = self.context.constant(fmpq(value.numerator, value.denominator))
+        poly = self.context.constant(to_fmpq(value))
         one = self.laurent(self.context.constant(1), 1)
         return Quotient(self.laurent(poly, bits), one)
 
