@@ -21,7 +21,8 @@ from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Definition
 from substructures.part.inertias import Tensor, faults_of, impossible, more
-from substructures.part.mass import PRECISION, ball_sum, limits_in_numbers, number_of, rounded
+from substructures.part.limits import limits_in_numbers
+from substructures.part.mass import PRECISION, ball_sum, number_of, rounded
 from substructures.part.parameters import names_in_limits
 from substructures.tree.document import TreeSpec
 
