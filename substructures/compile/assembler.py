@@ -1,11 +1,27 @@
-"""A small writer of LLVM assembly for hand-written functions with loops."""
+"""LLVM assembly: types, constants, attributes, and a small writer for hand-written functions with loops."""
 
 from __future__ import annotations
 
+import struct
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 
-from substructures.compile.emission import literal, vector
+
+def vector(width: int) -> str:
+    """The LLVM type of a value of ``width`` states."""
+    return f"<{width} x double>"
+
+
+def literal(value: float, width: int) -> str:
+    """A constant in all lanes, exact to the bit."""
+    bits = f"double 0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
+    return f"<{', '.join([bits] * width)}>"
+
+
+def attributes(width: int) -> str:
+    """Of all functions. An aligned stack: a spilled vector does not lie across two cache lines."""
+    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
+    return f"attributes #0 = {{ nounwind alignstack={8 * width} {wide} }}\n"
 
 
 class AssemblyWriter:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import struct
 from collections.abc import Callable, Iterator, Sequence
 
+from substructures.compile.assembler import attributes, literal, vector
 from substructures.compile.lowering import Lowered, Place, StageFunction
 from substructures.compile.order import REGIONS
 from substructures.expr.program import Operation
@@ -15,17 +15,6 @@ CONTRACTED = frozenset(("add", "sub", "mul"))
 INTRINSICS = {"sqrt": "sqrt", "abs": "fabs"}
 
 
-def vector(width: int) -> str:
-    """The LLVM type of a value of ``width`` states."""
-    return f"<{width} x double>"
-
-
-def literal(value: float, width: int) -> str:
-    """A constant in all lanes, exact to the bit."""
-    bits = f"double 0x{struct.unpack('<Q', struct.pack('<d', value))[0]:016X}"
-    return f"<{', '.join([bits] * width)}>"
-
-
 def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
     """A module with the functions part0, part1, ... of the scratch arrays of the stages and of the outputs."""
     emitters = (_Emitter(lowered, part, ops, width) for part in lowered.parts)
@@ -34,12 +23,6 @@ def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
     kind = vector(width)
     declared = [f"declare {kind} @llvm.{name}.v{width}f64({kind})\n" for name in INTRINSICS.values()]
     return "".join([*declared, *bodies, attributes(width)])
-
-
-def attributes(width: int) -> str:
-    """Of all functions. An aligned stack: a spilled vector does not lie across two cache lines."""
-    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
-    return f"attributes #0 = {{ nounwind alignstack={8 * width} {wide} }}\n"
 
 
 class _Emitter:

@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 
-from substructures.compile.assembler import AssemblyWriter
-from substructures.compile.emission import attributes, literal, vector
+from substructures.compile.assembler import AssemblyWriter, attributes, literal, vector
 from substructures.compile.order import REGIONS
 from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body

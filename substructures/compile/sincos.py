@@ -10,8 +10,7 @@ the limit, next to zeros included.
 
 from __future__ import annotations
 
-from substructures.compile.assembler import AssemblyWriter
-from substructures.compile.emission import literal
+from substructures.compile.assembler import AssemblyWriter, literal
 
 #: beyond this (and for infinities and NaN) the C library answers, lane by lane
 LIMIT = 2.0**17

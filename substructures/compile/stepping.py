@@ -9,8 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from substructures.compile.assembler import AssemblyWriter
-from substructures.compile.emission import attributes, literal
+from substructures.compile.assembler import AssemblyWriter, attributes, literal
 from substructures.compile.pressing import pressing
 from substructures.compile.runtime import CONTEXT
 from substructures.compile.saddle import saddle_point
