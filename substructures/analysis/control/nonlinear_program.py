@@ -183,7 +183,7 @@ class ShootingProgram:
         shooting, nodes = self.shooting_at(z), np.arange(self.S + 1)
         u = controls[np.minimum(nodes, self.problem.nodes - 1)]
         t = self.problem.t + nodes / self.S * shooting.problem.horizon
-        value, by = path.at(shooting, np.concatenate([starts, run.end[-1:]]), u, t)
+        value, by = path.at(shooting.values, np.concatenate([starts, run.end[-1:]]), u, t)
         slopes = np.zeros((self.S + 1, len(path.texts), len(z)))
         for k in nodes:
             self._by_node(slopes[k], by[k], int(k), slope)
@@ -220,7 +220,9 @@ class ShootingProgram:
         if path is None:
             return
         z = self.guess()
-        value, by = path.at(self.shooting_at(z), self.first[None], self.parts(z)[1][:1], np.full(1, self.problem.t))
+        value, by = path.at(
+            self.shooting_at(z).values, self.first[None], self.parts(z)[1][:1], np.full(1, self.problem.t)
+        )
         if by[0, :, self.size :].any():
             return
         self._first_free = 1

@@ -15,7 +15,7 @@ import numpy as np
 
 from substructures.analysis.arguments import real
 from substructures.analysis.control.problem import declared
-from substructures.analysis.control.shooting import Shooting
+from substructures.analysis.motion.conditions import state_names
 from substructures.array import Array
 from substructures.compile import compile_program
 from substructures.documents import escape
@@ -40,7 +40,8 @@ class PathLimits:
     def __init__(self, model: Model, limits: Limits, controls: Sequence[str], varied: Sequence[str]) -> None:
         self.texts = tuple(limits)
         self.low, self.high = limits_of(limits, "path")
-        names = [*model.positions, *(f"{name}'" for name in model.coordinates), *controls, *varied]
+        self._states, self._controls = state_names(model), list(controls)
+        names = [*self._states, *controls, *varied]
         scope = Scope(Graph())
         declared(
             model, scope, {s.name: s for s in (*derived(model, "inverse_dynamics").symbols, *model.program.symbols)}
@@ -55,11 +56,14 @@ class PathLimits:
         }
         self._compiled = compile_program(program(scope.graph, outputs, scope.symbols), ("value", "slope"))
 
-    def at(self, shooting: Shooting, states: Array, controls: Array, t: Array) -> tuple[Array, Array]:
-        """Values (K, k) and slopes (K, k, 2 n + m + r) at states (K, 2 n) under controls (K, m) at times (K,)."""
-        columns = [(shooting.state_names, states), (shooting.equations.controls, controls)]
+    def at(self, values: Mapping[str, float], states: Array, controls: Array, t: Array) -> tuple[Array, Array]:
+        """Values (K, k) and slopes (K, k, 2 n + m + r) at states (K, 2 n) under controls (K, m) at times (K,).
+
+        ``values``: of all other symbols.
+        """
+        columns = [(self._states, states), (self._controls, controls)]
         with np.errstate(all="ignore"):
-            found = self._compiled.evaluate({**shooting.values, "t": t}, columns=columns)
+            found = self._compiled.evaluate({**values, "t": t}, columns=columns)
         count = len(t)
         return tuple(np.broadcast_to(found[name], (count, *found[name].shape[1:])) for name in ("value", "slope"))  # type: ignore[return-value]
 

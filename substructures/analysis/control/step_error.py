@@ -46,7 +46,7 @@ def motion_checks(
 def _kept(finer: Shooting, two: Rollout, path: PathLimits, limit: float) -> Iterator[Check]:
     """Each expression stays within its limits, up to a part of the largest number of both."""
     t = np.asarray(finer.problem.t + finer.h * np.arange(len(two.states)), dtype=np.float64)
-    value, _ = path.at(finer, two.states, finer.controls_at_steps(two.controls), t)
+    value, _ = path.at(finer.values, two.states, finer.controls_at_steps(two.controls), t)
     outside = path.excess(value)
     for i, text in enumerate(path.texts):
         sizes = [float(np.abs(value[:, i]).max(initial=0)), *(abs(x) for x in (path.low[i], path.high[i]))]
