@@ -50,6 +50,14 @@ class ReactionModel(OfParts):
         return self if joints is None else _chosen(_ByDigest(self), read_joints(joints, self.rows))
 
 
+class PowerModel(OfParts):
+    """Powers of a tree. ``program``: the output ``powers`` (rows,) [W], functions of t, q, q', inputs and parameters;
+    ``rows``: what each is of.
+    """
+
+    axis = "loads"
+
+
 @dataclass(frozen=True)
 class _ByDigest:
     """A model of reactions as a key."""

@@ -19,7 +19,7 @@ from substructures.part.forces.load_forces import load_forces, wrench_counts
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.of_parts import formed
-from substructures.quantities.part_models import OfParts
+from substructures.quantities.part_models import PowerModel
 from substructures.tree.assembly import Assembly
 from substructures.tree.coupling import couple_parts
 from substructures.tree.document import TreeSpec
@@ -30,14 +30,6 @@ from substructures.tree.mounted_part import PlacedPart
 
 #: (row, Q_a by index in the tree)
 Row = tuple[str, Mapping[int, Any]]
-
-
-class PowerModel(OfParts):
-    """Powers of a tree. ``program``: the output ``powers`` (rows,) [W], functions of t, q, q', inputs and parameters;
-    ``rows``: what each is of.
-    """
-
-    axis = "loads"
 
 
 def powers(spec: TreeSpec, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> PowerModel:

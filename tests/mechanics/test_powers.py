@@ -21,7 +21,8 @@ from substructures.part.forces import load_forces as by_load
 from substructures.quantities import powers as module
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.result import Evaluation
-from substructures.quantities.powers import PowerModel, powers
+from substructures.quantities.part_models import PowerModel
+from substructures.quantities.powers import powers
 from substructures.quantities.sources import Sources
 
 Plain = dict[str, Any]

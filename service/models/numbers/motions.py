@@ -20,8 +20,7 @@ from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.parameter_sensitivity import sensitivities
 from substructures.analysis.simulate import simulate
 from substructures.errors import Fault, InvalidArgument
-from substructures.quantities.part_models import ReactionModel, read_joints
-from substructures.quantities.powers import PowerModel
+from substructures.quantities.part_models import PowerModel, ReactionModel, read_joints
 from substructures.quantities.quantity import POWERS, REACTIONS
 
 #: fields of motions that are not differentiated

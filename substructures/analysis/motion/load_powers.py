@@ -29,7 +29,7 @@ from substructures.expr.program import Formulas, Program
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import kept
 from substructures.quantities.numbers.workspace import Workspace
-from substructures.quantities.powers import PowerModel
+from substructures.quantities.part_models import PowerModel
 from substructures.tree.model import Model
 
 RATE, DRIVES = "kinetic_energy_rate", "drive_powers"

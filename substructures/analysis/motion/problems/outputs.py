@@ -8,8 +8,7 @@ from dataclasses import dataclass, field
 from substructures.analysis.arguments import NumberOrExpression, by_name, values_of
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid
-from substructures.quantities.part_models import ReactionModel
-from substructures.quantities.powers import PowerModel
+from substructures.quantities.part_models import PowerModel, ReactionModel
 
 
 @dataclass(frozen=True)
