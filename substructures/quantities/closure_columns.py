@@ -17,10 +17,11 @@ from typing import Any
 import numpy as np
 
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.known import Known
 from substructures.expr.program import Output, Program
 from substructures.mechanics.closure_rows import RowBounds
 from substructures.mechanics.cut_joints import TURNS
-from substructures.quantities.numbers.memo import Known, known_model
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import Model
 
 OUTPUTS = ("U", "Omega", "position")

@@ -9,6 +9,7 @@ from typing import Any, ClassVar
 
 from substructures.errors import InvalidArgument, meant
 from substructures.expr.graph import Graph
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
 
@@ -47,7 +48,9 @@ class ReactionModel(OfParts):
 
     def of(self, joints: Sequence[str] | None) -> ReactionModel:
         """Of some rows alone. Raises InvalidArgument (``/joints/i``, ``unknown-joint``)."""
-        return self if joints is None else _chosen(_ByDigest(self), read_joints(joints, self.rows))
+        if joints is None:
+            return self
+        return _chosen(Known(f"{self.program.digest} {self.rows}", self), read_joints(joints, self.rows))
 
 
 class PowerModel(OfParts):
@@ -56,17 +59,6 @@ class PowerModel(OfParts):
     """
 
     axis = "loads"
-
-
-@dataclass(frozen=True)
-class _ByDigest:
-    """A model of reactions as a key."""
-
-    model: ReactionModel = field(compare=False)
-    digest: str = field(init=False)
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "digest", f"{self.model.program.digest} {self.model.rows}")
 
 
 def read_joints(joints: Sequence[str] | str, rows: Sequence[str], place: str = "/joints") -> tuple[str, ...]:
@@ -83,13 +75,13 @@ def read_joints(joints: Sequence[str] | str, rows: Sequence[str], place: str = "
 
 
 @lru_cache(64)
-def _chosen(known: _ByDigest, joints: tuple[str, ...]) -> ReactionModel:
-    source = known.model.program
-    place = {known.model.rows.index(name): k for k, name in enumerate(joints)}
+def _chosen(known: Known, joints: tuple[str, ...]) -> ReactionModel:
+    model: ReactionModel = known.source
+    source, place = model.program, {model.rows.index(name): k for k, name in enumerate(joints)}
     graph = Graph()
     found = {
         name: Formulas((len(joints), 3), {(place[k], i): x for (k, i), x in all_rows.entries.items() if k in place})
         for name, all_rows in replay(source, graph, {}).items()
     }
     chosen = program(graph, found, {symbol.name: symbol for symbol in source.symbols})
-    return ReactionModel(chosen, joints, known.model.parameters)
+    return ReactionModel(chosen, joints, model.parameters)

@@ -17,6 +17,7 @@ from flint import arb, ctx
 from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, steps_of, value
+from substructures.expr.known import Known
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Definition
@@ -64,34 +65,28 @@ def _names_of(values: _Values, prefix: str, names: Iterable[str]) -> dict[str, A
     return found
 
 
-@dataclass(frozen=True)
-class _Known:
-    """A definition by its digest."""
-
-    digest: str
-    definition: Definition = field(compare=False)
-
-    def names(self, read: Callable[..., Any], names: Iterable[str]) -> dict[str, Any]:
-        """Values of its parameters by default."""
-        given = self.definition.parameters.items()
-        texts = {name: in_si(each.value) for name, each in given if each.value is not None}
-        return _names_of(_Values(texts, {}, read), "", names)
+def _defaults(definition: Definition, read: Callable[..., Any], names: Iterable[str]) -> dict[str, Any]:
+    """Values of its parameters by default."""
+    texts = {name: in_si(each.value) for name, each in definition.parameters.items() if each.value is not None}
+    return _names_of(_Values(texts, {}, read), "", names)
 
 
 @lru_cache(maxsize=KEPT)
-def _at_defaults(known: _Known) -> tuple[tuple[str, Sequence[tuple[str, str]]], ...]:
+def _at_defaults(known: Known) -> tuple[tuple[str, Sequence[tuple[str, str]]], ...]:
     """Code and message of what its bodies cannot have, where no parameter is given."""
-    names = known.names(value, known.definition.parameters)
-    found = [(body.name, *faults_of(body, names, 0)) for body in known.definition.bodies]
+    definition: Definition = known.source
+    names = _defaults(definition, value, definition.parameters)
+    found = [(body.name, *faults_of(body, names, 0)) for body in definition.bodies]
     tensors = iter(impossible([tensor for *_, tensor in found if tensor is not None], 0))
     told = ((body, (*faults, *(() if tensor is None else next(tensors)))) for body, faults, tensor in found)
     return tuple((body, faults) for body, faults in told if faults)
 
 
 @lru_cache(maxsize=KEPT)
-def _mass_at_defaults(known: _Known) -> Any:
-    names = known.names(ball, _in_masses(known.definition))
-    return ball_sum((body.mass, names) for body in known.definition.bodies)
+def _mass_at_defaults(known: Known) -> Any:
+    definition: Definition = known.source
+    names = _defaults(definition, ball, _in_masses(definition))
+    return ball_sum((body.mass, names) for body in definition.bodies)
 
 
 def _in_masses(definition: Definition) -> set[str]:
@@ -126,7 +121,7 @@ class Plausibility:
                 names = _names_of(values, f"{instance.name}.", _in_masses(definition))
                 mass = ball_sum((body.mass, names) for body in definition.bodies)
             else:
-                mass = _mass_at_defaults(_Known(definition.digest, definition))
+                mass = _mass_at_defaults(Known(definition.digest, definition))
             if mass is None:
                 return None
             with ctx.workprec(PRECISION):
@@ -165,7 +160,7 @@ class Plausibility:
         for i, instance in enumerate(self.spec.instances):
             definition, told = self.definitions[instance.name], f"instance '{instance.name}', body"
             if not given and not instance.parameters:
-                known = _at_defaults(_Known(definition.digest, definition))
+                known = _at_defaults(Known(definition.digest, definition))
                 found += [(f"/instances/{i}", f"{told} '{body}'", faults, None) for body, faults in known]
                 continue
             names = _names_of(values, f"{instance.name}.", definition.parameters)

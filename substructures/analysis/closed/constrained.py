@@ -24,7 +24,6 @@ from substructures.analysis.arguments import NumberOrExpression
 from substructures.analysis.closed.pivoting import pivoted, singular_values
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
-from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import read_conditions, state_names
 from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integrators.zeros import Watch
@@ -38,6 +37,7 @@ from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates, SaddlePoint
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.program import Program
 from substructures.mechanics.accelerations import CLOSED
 from substructures.mechanics.closure_rows import RowBounds, rank_of, row_sizes

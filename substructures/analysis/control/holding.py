@@ -9,7 +9,6 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.constrained_formulas import (
     ConstrainedFormulas,
     rows_expected,
@@ -19,7 +18,9 @@ from substructures.array import Array
 from substructures.certificate.derived.adjoint import Held
 from substructures.errors import InvalidDocument
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array, program
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.cuts import require_open
 from substructures.tree.model import Model
 

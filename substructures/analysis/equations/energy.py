@@ -9,13 +9,14 @@ from typing import Literal
 import numpy as np
 
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.expr.calculus.corners import VanishingOnAllSides, corners, inner, on_side
 from substructures.expr.differentiate import directional, gradient, in_directions
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array, program
 from substructures.expr.walk import reachable, transfer
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.given.ties import names_of
 from substructures.tree.model import Model
 

@@ -24,7 +24,6 @@ from substructures.analysis.equations.free_motion import FreeMotion, kept_axes
 from substructures.analysis.equations.generators import Generators
 from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.equations.subsystems import subsystems
@@ -35,10 +34,12 @@ from substructures.expr.calculus.corners import VanishingOnAllSides, corners
 from substructures.expr.differentiate import directional
 from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
+from substructures.quantities.numbers.memo import known_model
 from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import KINEMATICS, Model
 

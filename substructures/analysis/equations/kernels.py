@@ -12,10 +12,8 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.known import Known
 from substructures.expr.program import Program
-from substructures.quantities.numbers.memo import Known, known_model
-
-__all__ = ["Known", "evaluated", "known_model", "program_kernel"]
 
 #: seconds: of the interpreter for an operation, and for its value at a state; of the compiler for a program, and for an
 #: operation. Their ratios count

@@ -23,17 +23,18 @@ from functools import lru_cache
 from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import ModelFormulas, inputs_of, multipliers_of
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.given import require_known
 from substructures.certificate.derived.perturbed import first_order, perturbed
 from substructures.errors import Fault, InvalidDocument
 from substructures.expr.differentiate import directional, gradient, in_directions
 from substructures.expr.garbage import without_collections
 from substructures.expr.graph import Expr
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
 from substructures.quantities.derivatives import inverse_dynamics_jacobians
+from substructures.quantities.numbers.memo import known_model
 from substructures.quantities.numbers.workspace import ID, vector
 from substructures.tree.cuts import require_open
 from substructures.tree.document import require_undriven

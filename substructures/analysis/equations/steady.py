@@ -18,15 +18,16 @@ from collections.abc import Sequence
 from functools import lru_cache
 
 from substructures.analysis.equations.formulas import ModelFormulas, multipliers_of
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.certificate.derived.perturbed import steady
 from substructures.errors import InvalidArgument
 from substructures.expr.calculus.corners import VanishingOnAllSides
 from substructures.expr.differentiate import directional, gradient
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array, program
 from substructures.expr.walk import transfer
 from substructures.quantities.certificate import certified
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import Model
 
 

@@ -20,7 +20,6 @@ import numpy as np
 
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
 from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
@@ -51,6 +50,7 @@ from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.errors import InvalidArgument
 from substructures.expr.garbage import without_collections
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.limits import reached

@@ -15,12 +15,12 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program
 from substructures.expr.calculus.corners import corners, inner, on_side
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.known import Known
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, Program, array, program
 from substructures.expr.replay import replay

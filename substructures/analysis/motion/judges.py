@@ -12,13 +12,15 @@ import numpy as np
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals, Integral
-from substructures.analysis.equations.kernels import Known, evaluated, known_model, program_kernel
+from substructures.analysis.equations.kernels import evaluated, program_kernel
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.program import Program, program
 from substructures.expr.replay import replay
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import Model
 from substructures.tree.numbers import with_numbers
 

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.equations.kernels import Known, evaluated, known_model
+from substructures.analysis.equations.kernels import evaluated
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.friction.dry_friction import friction_laws
 from substructures.analysis.motion.friction.transmitted import accelerations, has_not_begun, state_values
@@ -25,9 +25,11 @@ from substructures.array import Array
 from substructures.certificate.derived.powers import OUTPUT
 from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, Program
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import kept
+from substructures.quantities.numbers.memo import known_model
 from substructures.quantities.numbers.workspace import Workspace
 from substructures.quantities.part_models import PowerModel
 from substructures.tree.model import Model

@@ -13,7 +13,6 @@ from pathlib import Path
 import numpy as np
 
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.analysis.equations.kernels import Known
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integrators.zeros import Watch
@@ -24,6 +23,7 @@ from substructures.compile import Kernel, compile_program
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates
 from substructures.expr.garbage import without_collections
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array
 from substructures.quantities.certificate import certified
 from substructures.tree.model import Model

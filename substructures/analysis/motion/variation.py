@@ -15,7 +15,7 @@ import numpy as np
 import scipy
 
 from substructures.analysis.equations.formulas import ModelFormulas, require_tree
-from substructures.analysis.equations.kernels import Known, program_kernel
+from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.nonholonomic.solved import RATES, RATES_VARIATION, VARIATION
 from substructures.analysis.equations.nonholonomic.solved import varied as varied_constrained
@@ -25,6 +25,7 @@ from substructures.array import Array
 from substructures.certificate.derived.perturbed import varied
 from substructures.expr.differentiate import directional
 from substructures.expr.interpret import interpret_in_blocks
+from substructures.expr.known import Known
 from substructures.expr.program import Program, program
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.quaternions import by_displacements

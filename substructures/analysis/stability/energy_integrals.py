@@ -18,14 +18,15 @@ import numpy as np
 import scipy
 
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.motion.conditions import state_names
 from substructures.array import Array
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.program import Program, Symbol, array, program
 from substructures.expr.replay import replay
+from substructures.quantities.numbers.memo import known_model
 from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.tree.model import Model
 

@@ -4,23 +4,14 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable
-from dataclasses import dataclass, field
 from threading import Lock
-from typing import Any
 
+from substructures.expr.known import Known
 from substructures.expr.program import Program
 from substructures.tree.model import Model
 
 #: operations of the programs that are kept in a process
 CAPACITY = 300_000
-
-
-@dataclass(frozen=True)
-class Known:
-    """Something with a digest, as key of a cache: equal when the digests are."""
-
-    digest: str
-    source: Any = field(compare=False)
 
 
 def known_model(model: Model) -> Known:

@@ -11,16 +11,17 @@ from __future__ import annotations
 from functools import lru_cache
 
 from substructures.analysis.equations.formulas import inputs_of
-from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.certificate.derived.perturbed import constrained
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified
+from substructures.quantities.numbers.memo import known_model
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 

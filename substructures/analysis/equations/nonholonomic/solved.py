@@ -28,7 +28,6 @@ from substructures.analysis.arguments import NumberOrExpression, exact
 from substructures.analysis.equations.elimination import MetricElimination
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.formulas import inputs_of
-from substructures.analysis.equations.kernels import Known
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.given import require_known
@@ -36,6 +35,7 @@ from substructures.certificate.derived import quasi_motion
 from substructures.certificate.derived.model_formulas import Expectation
 from substructures.expr.differentiate import directional, gradient
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.known import Known
 from substructures.expr.program import Formulas, Program, Symbol, array, program
 from substructures.expr.replay import replay
 from substructures.quantities.certificate import certified

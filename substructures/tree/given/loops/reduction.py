@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
 from functools import lru_cache
 from itertools import combinations_with_replacement
 from typing import Any
@@ -20,6 +19,7 @@ from typing import Any
 from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
+from substructures.expr.known import Known
 from substructures.expr.operations import Symbol
 from substructures.expr.program import array, program
 from substructures.expr.trigonometry import cos, sin
@@ -41,15 +41,6 @@ SAME = 1e-6
 MEETING = 1e-7
 
 
-@dataclass(frozen=True)
-class _Known:
-    """A part by what tells it from others."""
-
-    definition: str
-    program: str
-    part: Part = field(compare=False)
-
-
 def dependent(part: Part) -> Dependent | str:
     """What coordinates of a part depend on, where it names independent ones; or why there are no formulas of it.
 
@@ -57,13 +48,13 @@ def dependent(part: Part) -> Dependent | str:
     >>> dependent(derive("delta-robot")).loops
     {('bars1', 'bars2', 'bars3'): ('x', 'y', 'z')}
     """
-    return _dependent(_Known(part.definition.digest, part.program.digest, part))
+    return _dependent(Known(f"{part.definition.digest} {part.program.digest}", part))
 
 
 @lru_cache(maxsize=256)
-def _dependent(known: _Known) -> Dependent | str:
+def _dependent(known: Known) -> Dependent | str:
     try:
-        return _Solver(known.part).solve()
+        return _Solver(known.source).solve()
     except NotReduced as why:
         return str(why)
     except (ZeroDivisionError, ValueError):
