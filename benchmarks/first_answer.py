@@ -24,7 +24,7 @@ from substructures import Definition, Model, Part, TreeSpec, catalogue, couple, 
 from substructures.compile import Kernel, compile_program
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.from_parts import NumericTree
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.part_kernels import CompiledParts
 
 NAMES = ("forces", "metric")

@@ -14,7 +14,7 @@ from benchmarks.derive import humanoid
 from benchmarks.peers import Peer
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.compile import Kernel, compile_program
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.tree.model import Model
 
 Array = Any

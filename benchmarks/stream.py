@@ -15,7 +15,7 @@ import numpy as np
 
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 
 STATES, BATCH = 10_000_000, 10_000
 

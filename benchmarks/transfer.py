@@ -21,7 +21,7 @@ from zlib_ng.zlib_ng import crc32
 
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 
 
 def receive(connection: socket.socket, buffer: memoryview) -> bool:

@@ -11,7 +11,7 @@ from made_once import coupled_once
 from random_trees import Kind, Plain, model_of, random_definition, with_parameters
 
 from substructures import Definition, Model, TreeSpec, catalogue, couple, derive
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_numbers
 
 KINDS = [Kind(3, massive=True), Kind(4, massive=True, joints=("revolute", "prismatic", "fixed"), springs=2)]
 FINE: Plain = {"relative_tolerance": 1e-13, "absolute_tolerance": 1e-14}
@@ -51,7 +51,7 @@ def random_model(number: int, **changes: Any) -> Model:
 
 def defaults(model: Model) -> dict[str, float]:
     """Default values of all parameters."""
-    return {name: default_number(p["value"]) for name, p in model.parameters.items() if p["value"] is not None}
+    return default_numbers(model.parameters)
 
 
 def values_at(model: Model, q: Any, qd: Any, **more: Any) -> dict[str, Any]:

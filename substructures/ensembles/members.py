@@ -28,7 +28,8 @@ from substructures.ensembles.constrained import constrained_start, full_states, 
 from substructures.ensembles.lanes import Places
 from substructures.errors import InvalidArgument
 from substructures.expr.program import Program
-from substructures.quantities.numbers.states import StateInput, given_values, read_states, with_input_defaults
+from substructures.quantities.numbers.defaults import with_input_defaults
+from substructures.quantities.numbers.states import StateInput, given_values, read_states
 from substructures.tree.model import Model
 
 #: output of equations with ball joints
@@ -98,7 +99,7 @@ def read_members(
     """
     require_moving(model, "ensembles")
     kind = usual_kind(model, None if isinstance(kind, TreeMotion) else kind)
-    given = with_input_defaults(model, inputs)
+    given = with_input_defaults(model.inputs, inputs)
     _require_no_tables(given)
     numbers = {name: x for name, x in given.items() if not isinstance(x, str)}
     # one q stands for as many states as there are quasi-velocities

@@ -13,7 +13,7 @@ from substructures.export.interface import TIME, Interface, Vector, has_time
 from substructures.mechanics.state_names import BallRow, ball_rows, effort_units, positions_of, state_units
 from substructures.part.parameters import described_inputs
 from substructures.part.part import Part
-from substructures.quantities.numbers.states import default_number, input_defaults
+from substructures.quantities.numbers.defaults import default_number, input_defaults
 from substructures.tree.model import Model
 
 _PRIMES = {"q": "", "qd": "'", "qdd": "''"}
@@ -24,7 +24,7 @@ def interface_of_model(model: Model, reference: str = "", digest: str = "") -> I
     efforts = [name for name in model.units if name.startswith("tau.")]
     inputs = [*sorted(frozenset(model.inputs).difference(efforts)), *efforts]
     states = _states(model.coordinates, model.joints, model.balls)
-    vectors = states | _others(model.parameters, inputs, model.units, input_defaults(model))
+    vectors = states | _others(model.parameters, inputs, model.units, input_defaults(model.inputs))
     always = ("t", "u") if model.driven else ()
     return Interface(
         vectors, reference, digest or model.program.digest, model.frames, always, has_time(model.program.symbols)

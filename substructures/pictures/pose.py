@@ -12,8 +12,8 @@ from substructures.array import Array
 from substructures.mechanics.state_names import resting_state
 from substructures.part.part import Part
 from substructures.part.poses import HOME, posed
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import default_number
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model
 

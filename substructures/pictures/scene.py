@@ -18,7 +18,7 @@ from substructures.part.part import Part
 from substructures.part.poses import HOME
 from substructures.part.topology import BASE
 from substructures.pictures.pose import kinematics, poses
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.tree.assembly import Assembly, assemble
 from substructures.tree.document import TreeSpec
 from substructures.tree.model import Model

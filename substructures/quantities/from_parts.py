@@ -24,7 +24,7 @@ from substructures.mechanics.linear3 import Scalar
 from substructures.part.outputs import PartOutputs, Run, over_formulas
 from substructures.part.part import Part
 from substructures.quantities.numbers.array_scalars import Lanes, Supports, is_array, lanes, plain
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.part_kernels import PartEvaluator, Scalars
 from substructures.tree.assembly import assemble
 from substructures.tree.coupling import couple_parts

@@ -16,7 +16,7 @@ from substructures.mechanics.accelerations import CLOSED
 from substructures.part.part import MAX_NODES, Part
 from substructures.quantities.derivatives import SingularMetric
 from substructures.quantities.formulas import CLOSED_DYNAMICS, DYNAMICS, kept
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.quantity import (
     CONDITION,
     DEPENDENT,

@@ -19,8 +19,8 @@ from substructures.documents import write_json
 from substructures.errors import InvalidDocument, InvalidInput
 from substructures.expr.program import Program
 from substructures.part.part import MAX_NODES, Part
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import interpreted
-from substructures.quantities.numbers.states import default_number
 from substructures.quantities.sources import Sources, of_parts
 from substructures.tree.couple import couple_formulas
 from substructures.tree.document import TreeSpec, read_instance

@@ -18,7 +18,7 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.analysis.identification.grouped import grouped_model
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.regressor import regressor
 
 pin: Any = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")

@@ -22,7 +22,7 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.consistent import consistent_inertia
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.regressor import RegressorModel, regressor
 
 DOWN = (0, -9.81, 0)

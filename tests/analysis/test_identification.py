@@ -18,8 +18,8 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
 
 from .identified_motions import IN_PLANE, UP, base_of, motion, tree

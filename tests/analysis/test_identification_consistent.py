@@ -17,8 +17,8 @@ from substructures.analysis.identification.fit import identify
 from substructures.analysis.identification.new_versions import new_versions
 from substructures.array import Array
 from substructures.expr.interpret import interpret
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.regressor import RegressorModel, regressor
 
 from .identified_motions import IN_PLANE, base_of, motion, tree

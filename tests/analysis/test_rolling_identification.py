@@ -20,7 +20,7 @@ from substructures.analysis.identification import on_constraints
 from substructures.analysis.identification.base_parameters import BaseParameters, base_parameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.regressor import RegressorModel, regressor
 
 R, HALF = 0.1, 0.2

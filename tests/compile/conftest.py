@@ -13,7 +13,7 @@ from catalogue_entries import shipped_part
 from substructures import TreeSpec, couple
 from substructures.expr.interpret import constant, interpret
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.tree.model import Model
 
 Array = Any

@@ -16,7 +16,7 @@ from related import joints_of, reduction
 
 from substructures import catalogue
 from substructures.compile import compile_program
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.tree.model import Model
 
 pin = pytest.importorskip("pinocchio", reason="Pinocchio is in the test extra (not on Windows)")

@@ -46,7 +46,7 @@ from pathlib import Path
 import numpy as np
 from substructures import Definition, TreeSpec, catalogue, couple, derive
 from substructures.compile import compile_program
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 
 instances = [{"name": "x", "substructure": "ur5", "at": "world"}]
 spec = TreeSpec.read({"name": "t", "gravity": [0, 0, "-9.81"], "instances": instances})

@@ -23,8 +23,8 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.replay import replay
 from substructures.quantities.formulas import derived
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import default_number
 from substructures.quantities.regressor import RegressorModel, regressor
 from substructures.quantities.sources import Sources
 

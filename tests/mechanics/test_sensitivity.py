@@ -15,8 +15,8 @@ from substructures.expr.interpret import interpret
 from substructures.mechanics.accelerations import cholesky_solve
 from substructures.quantities.derivative_directions import Direction
 from substructures.quantities.derivatives import inverse_dynamics_derivative, inverse_dynamics_jacobians
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate
-from substructures.quantities.numbers.states import default_number
 
 N = 2
 #: of central differences of fourth order; their error is about STEP^4 and 1e-16 / STEP

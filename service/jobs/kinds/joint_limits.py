@@ -11,7 +11,7 @@ from substructures.documents import read_json
 from substructures.errors import InvalidDocument
 from substructures.part.definition import Definition
 from substructures.part.topology import JointEntry, topology
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number
 from substructures.tree.document import Instance, TreeSpec
 from substructures.tree.plausibility import Plausibility
 

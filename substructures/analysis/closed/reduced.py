@@ -32,8 +32,8 @@ from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, among, listed
 from substructures.mechanics.accelerations import condition
 from substructures.mechanics.closure_rows import rank_of
+from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.numbers.states import default_number
 from substructures.tree.document import require_ungiven
 from substructures.tree.model import Model
 

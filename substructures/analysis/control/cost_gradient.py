@@ -25,8 +25,8 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict
 from substructures.array import Array
+from substructures.quantities.numbers.defaults import input_defaults
 from substructures.quantities.numbers.quaternions import by_displacements
-from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import Model
 
 FAILED = (
@@ -101,7 +101,7 @@ def cost_gradient(
     """
     require_solvable(model, problem)
     require_known("vary", "parameter", vary, model.parameters)
-    own = {name: x for name, x in input_defaults(model).items() if name in problem.controls}
+    own = {name: x for name, x in input_defaults(model.inputs).items() if name in problem.controls}
     return _gradient(model, problem, {**own, **(values or {})}, tuple(vary), positive(error_limit, "error_limit"))
 
 

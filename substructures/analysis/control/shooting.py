@@ -38,7 +38,8 @@ from substructures.compile import compile_program
 from substructures.errors import MissingValue
 from substructures.mechanics.accelerations import saddle_solve
 from substructures.mechanics.state_names import resting_state
-from substructures.quantities.numbers.states import read_states, symbol_values, with_input_defaults
+from substructures.quantities.numbers.defaults import with_input_defaults
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: c_i = a_(i, i-1) and b_i of the scheme
@@ -264,7 +265,7 @@ class Shooting:
 
 def _constants(model: Model, problem: ControlProblem, equations: AdjointEquations) -> dict[str, Any]:
     """Parameters and the inputs that are not controlled. Raises MissingValue."""
-    inputs = with_input_defaults(model, problem.inputs or {})
+    inputs = with_input_defaults(model.inputs, problem.inputs or {})
     given = {"q": resting_state(model.positions, model.balls), "parameters": problem.parameters}
     known = symbol_values(model, given, read_states(model, given, None), ())
     values = {name: float(known[name]) for name in model.parameters if name in known}

@@ -39,8 +39,8 @@ from substructures.expr.program import Formulas, array, program
 from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
+from substructures.quantities.numbers.defaults import input_defaults
 from substructures.quantities.numbers.memo import known_model
-from substructures.quantities.numbers.states import input_defaults
 from substructures.tree.model import KINEMATICS, Model
 
 Names = frozenset[str]
@@ -78,7 +78,7 @@ def first_integrals(
 
 def acting_inputs(model: Model) -> list[str]:
     """The inputs that act where none is given: those with a default that is not 0."""
-    return [name for name, value in input_defaults(model).items() if value]
+    return [name for name, value in input_defaults(model.inputs).items() if value]
 
 
 @lru_cache(maxsize=32)

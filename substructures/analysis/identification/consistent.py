@@ -31,7 +31,7 @@ from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.regressor import RegressorModel
 
 #: by what the squares (1 is one standard deviation) may still fall, and part of a base parameter that counts as known

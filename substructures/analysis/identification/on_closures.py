@@ -28,7 +28,7 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.mechanics.accelerations import CLOSED
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.tree.model import Model
 
 #: relative part of a column that others do not explain and that counts as zero, of coefficients as well

@@ -26,7 +26,7 @@ from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program, Symbol, array, program
 from substructures.expr.replay import replay
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.tree.model import Model
 
 #: of a motion that leads to a random state (Runge and Kutta)

@@ -19,7 +19,7 @@ from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.expr.units.dimensions import DimensionError, Inference
 from substructures.expr.units.unit_check import dimension_of, steps_of
-from substructures.quantities.numbers.states import default_numbers
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.tree.model import Model
 
 Stability = Literal["stable", "unstable", "neutral", "unknown"]

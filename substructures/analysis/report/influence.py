@@ -15,7 +15,8 @@ from substructures.analysis.stability.vibrations import modes
 from substructures.array import Array
 from substructures.errors import InvalidInput, MissingValue, listed
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.numbers.states import default_numbers, input_defaults, read_states, symbol_values
+from substructures.quantities.numbers.defaults import default_numbers, input_defaults
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: by which part of their default parameters are changed, and changes of a result that count as none
@@ -140,7 +141,7 @@ def _over_states(model: Model, varied: Varied) -> Iterator[_Result]:
     """The largest diagonal element of the metric, and the range of the potential energy, over the same states."""
     count = len(next(iter(varied.columns.values())))
     states = read_states(model, {"q": np.tile(sampled(model)[0][:FEW_STATES], (count, 1))}, None)
-    given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(model)}
+    given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(model.inputs)}
     quantities = ["metric", "potential_energy"]
     values = symbol_values(model, given, states, quantities)
     values |= {name: np.repeat(column, FEW_STATES) for name, column in varied.columns.items()}

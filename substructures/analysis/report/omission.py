@@ -12,7 +12,8 @@ from substructures.analysis.report.statements import Figure, Names, Statement, i
 from substructures.array import Array
 from substructures.errors import InvalidInput, MissingValue, listed
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.numbers.states import default_numbers, input_defaults, read_states, symbol_values
+from substructures.quantities.numbers.defaults import default_numbers, input_defaults
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 QUANTITIES = ("metric", "forces")
@@ -35,7 +36,7 @@ class _Sampled:
         q = sampled(self.model)[0][:FEW_STATES]
         qd = np.random.default_rng(SEED).uniform(-1, 1, q.shape)
         states = read_states(self.model, {"q": np.tile(q, (count, 1)), "qd": np.tile(qd, (count, 1))}, None)
-        given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(self.model)}
+        given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(self.model.inputs)}
         values = symbol_values(self.model, given, states, QUANTITIES)
         for name in self.names:
             column = np.array([1.0, *(name not in some for some in sets)])

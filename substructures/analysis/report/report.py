@@ -32,8 +32,8 @@ from substructures.printers.names import short_names
 from substructures.printers.render import LIMIT, readable, renamed
 from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.numbers.limits import joint_limits
-from substructures.quantities.numbers.states import default_numbers
 from substructures.quantities.regressor import RegressorModel
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model

@@ -13,7 +13,8 @@ from substructures.array import Array
 from substructures.errors import listed
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.program import Program
-from substructures.quantities.numbers.states import input_defaults, read_states, symbol_values
+from substructures.quantities.numbers.defaults import input_defaults
+from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 #: places about the worst one in each round of the search, rounds, and how much smaller each is
@@ -94,7 +95,7 @@ def _told(model: Model, names: Names, place: Array, size: Array, address: str) -
 def _metric(model: Model, q: Array) -> Array:
     """(N, n, n) at the default values."""
     states = read_states(model, {"q": q}, None)
-    given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(model)}
+    given = {"t": 0.0, "parameters": {}, "inputs": input_defaults(model.inputs)}
     values = symbol_values(model, given, states, ["metric"])
     with np.errstate(all="ignore"):
         found = interpret_in_blocks(model.program, values, ["metric"], len(q))["metric"]

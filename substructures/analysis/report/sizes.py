@@ -16,8 +16,8 @@ from substructures.array import Array
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program, program
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.numbers.limits import joint_limits
-from substructures.quantities.numbers.states import default_numbers
 from substructures.textbook import Reading, Sum, Term
 from substructures.textbook.forms import to_expr
 from substructures.tree.model import Model

@@ -25,7 +25,7 @@ from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.errors import InvalidDocument
-from substructures.quantities.numbers.states import with_input_defaults
+from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 
@@ -103,7 +103,7 @@ def equilibria(
     Raises InvalidInput (``/starts``, ``/inputs/name``, ...; ``not-smooth`` for forces without derivative,
     ``not-steady`` for given motions that make them vary) and MissingValue. Source: notation.md, section 7.
     """
-    conditions = RestConditions(t, parameters or {}, with_input_defaults(model, inputs or {}))
+    conditions = RestConditions(t, parameters or {}, with_input_defaults(model.inputs, inputs or {}))
     return equilibria_within(model, SearchRange(starts, count, reach, seed), conditions)
 
 

@@ -33,8 +33,9 @@ from substructures.analysis.stability.vibrations import DIRICHLET, ROUTH, first_
 from substructures.array import Array
 from substructures.expr.interpret import interpret, interpret_in_blocks
 from substructures.mechanics.accelerations import cholesky_solve
+from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.quantities.numbers.quaternions import moved_on
-from substructures.quantities.numbers.states import States, read_states, symbol_values, with_input_defaults
+from substructures.quantities.numbers.states import States, read_states, symbol_values
 from substructures.tree.model import Model
 
 DYNAMICS = ("metric", "bias", "forces")
@@ -78,9 +79,8 @@ def linearise(
     (9.81, 'stable')
     """
     require_moving(model)
-    point = OperatingPoint(
-        model, q, qd, qdd, t, parameters or {}, with_input_defaults(model, inputs or {}), outputs or {}, of_inputs
-    )
+    given = with_input_defaults(model.inputs, inputs or {})
+    point = OperatingPoint(model, q, qd, qdd, t, parameters or {}, given, outputs or {}, of_inputs)
     if kind is not None or model.velocity_constraints:
         return linearise_constrained(point, kind or ConstrainedMotion(constraints_of(model)))
     return linearise_closed(point) if model.closures else _linearise_tree(point)

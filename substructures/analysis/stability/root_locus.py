@@ -24,8 +24,9 @@ from substructures.analysis.stability.operating_point import RestConditions
 from substructures.array import Array, ComplexArray
 from substructures.errors import InvalidArgument, among
 from substructures.quantities.measured import numeric
+from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.quantities.numbers.quaternions import by_displacements, with_unit_quaternions
-from substructures.quantities.numbers.states import read_states, with_input_defaults
+from substructures.quantities.numbers.states import read_states
 from substructures.tree.model import Model
 
 #: of a parameter
@@ -79,7 +80,7 @@ def root_locus(
         message = f"{len(at):,} values; 1 to {MAX_VALUES:,} are needed"
         raise InvalidArgument.at("/values", "too-short" if not at else "too-long", message)
     others = numbers(parameters, "parameters")
-    constant = numbers(with_input_defaults(model, inputs or {}), "inputs")
+    constant = numbers(with_input_defaults(model.inputs, inputs or {}), "inputs")
     if parameter not in model.parameters:
         message = f"unknown parameter '{str(parameter)[:80]}'{among(parameter, model.parameters)}"
         raise InvalidArgument.at("/parameter", "unknown-parameter", message)

@@ -59,7 +59,7 @@ from substructures.analysis.stability.vibrations import (
     stability,
 )
 from substructures.array import Array, ComplexArray
-from substructures.quantities.numbers.states import with_input_defaults
+from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.tree.document import require_undriven, require_unignored
 from substructures.tree.model import Model
 
@@ -145,7 +145,7 @@ def steady_motions(
     require_no_precession(precession)
     ends = ends_of(model, vary, between)
     given, field = given_of(rates, momenta, held)
-    constant = numbers(parameters, "parameters"), with_input_defaults(model, inputs or {})
+    constant = numbers(parameters, "parameters"), with_input_defaults(model.inputs, inputs or {})
     asked = SteadyConditions(model, given, field, held, *constant, vary)
     # a coordinate may be free at one end only, where what acts on it is 0
     moving = asked.moving(ends[0] + WITHIN * (ends[-1] - ends[0]))
@@ -173,7 +173,7 @@ def steady_motions(
 def _conditions(
     model: Model, parameters: Mapping[str, float] | None, inputs: Mapping[str, float] | None
 ) -> RestConditions:
-    return RestConditions(0.0, parameters or {}, with_input_defaults(model, inputs or {}))
+    return RestConditions(0.0, parameters or {}, with_input_defaults(model.inputs, inputs or {}))
 
 
 def _linearised(model: Model, about: RestConditions, q: Array, v: Array) -> Linearisation:

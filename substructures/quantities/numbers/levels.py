@@ -10,7 +10,7 @@ from typing import Any
 from substructures.array import Array
 from substructures.errors import listed
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_number, default_numbers
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -41,7 +41,7 @@ def dependent_left(
     names = model.dependent
     if judge is None or not any(name in judge.limits_at_defaults for name in names):
         return []
-    defaults = {n: default_number(p["value"]) for n, p in model.parameters.items() if p["value"] is not None}
+    defaults = default_numbers(model.parameters)
     values: dict[str, Any] = {**defaults, **given, **{name: q[:, i] for i, name in enumerate(model.positions)}}
     needed = model.program.needs(["dependent"])
     if not all(name in values for name in needed):

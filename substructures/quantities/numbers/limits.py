@@ -9,7 +9,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.expr.interpret import interpret
-from substructures.quantities.numbers.states import default_number
+from substructures.quantities.numbers.defaults import default_numbers
 from substructures.tree.model import Model
 
 #: further than this beyond a limit, relative to its size and the range, a coordinate has left it
@@ -60,7 +60,7 @@ def joint_limits(model: Model, parameters: Mapping[str, float] | None = None) ->
     """The limits of all coordinates; ``parameters``: in place of their defaults."""
     low, high, unknown = np.full(model.dof, -np.inf), np.full(model.dof, np.inf), ""
     if model.limited:
-        defaults = {n: default_number(p["value"]) for n, p in model.parameters.items() if p["value"] is not None}
+        defaults = default_numbers(model.parameters)
         values = defaults | dict(parameters or {})
         needed = model.program.needs(["limits"])
         unknown = next((name for name in needed if name not in values), "")

@@ -14,9 +14,9 @@ from substructures.certificate.agreement import not_judged_warnings
 from substructures.compile.kernel import Kernel
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
+from substructures.quantities.numbers.defaults import default_numbers, input_defaults
 from substructures.quantities.numbers.levels import dependent_left, ranges_left
 from substructures.quantities.numbers.result import Evaluation, without_axis
-from substructures.quantities.numbers.states import default_numbers, input_defaults
 from substructures.quantities.numbers.warnings import doubted, value_warnings
 from substructures.quantities.quantity import CONDITION, FORWARD, REACTIONS, TABLE
 from substructures.quantities.sources import PARTS, Sources, read_quantities, steps
@@ -118,7 +118,7 @@ class OneState:
     def _values(self, sources: Sources) -> dict[str, Any]:
         """All symbols; those of the state as arrays that are read in place."""
         model = sources.model
-        values: dict[str, Any] = dict.fromkeys(model.input_names, 0.0) | input_defaults(model)
+        values: dict[str, Any] = dict.fromkeys(model.input_names, 0.0) | input_defaults(model.inputs)
         values |= default_numbers(sources.parameters(self._names))
         for primes, name in (("", "q"), ("'", "qd"), ("''", "qdd")):
             values |= {f"{c}{primes}": self._state[name][a : a + 1] for a, c in enumerate(model.coordinates)}

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
-from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -17,15 +16,13 @@ from numpy.typing import ArrayLike
 
 from substructures.array import Array
 from substructures.documents import escape
-from substructures.documents.fields import in_si
-from substructures.errors import Fault, InvalidArgument, InvalidDocument, MissingValue, among, listed
-from substructures.expr.graph import Graph
-from substructures.expr.interpret import interpret
-from substructures.expr.parse import parse
-from substructures.expr.program import Program, array, program
-from substructures.expr.syntax import ExpressionError
-from substructures.loads.scope import no_names
+from substructures.errors import Fault, InvalidArgument, MissingValue, among, listed
+from substructures.expr.program import Program
 from substructures.quantities.measured import PlaceUnits, numeric, si_values
+from substructures.quantities.numbers.defaults import (
+    default_numbers,
+    input_defaults,
+)
 from substructures.quantities.numbers.quaternions import with_unit_quaternions
 from substructures.tree.model import Model
 
@@ -220,29 +217,13 @@ def known_values(
         # nothing else says how many states there are
         values["t"] = np.broadcast_to(values["t"], (count,))
     inputs = model.input_names
-    values |= dict.fromkeys(inputs, 0.0) | input_defaults(model)
+    values |= dict.fromkeys(inputs, 0.0) | input_defaults(model.inputs)
     values |= default_numbers(parameters) if defaults is None else defaults
     values |= given_values(given.get("inputs"), "inputs", "/inputs", count, inputs, model.units)
     if given.get("parameters") is not None:
         units = {name: str(p.get("unit", "")) for name, p in parameters.items()}
         values |= given_values(given["parameters"], "parameters", "/parameters", count, parameters, units)
     return values
-
-
-def default_numbers(parameters: Mapping[str, Mapping[str, Any]]) -> dict[str, float]:
-    """The default values of parameters that have one, correctly rounded, in SI."""
-    return {name: default_number(p["value"]) for name, p in parameters.items() if p["value"] is not None}
-
-
-def input_defaults(model: Model) -> dict[str, float]:
-    """The defaults of inputs that have one, correctly rounded, in SI; all others are 0 where they are not given."""
-    found = {name: given.get("default") for name, given in model.inputs.items()}
-    return {name: default_number(value) for name, value in found.items() if value is not None}
-
-
-def with_input_defaults(model: Model, given: Any) -> Any:
-    """Inputs by name as they are given, with the defaults of those that are not."""
-    return {**input_defaults(model), **given} if isinstance(given, Mapping) else given
 
 
 def require(program: Program, names: Iterable[str], values: Mapping[str, Any]) -> None:
@@ -282,17 +263,3 @@ def _per_state(values: Array, count: int, pointer: str) -> Array:
         message = f"one number, or one for each of the {count} states is needed, found shape {values.shape}"
         raise InvalidArgument.at(pointer, "wrong-length", message)
     return values
-
-
-@lru_cache(maxsize=10_000)
-def default_number(value: Any) -> float:
-    """A default as a double, in SI: a number, or a constant expression in the grammar."""
-    value = in_si(value)
-    if not isinstance(value, str):
-        return float(value)
-    graph = Graph()
-    try:
-        constant = parse(graph, value, no_names)
-    except ExpressionError as error:
-        raise InvalidDocument.at("", "bad-expression", str(error)) from None
-    return float(interpret(program(graph, {"x": array((), lambda: constant)}, {}), {})["x"])

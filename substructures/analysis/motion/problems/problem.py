@@ -16,7 +16,7 @@ from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.signals import Signal
 from substructures.errors import InvalidArgument
-from substructures.quantities.numbers.states import with_input_defaults
+from substructures.quantities.numbers.defaults import with_input_defaults
 from substructures.tree.model import Model
 
 TAYLOR = "Taylor"
@@ -41,7 +41,7 @@ class Start:
 
     def with_defaults(self, model: Model) -> Start:
         """The same with the inputs that are not given at their defaults."""
-        return replace(self, inputs=with_input_defaults(model, self.inputs))
+        return replace(self, inputs=with_input_defaults(model.inputs, self.inputs))
 
 
 @dataclass(frozen=True)
