@@ -18,7 +18,7 @@ root_locus              ``root_locus``: eigenvalues of an equilibrium over a par
 steady_motions          ``steady_motions``: cyclic coordinates at constant rates, all others still, with their stability
 steady_conditions       what they are asked for: rates or momenta, and what varies
 steady_balls            the same with ball joints, precessions included
-steady_ball_search      how these are found, and what is told of each
+steady_ball_search      how these are found and linearised
 steady_search           how they are found, and what linearises them
 steady_families         families of them over a parameter, a rate or a momentum, and their bifurcations
 continuation            curves F(u) = 0 by pseudo-arclength, and where two cross

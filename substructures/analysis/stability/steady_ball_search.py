@@ -1,4 +1,4 @@
-"""The search for steady motions with ball joints, and what is told of each (see :mod:`.steady_balls`)."""
+"""The search for steady motions with ball joints, and their linearisation (see :mod:`.steady_balls`)."""
 
 from __future__ import annotations
 
@@ -10,12 +10,10 @@ import numpy as np
 
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.precession import Turning
-from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
 from substructures.analysis.stability.equilibrium_search import NEEDS, NOTHING, RESIDUAL, SAME, BallSearch, SearchRange
 from substructures.analysis.stability.linearisation_result import BallLinearisation, Linearisation
 from substructures.analysis.stability.operating_point import RestConditions
-from substructures.analysis.stability.steady_result import BallSteadyMotion
-from substructures.analysis.stability.vibrations import Stability, modes, stability
+from substructures.analysis.stability.vibrations import modes, stability
 from substructures.array import Array
 from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.quaternions import by_displacements, moved_on
@@ -23,7 +21,6 @@ from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.tree.model import Model
 
 Linearised = Callable[[RestConditions, Array, Array], Linearisation]
-CHANGES = "its disturbances do not keep their equations along the motion: there are no modes, and no verdict by them"
 #: of displacements, by which rates are differentiated, and what of a root may be imaginary
 STEP, REAL = 6e-6, 1e-7
 #: what momenta may differ from those that are given, of the largest
@@ -49,7 +46,7 @@ class TurningSearch(BallSearch):
         # of a place, and of those beside it
         self.g, self.L = np.zeros((1 + 2 * n, n, n)), np.zeros((1 + 2 * n, n, 3))
         self.at_q = np.zeros((1 + 2 * n, len(model.positions)))
-        values = _values(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
+        values = values_at(model, conditions, np.array(resting_state(model.positions, model.balls)), np.zeros(n))
         outputs = {"metric": self.g, "angular_momentum": self.L}
         columns = [(list(model.positions), self.at_q), (self.varied[0], np.repeat(self.varied[1], 1 + 2 * n, axis=0))]
         self.more = columns[1][1]
@@ -158,7 +155,7 @@ def places_of(search: TurningSearch) -> list[Array]:
     return search.places(starts, [a for a in range(search.n) if a not in search.resting])[0]
 
 
-def _values(model: Model, conditions: RestConditions, q: Array, v: Array) -> dict[str, float]:
+def values_at(model: Model, conditions: RestConditions, q: Array, v: Array) -> dict[str, float]:
     """Of all symbols."""
     states = read_states(model, {"q": q, "qd": v}, None)
     found = symbol_values(model, vars(conditions), states, NEEDS)
@@ -173,38 +170,3 @@ def linearised_at(search: TurningSearch, q: Array, linearised: Linearised) -> Li
         return at
     told, D = modes(at.M, at.D - at.M @ S, at.K, at.R + S), at.D - at.M @ S
     return replace(at, modes=told, D=D, stability=stability(told, D, at.K, has_potential=False))
-
-
-def described_at(search: TurningSearch, q: Array, turn: float, linearised: Linearised) -> BallSteadyMotion:
-    """With its linearisation."""
-    model, turning = search.model, search.given
-    if turning.axis is not None and turning.field == "rates":
-        turning.wanted[-1] = turn
-    v, S, _, turn = search.motion(q)
-    at, moving = linearised_at(search, q, linearised), list(turning.cyclic)
-    message = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
-    names = tuple(model.coordinates[c] for c in moving)
-    named = model.coordinates, names, model.coordinates
-    about = 0.0 if turning.axis is None else float(search.L[0][:, turning.axis] @ v)
-    judged = _judged(search, q, at.stability)
-    return BallSteadyMotion(
-        *named, q, v[moving], (at.M @ v)[moving], at.M, at.D, at.K, at.qdd + S @ v, at.modes, judged, message,
-        positions=model.positions, v=v, axis="" if turning.axis is None else "xyz"[turning.axis], precession=turn,
-        angular_momentum=about,
-    )  # fmt: skip
-
-
-def _judged(search: TurningSearch, q: Array, judged: Stability | None) -> Stability | None:
-    """By the energy, where eigenvalues leave it open."""
-    model, turning, conditions = search.model, search.given, search.conditions
-    if judged is None or judged.verdict != "undecided" or any(conditions.inputs.values()):
-        return judged
-    v, _, g, turn = search.motion(q)
-    values, moving = _values(model, conditions, q, v), list(turning.cyclic)
-    shifts = shifts_along(model, values, np.vstack((np.eye(model.dof)[moving], *([g] if turn else []))))
-    for k, unit in enumerate(np.eye(len(moving))):
-        # rates turn in the axes of a body that is turned in itself
-        shifts[k, len(model.positions) :] = -turning.spin(unit) @ v
-    zero = [name for name, value in conditions.parameters.items() if not value]
-    reason = bounded_by_integrals(model, values, shifts, zero)
-    return judged if reason is None else Stability("stable", reason)

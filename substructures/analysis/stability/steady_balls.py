@@ -21,22 +21,25 @@ import numpy as np
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.equations.precession import BallRequest
+from substructures.analysis.stability.energy_integrals import bounded_by_integrals, shifts_along
 from substructures.analysis.stability.equilibrium_search import SearchRange
 from substructures.analysis.stability.found_places import confirmed
 from substructures.analysis.stability.operating_point import RestConditions
 from substructures.analysis.stability.steady_ball_search import (
     Linearised,
     TurningSearch,
-    described_at,
     linearised_at,
     places_of,
+    values_at,
 )
 from substructures.analysis.stability.steady_families import DIFFERENCE, NEAR, SINGULAR, FamilySearch
 from substructures.analysis.stability.steady_result import BallSteadyMotion, Bifurcation, SteadyMotions
-from substructures.analysis.stability.vibrations import NEUTRAL
+from substructures.analysis.stability.vibrations import NEUTRAL, Stability
 from substructures.array import Array, ComplexArray
 from substructures.quantities.numbers.quaternions import by_displacements
 from substructures.tree.model import Model
+
+CHANGES = "its disturbances do not keep their equations along the motion: there are no modes, and no verdict by them"
 
 
 def steady_with_balls(
@@ -101,6 +104,41 @@ def _families(
         for one in found.bifurcations
     )
     return some, more, found.messages
+
+
+def described_at(search: TurningSearch, q: Array, turn: float, linearised: Linearised) -> BallSteadyMotion:
+    """A steady motion with its linearisation."""
+    model, turning = search.model, search.given
+    if turning.axis is not None and turning.field == "rates":
+        turning.wanted[-1] = turn
+    v, S, _, turn = search.motion(q)
+    at, moving = linearised_at(search, q, linearised), list(turning.cyclic)
+    message = at.message if at.status == "failed" else "" if at.stability is not None else CHANGES
+    names = tuple(model.coordinates[c] for c in moving)
+    named = model.coordinates, names, model.coordinates
+    about = 0.0 if turning.axis is None else float(search.L[0][:, turning.axis] @ v)
+    judged = _judged(search, q, at.stability)
+    return BallSteadyMotion(
+        *named, q, v[moving], (at.M @ v)[moving], at.M, at.D, at.K, at.qdd + S @ v, at.modes, judged, message,
+        positions=model.positions, v=v, axis="" if turning.axis is None else "xyz"[turning.axis], precession=turn,
+        angular_momentum=about,
+    )  # fmt: skip
+
+
+def _judged(search: TurningSearch, q: Array, judged: Stability | None) -> Stability | None:
+    """By the energy, where eigenvalues leave it open."""
+    model, turning, conditions = search.model, search.given, search.conditions
+    if judged is None or judged.verdict != "undecided" or any(conditions.inputs.values()):
+        return judged
+    v, _, g, turn = search.motion(q)
+    values, moving = values_at(model, conditions, q, v), list(turning.cyclic)
+    shifts = shifts_along(model, values, np.vstack((np.eye(model.dof)[moving], *([g] if turn else []))))
+    for k, unit in enumerate(np.eye(len(moving))):
+        # rates turn in the axes of a body that is turned in itself
+        shifts[k, len(model.positions) :] = -turning.spin(unit) @ v
+    zero = [name for name, value in conditions.parameters.items() if not value]
+    reason = bounded_by_integrals(model, values, shifts, zero)
+    return judged if reason is None else Stability("stable", reason)
 
 
 class BallFamilies(FamilySearch[TurningSearch]):
