@@ -11,7 +11,7 @@ from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.nonholonomic.positions import at_rest, closed_positions
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.nonholonomic.solved import SECOND, solved
-from substructures.analysis.motion.judges import Condition
+from substructures.analysis.motion.judges.states import Condition
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.array import Array
 from substructures.documents import escape

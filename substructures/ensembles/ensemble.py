@@ -13,8 +13,9 @@ import numpy as np
 from substructures.analysis.arguments import values_of
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
-from substructures.analysis.motion.ball_motion import conditions_in_rates, with_lengths
-from substructures.analysis.motion.judges import AlongMotion, Condition, MotionStates, conditions
+from substructures.analysis.motion.judges.balls import conditions_in_rates, with_lengths
+from substructures.analysis.motion.judges.integrals import AlongMotion, conditions
+from substructures.analysis.motion.judges.states import Condition, MotionStates
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion
 from substructures.analysis.motion.problems.output_times import EVEN, OutputGrid, OutputTimes

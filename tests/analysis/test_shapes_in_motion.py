@@ -10,7 +10,7 @@ from catalogue_entries import shipped_part
 
 from substructures import Model, couple, simulate
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.motion.judges import integrals_along
+from substructures.analysis.motion.judges.integrals import integrals_along
 from substructures.analysis.motion.right_hand_side import RightHandSide
 
 

@@ -24,7 +24,7 @@ from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.integration import STIFF, IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
-from substructures.analysis.motion.judges import energy_balance, unbalanced
+from substructures.analysis.motion.judges.states import energy_balance, unbalanced
 from substructures.analysis.motion.problems.kinds import ClosedMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.second_judges import computed_again

@@ -20,7 +20,7 @@ from substructures.analysis.control.rollout import Rollout, Slope
 from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.step_error import gradient_checks
 from substructures.analysis.given import require_known
-from substructures.analysis.motion.ball_motion import reached_in_rates, with_lengths
+from substructures.analysis.motion.judges.balls import reached_in_rates, with_lengths
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check, verdict

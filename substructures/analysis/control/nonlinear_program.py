@@ -21,7 +21,7 @@ from substructures.analysis.control.rollout import Rollout, Slope
 from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.control.warm_start import WarmStart, warm_start
 from substructures.analysis.given import require_known
-from substructures.analysis.motion.ball_motion import with_lengths
+from substructures.analysis.motion.judges.balls import with_lengths
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument

@@ -10,7 +10,7 @@ tells how well they were integrated. Results have them at length 1.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 from dataclasses import replace
 from functools import lru_cache, partial
 from pathlib import Path
@@ -25,14 +25,15 @@ from substructures.analysis.motion.integrators.fixed_step import march, require_
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
-from substructures.analysis.motion.judges import (
-    ROUNDING,
-    AlongMotion,
-    Condition,
+from substructures.analysis.motion.judges.balls import (
+    NORMS,
+    reached_in_rates,
+    with_lengths,
+)
+from substructures.analysis.motion.judges.integrals import AlongMotion, judge
+from substructures.analysis.motion.judges.states import (
     MotionStates,
     energy_balance,
-    judge,
-    spread,
     unbalanced,
 )
 from substructures.analysis.motion.problems.kinds import TreeMotion
@@ -42,7 +43,7 @@ from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
 from substructures.analysis.motion.varying_inputs import VaryingInputs
-from substructures.analysis.verdict import About, Check
+from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.certificate.derived.model_formulas import simulated_in_rates
 from substructures.compile import Kernel, compile_program
@@ -53,14 +54,11 @@ from substructures.expr.garbage import without_collections
 from substructures.expr.known import Known
 from substructures.expr.program import Program, array
 from substructures.quantities.certificate import certified
-from substructures.quantities.numbers.limits import reached
 from substructures.quantities.numbers.quaternions import moved_on, quaternions_in
 from substructures.tree.model import Model
 
 NEEDS = ("metric", "bias", "forces", "potential_energy")
 OUTPUTS = ("position_rates", "forward_dynamics", "power")
-NORMS = "|Q| = 1 of all quaternions: Q' = 1/2 Q (0, w) keeps their lengths"
-BALANCE = "T + V changes by the work of forces without potential"
 SINGULAR = "the accelerations are not determined at the start: look at masses, inertias and forces"
 
 
@@ -253,43 +251,3 @@ def _along(conditions: Conditions, problem: MotionProblem, states: MotionStates)
     acting = [name for name in problem.start.inputs if name not in conditions.zero]
     integrals = first_integrals(model, acting, conditions.zero & set(model.parameters))
     return AlongMotion.of(model, integrals, states)
-
-
-def with_lengths(model: Model, q: Array) -> Array:
-    """States (..., m) with quaternions of length 1."""
-    result = q.copy()
-    for some in quaternions_in(model.positions, model.balls):
-        result[..., some] /= np.linalg.norm(q[..., some], axis=-1, keepdims=True)
-    return result
-
-
-def conditions_in_rates(model: Model, states: MotionStates, is_balanced: bool) -> Iterator[Condition]:
-    """What must hold along many motions (..., K): the balance of energy, if it is known, and the norms of quaternions,
-    which are as they were integrated.
-    """
-    everywhere, ones = np.ones(states.t.shape[:-1], dtype=bool), np.ones(states.t.shape[:-1])
-    if is_balanced and states.work is not None:
-        found = states.found(model, model.program, ["metric", "potential_energy"])
-        kinetic = 0.5 * np.einsum("...kab,...ka,...kb->...k", found["metric"], states.qd, states.qd)
-        potential, work = found["potential_energy"], states.work
-        energy = kinetic + potential
-        known = ROUNDING * np.abs(energy).max(axis=-1, initial=0)
-        sizes = [np.abs(x).max(axis=-1, initial=0) for x in (kinetic, potential - potential[..., :1], work)]
-        scale = np.max(sizes, axis=0)
-        about: About = ("energy", "constant", BALANCE, "J")
-        drift = spread((energy - work).T).T
-        yield Condition(about, drift, np.where(scale > known, scale, known / ROUNDING), known, everywhere)
-    places = quaternions_in(model.positions, model.balls)
-    norms = np.stack([np.linalg.norm(states.q[..., some], axis=-1) for some in places])
-    yield Condition(("quaternions", "zero", NORMS, ""), np.abs(norms - 1).max(axis=0), ones, 0 * ones, everywhere)
-
-
-def reached_in_rates(model: Model, t: Array, x: Array) -> tuple[Array, Array]:
-    """Lowest and highest values of the coordinates at x (K, m + n) or longer; of rates of ball joints, which have no
-    limits, 0.
-    """
-    places, m = {name: i for i, name in enumerate(model.positions)}, len(model.positions)
-    found = np.zeros((2, model.dof))
-    own = [a for a, name in enumerate(model.coordinates) if name in places]
-    found[:, own] = reached(t, x[:, [places[model.coordinates[a]] for a in own]], x[:, [m + a for a in own]])
-    return found[0], found[1]

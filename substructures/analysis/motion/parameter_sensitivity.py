@@ -19,11 +19,12 @@ from substructures.analysis.equations.nonholonomic.positions import closed_posit
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.given import require_known
-from substructures.analysis.motion.ball_motion import conditions_in_rates, reached_in_rates, with_lengths
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
-from substructures.analysis.motion.judges import AlongMotion, MotionStates, judge
+from substructures.analysis.motion.judges.balls import conditions_in_rates, reached_in_rates, with_lengths
+from substructures.analysis.motion.judges.integrals import AlongMotion, judge
+from substructures.analysis.motion.judges.states import MotionStates
 from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes

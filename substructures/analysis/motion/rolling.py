@@ -19,7 +19,7 @@ from substructures.analysis.motion.corners import has_corners
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
-from substructures.analysis.motion.judges import energy_balance, spread, unbalanced
+from substructures.analysis.motion.judges.states import energy_balance, spread, unbalanced
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
 from substructures.analysis.motion.reduced_motion import ReducedMotion
@@ -219,7 +219,7 @@ def _checks(t: Array, series: Mapping[str, Array], limit: float, varied: Sequenc
         Check.of(("constraints", "zero", "B q' + b = 0", "m/s, 1/s"), slips, t, 1.0, RESIDUAL),
     ]
     if "gaps" in series:
-        drift = spread(series["gaps"]).max(axis=1)
+        drift = spread(series["gaps"].T).max(axis=0)
         reason = "integrals of constraints: rolling bodies keep their distance from the plane, loops stay closed"
         checks.append(Check.of(("gaps", "constant", reason, "m"), drift, t, 1.0, RESIDUAL))
     return tuple(checks)

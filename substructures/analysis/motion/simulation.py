@@ -21,7 +21,8 @@ from substructures.analysis.motion.integrators.fixed_step import march, require_
 from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
-from substructures.analysis.motion.judges import AlongMotion, MotionStates, integrals_along, judge, unbalanced
+from substructures.analysis.motion.judges.integrals import AlongMotion, integrals_along, judge
+from substructures.analysis.motion.judges.states import MotionStates, unbalanced
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
 from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets

@@ -22,7 +22,7 @@ from numpy.typing import NDArray
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.friction.dry_friction import FrictionLaws, friction_laws
-from substructures.analysis.motion.judges import MotionStates
+from substructures.analysis.motion.judges.states import MotionStates
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array

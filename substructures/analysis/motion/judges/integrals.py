@@ -12,7 +12,7 @@ import numpy as np
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals, Integral
-from substructures.analysis.equations.kernels import evaluated, program_kernel
+from substructures.analysis.motion.judges.states import ROUNDING, Condition, MotionStates, spread
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.graph import Graph
@@ -24,10 +24,6 @@ from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import Model
 from substructures.tree.numbers import with_numbers
 
-#: of a sum, relative to its value; a state on closures is known to such a part, too
-ROUNDING = 3e-14
-#: results next to a singular position are known to so many times the limit, or they are not right
-DOUBTED = 100
 #: kinds that are compared with the size of another quantity of the whole
 SIZED = {
     "impulse": "linear_momentum",
@@ -36,37 +32,6 @@ SIZED = {
     "subsystem": "energy",
 }
 SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
-
-
-@dataclass(frozen=True)
-class MotionStates:
-    """A motion to be judged, or many, with an axis of them before the others: times (..., K), q, qd (..., K, n), values
-    of all other symbols, numbers or (..., K), work W (..., K), None if unknown.
-    """
-
-    t: Array
-    q: Array
-    qd: Array
-    values: Mapping[str, float | Array]
-    work: Array | None
-
-    def symbols(self, model: Model) -> dict[str, float | Array]:
-        """Values of all symbols, one after the other where they vary."""
-        values = {name: np.ravel(x) if np.ndim(x) else x for name, x in self.values.items()} | {"t": np.ravel(self.t)}
-        values |= {name: np.ravel(self.q[..., a]) for a, name in enumerate(model.positions)}
-        return values | {f"{name}'": np.ravel(self.qd[..., a]) for a, name in enumerate(model.coordinates)}
-
-    def found(self, model: Model, source: Program, names: Sequence[str]) -> dict[str, Array]:
-        """Outputs of a program along the motions, (..., K) and their own axes."""
-        values, count = self.symbols(model), self.t.size
-        if self.t.ndim == 1:
-            flat = evaluated(source, values, names, count)
-        else:
-            flat = program_kernel(source.select(list(names))).evaluate(values, names)
-        axes = {name: source.outputs[name].shape for name in names}
-        return {
-            n: np.broadcast_to(x, (count, *axes[n])).reshape(*self.t.shape, *axes[n]).copy() for n, x in flat.items()
-        }
 
 
 @dataclass(frozen=True)
@@ -108,19 +73,6 @@ def _size(name: str) -> str:
     return f"size of {name}"
 
 
-@dataclass(frozen=True)
-class Condition:
-    """What must hold along motions: ``violation`` (..., K), allowed up to limit * ``scale`` (...) + ``noise`` (...);
-    ``applies`` (...): whether it has to.
-    """
-
-    about: tuple[str, Rule, str, str]
-    violation: Array
-    scale: Array
-    noise: Array
-    applies: Array
-
-
 def conditions(along: AlongMotion) -> Iterator[Condition | Check]:
     """What all integrals demand, a Check where it is left out."""
     scales, states, series = _Scales(along), along.states, along.series
@@ -130,7 +82,7 @@ def conditions(along: AlongMotion) -> Iterator[Condition | Check]:
         scale = scales.of(integral, value)
         noise = ROUNDING * np.abs(value).max(axis=-1, initial=0)
         if integral.rule == "constant":
-            yield Condition(_about(integral, "constant"), _spread(value), scale, noise, everywhere)
+            yield Condition(_about(integral, "constant"), spread(value), scale, noise, everywhere)
             continue
         if integral.kind == "subsystem":
             # the work is known of the whole alone
@@ -144,7 +96,7 @@ def conditions(along: AlongMotion) -> Iterator[Condition | Check]:
         reason = "energy less the work of the forces without potential: H' = Q_a q'^a + V'"
         entry = replace(integral, name="energy-balance", reason=reason)
         scale = np.maximum(scale, np.abs(states.work).max(axis=-1, initial=0))
-        yield Condition(_about(entry, "constant"), _spread(balanced), scale, noise, everywhere)
+        yield Condition(_about(entry, "constant"), spread(balanced), scale, noise, everywhere)
         power = series["power"]
         is_lost = power.max(axis=-1, initial=0) <= 1e-12 * np.abs(power).max(axis=-1, initial=0)
         if is_lost.any():
@@ -166,44 +118,6 @@ def judge(along: AlongMotion, limit: float) -> tuple[Check, ...]:
 
 def _about(integral: Integral, rule: Rule) -> tuple[str, Rule, str, str]:
     return integral.name, rule, integral.reason, integral.unit
-
-
-def energy_balance(
-    t: Array, columns: Mapping[str, Array], conservative: bool, limit: float, doubt: Array | float = 0
-) -> Check:
-    """T + V - work is constant; relative to the largest of T, the change of V and the work.
-
-    ``columns``: ``kinetic_energy``, ``potential_energy``, ``work``, (K,) each, and ``effort``, what forces do on the
-    whole way where that is known: its rounding is in them, also where nothing moves. ``doubt`` (K,): what rounding
-    next to singular positions makes of them [J]; no more than DOUBTED times the limit is put down to it.
-    """
-    T, V, work = (columns[name] for name in ("kinetic_energy", "potential_energy", "work"))
-    known = float(np.maximum(np.abs(T + V), columns.get("effort", 0.0)).max(initial=0))
-    scale = max(float(np.abs(x).max(initial=0)) for x in (T, V - V[0], work))
-    # what is nothing but rounding is no scale
-    scale = scale if scale > ROUNDING * known else known or 1.0
-    reason = "T + V is constant: the forces have a potential, constraints do no work"
-    if not conservative:
-        reason = "T + V changes by the work of forces without potential and of prescribed motions only"
-    noise = ROUNDING * known + np.minimum(doubt, DOUBTED * limit * scale)
-    return Check.of(("energy", "constant", reason, "J"), spread(T + V - work), t, scale, limit, noise)
-
-
-def unbalanced(names: Sequence[str]) -> Check:
-    """In place of a balance of energy where the inputs ``names`` are part of the potential."""
-    culprits = ", ".join(f"'{name}'" for name in names)
-    why = f"no balance of energy is known with inputs in the potential ({culprits}): a second run judges instead"
-    return Check.left_out("energy", "constant", why)
-
-
-def spread(values: Array) -> Array:
-    """The largest difference of two values up to each, along the first axis: drift whatever it is counted from."""
-    return _spread(values.T).T
-
-
-def _spread(values: Array) -> Array:
-    """The same along the last axis."""
-    return np.asarray(np.maximum.accumulate(values, axis=-1) - np.minimum.accumulate(values, axis=-1))
 
 
 class _Scales:
