@@ -22,7 +22,7 @@ from substructures.analysis.equations.energy import constraints_in, depends_on, 
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.free_motion import FreeMotion, kept_axes
 from substructures.analysis.equations.generators import Generators
-from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
+from substructures.analysis.equations.integral import SIZES, FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.kernels import Known, known_model
 from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
@@ -95,13 +95,15 @@ def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegra
     search.further(given, freely)
     searched = search.beyond(degree)
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
-    integrals = tuple(i for i, _ in search.found)
-    result, rows = f.program(outputs), f.multipliers
-    expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result), model.balls)
+    outputs |= dict(zip(SIZES, f.formulas([*SIZES.values()]).values(), strict=True))
+    integrals, rows = tuple(i for i, _ in search.found), f.multipliers
+    result = FirstIntegrals(f.program(outputs), integrals, tuple(search.cyclic_names), *searched)
+    source = result.program
+    expectation = constant(source, [vars(each) for each in integrals], rows, rows_expected(f, source), model.balls)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
-    result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
-    return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
+    source = certified(source, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
+    return replace(result, along=result.along.marked(source.not_judged))
 
 
 class _Search:
