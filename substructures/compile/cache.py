@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 #: of the file format and of everything that decides about the machine code; raise it with every change of either
-VERSION = 6
+VERSION = 7
 MARK = b"substructures kernel\n"
 
 

@@ -26,15 +26,16 @@ def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
 
 
 class _Emitter:
-    """Text of one function. Values are called %v and the number of their operation."""
+    """Text of one function. Values are numbered as they come, as LLVM does by itself: names would take it longer."""
 
     def __init__(self, lowered: Lowered, part: StageFunction, ops: Sequence[Operation], width: int) -> None:
         self.lowered, self.part, self.ops, self.width = lowered, part, ops, width
         self.kind = vector(width)
         self.lines: list[str] = []
+        self.values = 0
         self.name: dict[int, str] = {}
-        self.special: dict[str, Callable[[str, str, Operation], None]] = {
-            "neg": self._neg,
+        self.special: dict[str, Callable[[str, Operation], str]] = {
+            "neg": lambda x, _: self._neg(x),
             "sign": self._sign,
             "powi": self._power,
             **dict.fromkeys(INTRINSICS, self._intrinsic),
@@ -46,7 +47,7 @@ class _Emitter:
         for i, place in self.part.stores:
             stores.setdefault(i, []).append(place)
         for i in self.part.operations:
-            self._operation(i)
+            self.name[i] = self._operation(i, self.ops[i])
             for place in stores.pop(i, ()):
                 self._store(i, place)
         for i, places in stores.items():
@@ -55,95 +56,87 @@ class _Emitter:
         self.lines.append("ret void")
         return "\n".join(self.lines)
 
-    def _operation(self, i: int) -> None:
-        operation = self.ops[i]
-        op, result = operation[0], f"%v{i}"
-        if op == "neg" and operation[1] in self.lowered.minus:
-            result = self._value(operation[1])
-        elif op in BINARY:
-            self._binary(result, i, *operation)
-        else:
-            self.special[op](result, self._value(operation[1]), operation)
-        self.name[i] = result
+    def _new(self, text: str) -> str:
+        """The value of an instruction. The block itself has the number 0."""
+        self.values += 1
+        name = f"%{self.values}"
+        self.lines.append(f"{name} = {text}")
+        return name
 
-    def _binary(self, result: str, i: int, op: str, x: int, y: int) -> None:
+    def _operation(self, i: int, operation: Operation) -> str:
+        op = operation[0]
+        if op in BINARY:
+            return self._binary(i, *operation)
+        if op == "neg" and operation[1] in self.lowered.minus:
+            return self._value(operation[1])
+        return self.special[op](self._value(operation[1]), operation)
+
+    def _binary(self, i: int, op: str, x: int, y: int) -> str:
         """One instruction, where operands or result may be kept as negatives; and one more where a sign remains."""
-        first, second, whole = (k in self.lowered.minus for k in (x, y, i))
-        flag = " contract" if op in CONTRACTED and i not in self.lowered.sharp else ""
+        minus = self.lowered.minus
+        first, second, whole = x in minus, y in minus, i in minus
+        flag = "contract " if op in CONTRACTED and i not in self.lowered.sharp else ""
         a, b = self._value(x), self._value(y)
         if op not in ("add", "sub"):
-            product = f"{result}.p" if first ^ second ^ whole else result
-            self.lines.append(f"{product} = {BINARY[op]}{flag} {self.kind} {a}, {b}")
-            if product != result:
-                self._neg(result, product, ())
-            return
+            product = self._new(f"{BINARY[op]} {flag}{self.kind} {a}, {b}")
+            return self._neg(product) if first ^ second ^ whole else product
         first, second = first ^ whole, second ^ whole ^ (op == "sub")
         if first and not second:
             a, b, first, second = b, a, second, first
         if first:
             # -a - b: where a or b is a product, the compiler takes the sign into it
-            self._neg(f"{result}.n", a, ())
-            a = f"{result}.n"
-        self.lines.append(f"{result} = {BINARY['sub' if second else 'add']}{flag} {self.kind} {a}, {b}")
+            a = self._neg(a)
+        return self._new(f"{BINARY['sub' if second else 'add']} {flag}{self.kind} {a}, {b}")
 
-    def _neg(self, result: str, x: str, _: Operation) -> None:
-        self.lines.append(f"{result} = fneg {self.kind} {x}")
+    def _neg(self, x: str) -> str:
+        return self._new(f"fneg {self.kind} {x}")
 
-    def _intrinsic(self, result: str, x: str, operation: Operation) -> None:
-        name = INTRINSICS[operation[0]]
-        self.lines.append(f"{result} = call {self.kind} @llvm.{name}.v{self.width}f64({self.kind} {x})")
+    def _intrinsic(self, x: str, operation: Operation) -> str:
+        return self._new(f"call {self.kind} @llvm.{INTRINSICS[operation[0]]}.v{self.width}f64({self.kind} {x})")
 
-    def _sign(self, result: str, x: str, _: Operation) -> None:
+    def _sign(self, x: str, _: Operation) -> str:
         """-1, 0, 1, or NaN."""
         k, zero = self.kind, literal(0.0, self.width)
         mask, one, minus = f"<{self.width} x i1>", literal(1.0, self.width), literal(-1.0, self.width)
-        self.lines += [
-            f"{result}.g = fcmp ogt {k} {x}, {zero}",
-            f"{result}.l = fcmp olt {k} {x}, {zero}",
-            f"{result}.u = fcmp uno {k} {x}, {zero}",
-            f"{result}.0 = select {mask} {result}.u, {k} {x}, {k} {zero}",
-            f"{result}.1 = select {mask} {result}.l, {k} {minus}, {k} {result}.0",
-            f"{result} = select {mask} {result}.g, {k} {one}, {k} {result}.1",
-        ]
+        above, below, none = (self._new(f"fcmp {test} {k} {x}, {zero}") for test in ("ogt", "olt", "uno"))
+        result = self._new(f"select {mask} {none}, {k} {x}, {k} {zero}")
+        result = self._new(f"select {mask} {below}, {k} {minus}, {k} {result}")
+        return self._new(f"select {mask} {above}, {k} {one}, {k} {result}")
 
-    def _power(self, result: str, x: str, operation: Operation) -> None:
+    def _power(self, x: str, operation: Operation) -> str:
         """Repeated squaring; the reciprocal of the power for negative exponents."""
-        exponent = operation[2]
-        factors = list(self._squares(result, x, abs(exponent)))
-        product = factors[0] if factors else literal(1.0, self.width)
-        for j, factor in enumerate(factors[1:]):
-            self.lines.append(f"{result}.m{j} = fmul {self.kind} {product}, {factor}")
-            product = f"{result}.m{j}"
-        op, first = ("fdiv", literal(1.0, self.width)) if exponent < 0 else ("fmul", literal(1.0, self.width))
-        self.lines.append(f"{result} = {op} {self.kind} {first}, {product}")
+        one, exponent = literal(1.0, self.width), operation[2]
+        product = ""
+        for factor in self._squares(x, abs(exponent)):
+            product = self._new(f"fmul {self.kind} {product}, {factor}") if product else factor
+        product = product or one
+        return self._new(f"fdiv {self.kind} {one}, {product}") if exponent < 0 else product
 
-    def _squares(self, result: str, x: str, exponent: int) -> Iterator[str]:
+    def _squares(self, x: str, exponent: int) -> Iterator[str]:
         """x^(2^j) for every bit j of the exponent."""
         for j in range(exponent.bit_length()):
             if j:
-                self.lines.append(f"{result}.s{j} = fmul {self.kind} {x}, {x}")
-                x = f"{result}.s{j}"
+                x = self._new(f"fmul {self.kind} {x}, {x}")
             if exponent >> j & 1:
                 yield x
 
     def _value(self, i: int) -> str:
         """Name of a value; loaded or written as a literal at its first use."""
-        if i not in self.name:
+        found = self.name.get(i)
+        if found is None:
             if i in self.lowered.literals:
-                self.name[i] = literal(self.lowered.literals[i], self.width)
+                found = literal(self.lowered.literals[i], self.width)
             else:
-                pointer = self._pointer(f"%l{i}", self.part.loads[i])
-                self.lines.append(f"%v{i} = load {self.kind}, ptr {pointer}, align {8 * self.width}")
-                self.name[i] = f"%v{i}"
-        return self.name[i]
+                pointer = self._pointer(self.part.loads[i])
+                found = self._new(f"load {self.kind}, ptr {pointer}, align {8 * self.width}")
+            self.name[i] = found
+        return found
 
     def _store(self, i: int, place: Place) -> None:
-        value = self._value(i)
-        pointer = self._pointer(f"%t{len(self.lines)}", place)
+        value, pointer = self._value(i), self._pointer(place)
         # results may go straight to an array of the caller
         align = 8 if place[0] == "o" else 8 * self.width
         self.lines.append(f"store {self.kind} {value}, ptr {pointer}, align {align}")
 
-    def _pointer(self, name: str, place: Place) -> str:
-        self.lines.append(f"{name} = getelementptr i8, ptr %{place[0]}, i64 {8 * self.width * place[1]}")
-        return name
+    def _pointer(self, place: Place) -> str:
+        return self._new(f"getelementptr i8, ptr %{place[0]}, i64 {8 * self.width * place[1]}")

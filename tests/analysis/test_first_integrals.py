@@ -11,9 +11,12 @@ from in_depth import seeds
 from random_trees import Kind, Plain, add_inertia, model_of, random_definition, random_states
 
 from substructures import InvalidArgument, InvalidInput, Model
-from substructures.analysis.equations.first_integrals import first_integrals
+from substructures.analysis.equations.first_integrals import _found, first_integrals
+from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.integral import FirstIntegrals
+from substructures.analysis.equations.kernels import known_model
 from substructures.analysis.equations.routh import routh
+from substructures.analysis.equations.states_in_field import state_in_field
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
 
@@ -80,6 +83,22 @@ def test_known_machines(name: str, gravity: Any, expected: set[str]) -> None:
     assert constant(found) - {"energy"} == expected
     slopes = drift(model, found)
     assert max(slopes[name] for name in constant(found)) < 1e-4, slopes
+
+
+@pytest.mark.parametrize(
+    ("name", "gravity"),
+    [("planar-hopper", FALL), ("free-body", NONE), ("furuta-pendulum", FALL), ("cart-pendulum", SLANTED)],
+)
+def test_told_by_values(name: str, gravity: tuple[Any, ...], monkeypatch: pytest.MonkeyPatch) -> None:
+    """What values in a field rule out, or find, is what formulas do."""
+    model = catalogue_model(name, gravity)
+    told = []
+    for state in (state_in_field, lambda _: None):
+        monkeypatch.setattr("substructures.analysis.equations.first_integrals.state_in_field", state)
+        found = _found.__wrapped__(known_model(model), frozenset(), frozenset(), 1)
+        told.append((found.summary(), found.program.digest))
+    assert state_in_field(ModelFormulas(model, model.input_names)) is not None
+    assert told[0] == told[1]
 
 
 def test_a_base_that_moves_in_a_slanted_plane() -> None:

@@ -4,20 +4,26 @@ from __future__ import annotations
 
 import pytest
 
+from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
-from substructures.expr.program import Formulas, Symbol, program
-from substructures.expr.rings.modular import Field, NoSquareRoot
+from substructures.expr.program import Formulas, Program, Symbol, program
+from substructures.expr.rings.modular import Field, FieldValues, NoSquareRoot
 
 
-def value(field: Field, text: str, values: dict[str, int]) -> int:
-    """An expression in x and y; left sides are kept apart, so that no graph can fold them."""
+def formula(text: str) -> Program:
+    """An expression v in x and y, and dv/dx + 2 dv/dy."""
     graph = Graph()
     names = {name: graph.symbol(name) for name in ("x", "y")}
     root = parse(graph, text, names.get)
+    (change,) = directional([root], {"x": graph.one, "y": graph.number(2)})
     symbols = {name: Symbol(name, "parameter") for name in names}
-    found = program(graph, {"v": Formulas((), {(): root})}, symbols)
-    return field.evaluate(found, values, "v").get((), 0)
+    return program(graph, {"v": Formulas((), {(): root}), "change": Formulas((), {(): change})}, symbols)
+
+
+def value(field: Field, text: str, values: dict[str, int]) -> int:
+    """Its value; left sides are kept apart, so that no graph can fold them."""
+    return field.evaluate(formula(text), values, "v").get((), 0)
 
 
 @pytest.mark.parametrize(
@@ -40,6 +46,27 @@ def test_identities(left: str, right: str) -> None:
     values = {"x": field.draw(), "y": field.draw()}
     assert value(field, left, values) == value(field, right, values)
     assert value(field, f"{left} + 1", values) != value(field, right, values)
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["x*y^3 - sin(2*x - y/3)", "cos(x + pi/4)/(y - x)", "tan(x)/y", "-x^(-2)", "sqrt(3)*x - 0.2*y + 1", "pi*cos(y)"],
+)
+def test_changes(text: str) -> None:
+    """Derivatives of values are values of derivatives."""
+    field, found = Field(), formula(text)
+    values = FieldValues(field, found, {"x": field.draw(), "y": field.draw()}, ["v", "change"])
+    assert values.is_exact
+    (change,) = values.changes(["v"], {"x": 1, "y": 2})
+    assert (change[()] - values.output("change")[()]) % field.prime == 0
+
+
+@pytest.mark.parametrize("text", ["sin(x*y)", "sqrt(x^2)", "abs(x)", "exp(x)", "cos(x + pi/5)", "atan2(x, y)"])
+def test_not_told(text: str) -> None:
+    """Equal functions of these may have different values."""
+    field = Field()
+    values = {"x": field.draw() ** 2, "y": field.draw()}
+    assert not FieldValues(field, formula(text), values, ["v"]).is_exact
 
 
 def test_square_roots() -> None:

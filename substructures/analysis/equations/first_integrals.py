@@ -22,10 +22,11 @@ from substructures.analysis.equations.energy import constraints_in, depends_on, 
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.free_motion import FreeMotion, kept_axes
 from substructures.analysis.equations.generators import Generators
-from substructures.analysis.equations.integral import FirstIntegrals, Integral, IntegralKind
+from substructures.analysis.equations.integral import SIZES, FirstIntegrals, Integral, IntegralKind
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
+from substructures.analysis.equations.states_in_field import StateInField, state_in_field
 from substructures.analysis.equations.subsystems import subsystems
 from substructures.analysis.equations.symmetries import Direction, directions, varied
 from substructures.certificate.derived.integrals import constant
@@ -95,13 +96,15 @@ def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegra
     search.further(given, freely)
     searched = search.beyond(degree)
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
-    integrals = tuple(i for i, _ in search.found)
-    result, rows = f.program(outputs), f.multipliers
-    expectation = constant(result, [vars(each) for each in integrals], rows, rows_expected(f, result), model.balls)
+    outputs |= dict(zip(SIZES, f.formulas([*SIZES.values()]).values(), strict=True))
+    integrals, rows = tuple(i for i, _ in search.found), f.multipliers
+    result = FirstIntegrals(f.program(outputs), integrals, tuple(search.cyclic_names), *searched)
+    source = result.program
+    expectation = constant(source, [vars(each) for each in integrals], rows, rows_expected(f, source), model.balls)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
-    result = certified(result, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
-    return FirstIntegrals(result, integrals, tuple(search.cyclic_names), *searched)
+    source = certified(source, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
+    return replace(result, along=result.along.marked(source.not_judged))
 
 
 class _Search:
@@ -154,9 +157,14 @@ class _Search:
             self.generators.add(value)
 
     @cached_property
+    def state(self) -> StateInField | None:
+        """Of a field, where that tells all."""
+        return state_in_field(self.f)
+
+    @cached_property
     def varied(self) -> set[int]:
         """The coordinates on which anything depends."""
-        return varied(self.f, self.vanishes)
+        return varied(self.f, self.vanishes) if self.state is None else {c for _, _, c in self.state.slopes}
 
     @cached_property
     def free(self) -> list[int]:
@@ -175,9 +183,7 @@ class _Search:
             reason = f"the metric does not depend on '{name}'{where} and no generalised force acts on it"
             reason += f"; {constraints_in(f.model)} do not depend on it" if f.multipliers else ""
             self._note(Integral(f"momentum.{name}", "cyclic", "constant", unit, reason), f.momenta[c])
-        moving = {i: x for i, x in f.metric_slopes.items() if i[2] in self.varied}
-        cyclic = [f.model.coordinates.index(name) for name in self.cyclic_names]
-        for direction in () if f.model.given else directions(f, moving, cyclic, self.vanishes):
+        for direction in () if f.model.given else directions(f, self.varied, self.free, self.vanishes, self.state):
             self._symmetry(direction)
 
     def _symmetry(self, found: Direction) -> None:
@@ -207,15 +213,15 @@ class _Search:
         # p = sum_a p_a q'^a, L = sum_a L_a q'^a and their derivatives along the equations of motion
         linear, angular = self._momentum("linear_momentum"), self._momentum("angular_momentum")
         rates = self._rates([*linear, *angular])
-        constant = [self._constant(x) for x in rates[:3]]
+        constant = [None if x is None else self._constant(x) for x in rates[:3]]
         pull = [x or self.zero for x in constant]
         kinds: list[IntegralKind] = [*("linear_momentum",) * 3, *("angular_momentum",) * 3]
         for kind, axis, value, rate in zip(kinds, AXES + AXES, [*linear, *angular], rates, strict=True):
-            if self.vanishes(rate):
+            if rate is not None and self.vanishes(rate):
                 self._momentum_found(kind, axis, value)
         self._across(linear, pull)
         self._about(angular, pull)
-        if not all(self.vanishes(rate) for rate in rates):
+        if not all(rate is not None and self.vanishes(rate) for rate in rates):
             self._along_axes(linear, angular)
         if self.f.model.given:
             return None
@@ -224,12 +230,14 @@ class _Search:
             self._note(integral, value)
         return freely
 
-    def _rates(self, momenta: Sequence[Expr]) -> list[Expr]:
-        """Their derivatives along the equations of motion, without a formula where one is +-p_c of a free c."""
+    def _rates(self, momenta: Sequence[Expr]) -> list[Expr | None]:
+        """Their derivatives along the equations of motion; None for one that is known to vary. Without a formula where
+        one is +-p_c of a free c, or known to be zero."""
         kept = {x.fp for c in self.free for x in (self.f.momenta[c], -self.f.momenta[c])}
-        moving = [x for x in momenta if x.fp not in kept]
-        found = dict(zip(moving, self.f.rate(moving), strict=True))
-        return [found.get(x, self.zero) for x in momenta]
+        told = [None] * 6 if self.state is None else self.state.told_rates
+        moving = [x for x, rule in zip(momenta, told, strict=True) if rule is None and x.fp not in kept]
+        found = dict(zip(moving, self.f.rate(moving), strict=True)) if moving else {}
+        return [None if rule == "varies" else found.get(x, self.zero) for x, rule in zip(momenta, told, strict=True)]
 
     def _momentum(self, name: str) -> list[Expr]:
         """Components of sum_a n_a q'^a."""

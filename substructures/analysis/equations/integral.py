@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any, Literal
 
 from substructures.analysis.equations.energy import EnergyRule
@@ -45,18 +46,26 @@ class Integral:
     terms: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
+#: outputs of a model that the sizes of integrals are told from, by the names that they have beside integrals
+SIZES = {f"size of {name}": name for name in ("metric", "linear_momentum", "angular_momentum", "potential_energy")}
+
+
 @dataclass(frozen=True)
 class FirstIntegrals:
-    """``program``: an output without axes for every integral, and ``power``: H' [W]. ``cyclic``: coordinates.
-
-    ``degree``: in the momenta, of the integrals that were looked for; ``searched``: among which, or why not.
+    """``cyclic``: coordinates. ``degree``: in the momenta, of the integrals that were looked for; ``searched``: among
+    which, or why not. ``along``: ``program`` with SIZES of the model, which share most of their operations.
     """
 
-    program: Program
+    along: Program
     integrals: tuple[Integral, ...]
     cyclic: tuple[str, ...]
     degree: int
     searched: str
+
+    @cached_property
+    def program(self) -> Program:
+        """An output without axes for every integral, and ``power``: H' [W]."""
+        return self.along.select([name for name in self.along.outputs if name not in SIZES])
 
     def __repr__(self) -> str:
         names = listed(f"{integral.name} ({integral.rule})" for integral in self.integrals)

@@ -11,7 +11,7 @@ found exactly by :mod:`substructures.analysis.equations.dependencies`; the c^e a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
@@ -20,8 +20,9 @@ from typing import TypeVar
 
 import numpy as np
 
-from substructures.analysis.equations.dependencies import Functions, dependencies
+from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.analysis.equations.formulas import ModelFormulas
+from substructures.analysis.equations.states_in_field import StateInField
 from substructures.errors import TooLarge
 from substructures.expr.calculus.corners import corners
 from substructures.expr.differentiate import gradient
@@ -72,37 +73,45 @@ def varied(f: ModelFormulas, vanishes: Callable[[Expr], bool]) -> set[int]:
 
 def directions(
     f: ModelFormulas,
-    slopes: Mapping[tuple[int, int, int], Expr],
+    moving: Collection[int],
     cyclic: Collection[int],
     vanishes: Callable[[Expr], bool],
+    state: StateInField | None,
 ) -> list[Direction]:
-    """All that are not along one coordinate; ``slopes``: d_e g_ab by (a, b, e) for a <= b, ``cyclic``: coordinates that
-    are directions by themselves. None are found where the functions take too long, or their values are not known.
+    """All that are not along one coordinate; ``moving``: coordinates that the metric varies with, ``cyclic``: those
+    that are directions by themselves; ``state``: one of a field that tells all. None are found where the functions take
+    too long, or their values are not known.
     """
-    rows = _rows(f, slopes)
     left = [e for e in range(f.n) if e not in cyclic]
-    if len(left) < 2 or not rows:
+    if len(left) < 2:
         return []
-    search = _Search(f, rows)
-    if len(search.program) > LIMIT or not search.may_be_free(left):
-        return []
+    search = _Search(f, moving)
     with suppress(TooLarge, ArithmeticError):
-        found = dependencies(search.functions())
-        candidates = [direction_of(j, coefficients) for j, coefficients in found.others.items() if coefficients]
+        if state is not None:
+            return _free(dependencies(search.in_field(state))) if len(state.bending.needed) <= LIMIT else []
+        if len(search.program) > LIMIT or not search.may_be_free(left):
+            return []
         # c^e F_e = 0 in all rows proves it
-        return [c for c in candidates if all(vanishes(c.of(row, f.graph)) for row in rows)]
+        found = _free(dependencies(search.functions()))
+        return [c for c in found if all(vanishes(c.of(row, f.graph)) for row in search.rows)]
     return []
 
 
-def _rows(f: ModelFormulas, slopes: Mapping[tuple[int, int, int], Expr]) -> list[dict[int, Expr]]:
+def _free(found: Dependencies) -> list[Direction]:
+    """The directions along which functions that depend on each other do not change."""
+    return [direction_of(j, coefficients) for j, coefficients in found.others.items() if coefficients]
+
+
+def _rows(
+    slopes: Mapping[tuple[int, int, int], X], forces: Mapping[int, X], constraints: Mapping[tuple[int, ...], X]
+) -> list[dict[int, X]]:
     """Functions that depend on each other where there is a symmetry: by row and by column e."""
-    rows: dict[tuple[object, ...], dict[int, Expr]] = {}
+    rows: dict[tuple[object, ...], dict[int, X]] = {}
     for (a, b, e), x in slopes.items():
         rows.setdefault(("metric", a, b), {})[e] = x
-    forces = {e: x for e, x in enumerate(f.vector("forces")) if not x.is_zero}
     if forces:
-        rows["forces",] = forces
-    for (k, e), x in f.constraint_rows.items():
+        rows["forces",] = dict(forces)
+    for (k, e), x in constraints.items():
         rows.setdefault(("constraint", k), {})[e] = x
     return list(rows.values())
 
@@ -167,13 +176,31 @@ def _form(x: Expr, most: int) -> Expanded | None:
 class _Search:
     """The functions as a program, and their values: floats, elements of a field, formulas at exact points."""
 
-    def __init__(self, f: ModelFormulas, rows: Sequence[Mapping[int, Expr]]) -> None:
-        entries: Entries = {(r, e): x for r, row in enumerate(rows) for e, x in row.items()}
-        self.f, self.rows, self.size = f, rows, (len(rows), f.n)
-        self.program: Program = program(f.graph, {"rows": Formulas(self.size, entries)}, f.symbols)
-        # whatever varies along a motion counts as a coordinate here
-        self.fixed = [s.name for s in self.program.symbols if s.kind == "parameter"]
-        self.varied = [s.name for s in self.program.symbols if s.kind != "parameter"]
+    def __init__(self, f: ModelFormulas, moving: Collection[int]) -> None:
+        self.f, self.moving = f, moving
+
+    @cached_property
+    def rows(self) -> list[dict[int, Expr]]:
+        """As formulas."""
+        slopes = {index: x for index, x in self.f.metric_slopes.items() if index[2] in self.moving}
+        forces = {e: x for e, x in enumerate(self.f.vector("forces")) if not x.is_zero}
+        return _rows(slopes, forces, self.f.constraint_rows)
+
+    @cached_property
+    def program(self) -> Program:
+        """All rows."""
+        entries: Entries = {(r, e): x for r, row in enumerate(self.rows) for e, x in row.items()}
+        return program(self.f.graph, {"rows": Formulas((len(self.rows), self.f.n), entries)}, self.f.symbols)
+
+    @cached_property
+    def fixed(self) -> list[str]:
+        """Symbols that are the same in all states."""
+        return [s.name for s in self.program.symbols if s.kind == "parameter"]
+
+    @cached_property
+    def varied(self) -> list[str]:
+        """Whatever varies along a motion counts as a coordinate here."""
+        return [s.name for s in self.program.symbols if s.kind != "parameter"]
 
     def may_be_free(self, left: Sequence[int]) -> bool:
         """Whether floats leave a direction among these columns free, or cannot tell."""
@@ -190,22 +217,32 @@ class _Search:
         singular = np.linalg.svd(stacked / np.where(sizes > 0, sizes, 1), compute_uv=False)
         return len(singular) < len(left) or bool(singular[-1] <= FREE * singular[0])
 
+    def in_field(self, state: StateInField) -> Functions:
+        """For the exact search, from states of a field that tells all; formulas are made where it needs them."""
+        states = chain([state], iter(state.another, None))
+        samples = (_rows(some.slopes, some.forces, {}) for some in states)
+        needed = self.f.model.program.needs(["christoffel", "forces"])
+        return self._functions(sorted({*needed} - {*state.fixed} - self.f.zero), state.field, samples, state.fixed)
+
     def functions(self) -> Functions:
         """For the exact search, in a field that holds the square roots of the parameters. Raises TooLarge."""
-        angular = [name in self._angles for name in self.varied]
         for _ in range(FIELDS):
             field = Field([self.program])
             symbols = {name: field.draw() for name in self.fixed}
             with suppress(TooLarge):
                 sample = partial(self._random, field, symbols)
-                samples = chain([sample()], iter(sample, None))
-                return Functions(self.f.n, angular, field, partial(next, samples), self._exact, symbols)
+                return self._functions(self.varied, field, chain([sample()], iter(sample, None)), symbols)
         raise TooLarge("the search for a field with all square roots (in primes)", FIELDS + 1, FIELDS)
 
-    @cached_property
-    def _angles(self) -> set[str]:
-        names = self.f.model.coordinates
-        return {name for name, joint in zip(names, self.f.model.joints, strict=True) if joint == "R"}
+    def _functions(
+        self, varied: Sequence[str], field: Field, samples: Iterator[list[dict[int, int]]], symbols: Mapping[str, int]
+    ) -> Functions:
+        """Of the symbols that vary; exact samples are formulas."""
+        angles = {
+            name for name, joint in zip(self.f.model.coordinates, self.f.model.joints, strict=True) if joint == "R"
+        }
+        angular = [name in angles for name in varied]
+        return Functions(self.f.n, angular, field, partial(next, samples), partial(self._exact, varied), symbols)
 
     def _random(self, field: Field, symbols: Mapping[str, int]) -> list[dict[int, int]]:
         """Values at a random point of the field, one that has the square roots there are. Raises TooLarge."""
@@ -216,16 +253,16 @@ class _Search:
                 return self._by_row(found)
         raise TooLarge("the search for a point with all square roots (in points)", TRIALS + 1, TRIALS)
 
-    def _exact(self, graph: Graph, point: Sequence[Expr]) -> list[dict[int, Expr]]:
+    def _exact(self, varied: Sequence[str], graph: Graph, point: Sequence[Expr]) -> list[dict[int, Expr]]:
         """Formulas in the parameters at an exact point; nothing where they divide by zero there."""
         try:
-            found = replay(self.program, graph, dict(zip(self.varied, point, strict=True)), ["rows"])["rows"].entries
+            found = replay(self.program, graph, dict(zip(varied, point, strict=True)), ["rows"])["rows"].entries
         except (ZeroDivisionError, ValueError):
             return []
         return self._by_row({i: graph.lift(x) for i, x in found.items()})
 
     def _by_row(self, found: Mapping[tuple[int, ...], X]) -> list[dict[int, X]]:
-        rows: list[dict[int, X]] = [{} for _ in range(self.size[0])]
+        rows: list[dict[int, X]] = [{} for _ in self.rows]
         for (r, e), x in found.items():
             rows[r][e] = x
         return rows

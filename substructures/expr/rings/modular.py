@@ -9,14 +9,14 @@ independent values.
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 
 from flint import fmpz
 
 from substructures.expr.construction.fingerprint import Point, added, multiplied, point_of
-from substructures.expr.operations import Operation
+from substructures.expr.operations import BINARY, Operation
 from substructures.expr.program import Program
 
 #: an angle as multiples of what its sine and cosine are built from, and of pi
@@ -70,8 +70,14 @@ class Field:
         for atom, factor in terms.items():
             common = PARTS if PARTS % factor.denominator == 0 else factor.denominator
             n = factor.numerator * (common // factor.denominator)
-            result = added(result, multiplied(self._point((atom, common)), n, self.prime), self.prime)
+            result = added(result, self._multiple(n, (atom, common)), self.prime)
         return result
+
+    def _multiple(self, n: int, key: object) -> Point:
+        """Of an angle so many times."""
+        if (n, key) not in self.points:
+            self.points[n, key] = multiplied(self._point(key), n, self.prime)
+        return self.points[n, key]
 
     def _point(self, key: object) -> Point:
         if key not in self.points:
@@ -80,29 +86,82 @@ class Field:
 
     def evaluate(self, program: Program, values: Mapping[str, int], name: str) -> dict[tuple[int, ...], int]:
         """The independent elements of an output. Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol."""
-        run, output = _Run(self, program, values), program.outputs[name]
-        known, operations, p = run.values, program.operations, self.prime
-        for i in program.reachable([name]):
+        return FieldValues(self, program, values, [name]).output(name)
+
+
+class FieldValues:
+    """Values of the operations that some outputs need, and of angles as linear forms; atoms are known by their values.
+    Raises NoSquareRoot, ZeroDivisionError, KeyError for a symbol.
+
+    ``is_exact``: whether all is made of symbols, numbers and their roots by sums, products, quotients, and sines and
+    cosines of sums of rational multiples of symbols and of pi/12: another value is another function then.
+    """
+
+    def __init__(self, field: Field, program: Program, symbols: Mapping[str, int], names: Iterable[str]) -> None:
+        self.field, self.program, self.symbols = field, program, symbols
+        self.needed = program.reachable(names)
+        self.values: dict[int, int] = {}
+        self.linear: dict[int, AngleForm] = {}
+        self.points: dict[int, Point] = {}
+        self.is_exact = True
+        known, operations, p = self.values, program.operations, field.prime
+        for i in self.needed:
             operation = operations[i]
             op = operation[0]
             if op == "mul":
                 known[i] = known[operation[1]] * known[operation[2]] % p
             elif op == "add":
                 known[i] = (known[operation[1]] + known[operation[2]]) % p
+            elif op == "sub":
+                known[i] = (known[operation[1]] - known[operation[2]]) % p
             else:
-                run.step(i, operation)
-        return {index: run.values[e] for index, e in zip(output.index, output.entries, strict=True)}
+                self._step(i, operation)
 
+    def output(self, name: str) -> dict[tuple[int, ...], int]:
+        """The independent elements of one of the outputs."""
+        output = self.program.outputs[name]
+        return {index: self.values[e] for index, e in zip(output.index, output.entries, strict=True)}
 
-class _Run:
-    """Values of the operations, and those of angles as linear forms; atoms are known by their values."""
+    def elements(self, name: str) -> dict[tuple[int, ...], int]:
+        """All of them, those that follow from a symmetry included."""
+        return {index: sign * self.values[e] for index, e, sign in self.program.outputs[name].expanded()}
 
-    def __init__(self, field: Field, program: Program, symbols: Mapping[str, int]) -> None:
-        self.field, self.program, self.symbols = field, program, symbols
-        self.values: dict[int, int] = {}
-        self.linear: dict[int, AngleForm] = {}
+    def changes(self, names: Sequence[str], rates: Mapping[str, int]) -> list[dict[tuple[int, ...], int]]:
+        """The derivatives of some of the outputs where symbols change at these rates, where all is exact."""
+        p, values, d = self.field.prime, self.values, dict[int, int]()
+        for i in self.program.reachable(names):
+            operation = self.program.operations[i]
+            op = operation[0]
+            if op == "sym":
+                d[i] = rates.get(self.program.symbols[operation[1]].name, 0)
+                continue
+            x, y = operation[1], operation[2] if op in BINARY else operation[1]
+            u, v = d.get(x, 0), d.get(y, 0)
+            if not (u or v):
+                continue
+            if op == "mul":
+                d[i] = (u * values[y] + values[x] * v) % p
+            elif op in ("add", "sub"):
+                d[i] = u + v if op == "add" else u - v
+            else:
+                d[i] = self._slope(i, operation, u, v) % p
+        outputs = [self.program.outputs[name] for name in names]
+        return [{index: d[e] for index, e in zip(o.index, o.entries, strict=True) if d.get(e)} for o in outputs]
 
-    def step(self, i: int, operation: Operation) -> None:
+    def _slope(self, i: int, operation: Operation, u: int, v: int) -> int:
+        """The derivative of all but sums and products, from those of its operands."""
+        op, x, inverse = operation[0], operation[1], self.field.inverse
+        if op == "neg":
+            return -u
+        if op == "div":
+            # (x/y)' = (x' - (x/y) y') / y
+            return (u - self.values[i] * v) * inverse(self.values[operation[2]])
+        if op == "powi":
+            return u * operation[2] * self.values[i] * inverse(self.values[x])
+        c, s = self.points[x]
+        return u * inverse(c) ** 2 if op == "tan" else c * u if op == "sin" else -s * u
+
+    def _step(self, i: int, operation: Operation) -> None:
         """The value of one operation."""
         op, p = operation[0], self.field.prime
         if op == "sym":
@@ -115,20 +174,17 @@ class _Run:
             base, n = self.values[operation[1]], operation[2]
             self.values[i] = pow(base if n >= 0 else self.field.inverse(base), abs(n), p)
         elif op in ("sin", "cos", "tan"):
-            c, s = self.field.circle(self._form(operation[1]))
+            c, s = self.points[operation[1]] = self._point(operation[1])
             self.values[i] = {"sin": s, "cos": c}[op] if op != "tan" else s * self.field.inverse(c) % p
         elif op == "sqrt":
             self.values[i] = self.field.root(self.values[operation[1]])
-        elif op in ("sub", "neg", "div"):
-            self._rational(i, operation)
+            self.is_exact &= self._number(operation[1]) is not None
+        elif op == "neg":
+            self.values[i] = -self.values[operation[1]] % p
+        elif op == "div":
+            self.values[i] = self.values[operation[1]] * self.field.inverse(self.values[operation[2]]) % p
         else:
             self._other(i, operation)
-
-    def _rational(self, i: int, operation: Operation) -> None:
-        op, p = operation[0], self.field.prime
-        a, b = self.values[operation[1]], self.values[operation[-1]]
-        result = a - b if op == "sub" else -a if op == "neg" else a * self.field.inverse(b)
-        self.values[i] = result % p
 
     def _other(self, i: int, operation: Operation) -> None:
         """Independent values, the same for the same arguments; pi is acos(-1)."""
@@ -138,6 +194,12 @@ class _Run:
         self.values[i] = self.field.points[key][0]
         if key == ("acos", self.field.prime - 1):
             self.linear[i] = {}, Fraction(1)
+        else:
+            self.is_exact = False
+
+    def _point(self, i: int) -> Point:
+        """(cos, sin) of an operation."""
+        return self.points.get(i) or self.field.circle(self._form(i))
 
     def _form(self, i: int) -> AngleForm:
         """An operation as multiples of atoms and of pi."""
@@ -161,7 +223,9 @@ class _Run:
                 stack.append((other, factor * value if op == "mul" else factor / value))
             else:
                 atom = self.values[k]
+                self.is_exact &= op == "sym"
                 terms[atom] = terms.get(atom, Fraction(0)) + factor
+        self.is_exact &= (12 * turns).denominator == 1
         return {atom: x for atom, x in terms.items() if x}, turns
 
     def _number(self, i: int) -> Fraction | None:

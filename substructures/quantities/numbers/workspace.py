@@ -66,14 +66,28 @@ class Workspace:
 
         Raises InvalidDocument (``division-by-zero``) when a formula divides by one of the symbols ``zero``.
         """
-        found = self._replayed([name], bindings)[name].entries
+        found = self.formulas([name], bindings)[name].entries
         return {index: x for index, x in found.items() if isinstance(x, Expr)}
+
+    def formulas(self, names: Sequence[str], bindings: Mapping[str, Expr] | None = None) -> dict[str, Formulas]:
+        """Several outputs as they are stored. Raises as :meth:`independent`."""
+        require_stored(self.model.program, names)
+        bound = dict.fromkeys(self.zero, self.graph.zero) | dict(bindings or {})
+        try:
+            return replay(self.model.program, self.graph, bound, names, None if bindings else self._known)
+        except ZeroDivisionError:
+            if not self.zero:
+                raise
+            zeros = ", ".join(f"'{x}'" for x in sorted(self.zero & set(self.model.parameters)))
+            raise InvalidDocument.at(
+                "/parameters", "division-by-zero", f"a formula divides by zero when these are zero: {zeros}"
+            ) from None
 
     def outputs(self, names: Sequence[str], bindings: Mapping[str, Expr] | None = None) -> dict[str, Entries]:
         """All non-zero elements of several outputs, those that follow from a symmetry included. Raises as
         :meth:`independent`.
         """
-        found = self._replayed(names, bindings)
+        found = self.formulas(names, bindings)
         return {name: _non_zero(found[name]) for name in names}
 
     def elements(self, name: str) -> Entries:
@@ -189,19 +203,6 @@ class Workspace:
         found = program(self.graph, outputs, self.symbols)
         self.graph.release()
         return found
-
-    def _replayed(self, names: Sequence[str], bindings: Mapping[str, Expr] | None) -> dict[str, Formulas]:
-        require_stored(self.model.program, names)
-        bound = dict.fromkeys(self.zero, self.graph.zero) | dict(bindings or {})
-        try:
-            return replay(self.model.program, self.graph, bound, names, None if bindings else self._known)
-        except ZeroDivisionError:
-            if not self.zero:
-                raise
-            zeros = ", ".join(f"'{x}'" for x in sorted(self.zero & set(self.model.parameters)))
-            raise InvalidDocument.at(
-                "/parameters", "division-by-zero", f"a formula divides by zero when these are zero: {zeros}"
-            ) from None
 
 
 def momentum(coordinate: str) -> str:

@@ -4,23 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import lru_cache
 from math import prod
 
 import numpy as np
 
 from substructures.analysis.equations.expressions import read_expressions
 from substructures.analysis.equations.first_integrals import first_integrals
-from substructures.analysis.equations.integral import FirstIntegrals, Integral
+from substructures.analysis.equations.integral import SIZES, FirstIntegrals, Integral
 from substructures.analysis.motion.judges.states import ROUNDING, Condition, MotionStates, spread
 from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
-from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
-from substructures.expr.known import Known
-from substructures.expr.program import Program, program
-from substructures.expr.replay import replay
-from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import Model
 from substructures.tree.numbers import with_numbers
 
@@ -31,13 +25,12 @@ SIZED = {
     "spin": "angular_momentum",
     "subsystem": "energy",
 }
-SCALES = ("metric", "linear_momentum", "angular_momentum", "potential_energy")
 
 
 @dataclass(frozen=True)
 class AlongMotion:
     """First integrals along motions: ``series``: all of them, and the power where there is any, (..., K); ``sizes``:
-    SCALES, (..., K) and their own axes. What judges changes ``series``.
+    what SIZES are, (..., K) and their own axes. What judges changes ``series``.
     """
 
     model: Model
@@ -49,28 +42,12 @@ class AlongMotion:
     @classmethod
     def of(cls, model: Model, integrals: FirstIntegrals, states: MotionStates) -> AlongMotion:
         """All of them at once."""
-        source = _in_one(Known(integrals.program.digest, integrals.program), known_model(model))
+        source = integrals.along
         found = states.found(model, source, list(source.outputs))
-        sizes = {name: found.pop(_size(name)) for name in SCALES}
-        if not integrals.program.outputs["power"].entries or "energy" not in found:
+        sizes = {name: found.pop(size) for size, name in SIZES.items()}
+        if not source.outputs["power"].entries or "energy" not in found:
             del found["power"]
         return cls(model, integrals, states, found, sizes)
-
-
-@lru_cache(maxsize=32)
-def _in_one(integrals: Known, model: Known) -> Program:
-    """Integrals and SCALES, which share most of their operations."""
-    graph, source = Graph(), model.source.program
-    outputs = replay(integrals.source, graph, {})
-    outputs |= {_size(name): one for name, one in replay(source, graph, {}, SCALES).items()}
-    found = program(graph, outputs, {s.name: s for s in (*source.symbols, *integrals.source.symbols)})
-    graph.release()
-    return found
-
-
-def _size(name: str) -> str:
-    """The output that one of SCALES is: no integral is named so."""
-    return f"size of {name}"
 
 
 def conditions(along: AlongMotion) -> Iterator[Condition | Check]:
@@ -197,4 +174,4 @@ def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) 
     told = str(found.summary()["integrals"])
     if shape is not model and (found.degree > 1 or any(name in told for name in shape.numbers)):
         return first_integrals(model, forces, zero)
-    return replace(found, program=with_numbers(found.program, shape.numbers))
+    return replace(found, along=with_numbers(found.along, shape.numbers))
