@@ -15,6 +15,7 @@ from simulated import simulated
 from substructures import Model
 from substructures.analysis.closed.branches import change, singular_part
 from substructures.analysis.closed.constrained import Singular
+from substructures.analysis.closed.jacobian import Rows
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.simulate import ClosedMotion, Integrator, Outputs, simulate
@@ -113,9 +114,9 @@ def test_beside_a_dead_centre_a_motion_stays_on_its_branch(method: str, longer: 
         assert least < -0.2
 
 
-def rows(x: float, y: float) -> np.ndarray:
+def rows(x: float, y: float) -> Rows:
     """G of phi = x y, whose branches are both axes; they cross in the origin."""
-    return np.array([[y, x]])
+    return Rows(np.array([[y, x]]))
 
 
 def test_how_far_one_branch_reaches() -> None:
@@ -126,21 +127,26 @@ def test_how_far_one_branch_reaches() -> None:
     # rows in other units, or added to each other, say the same
     mixing = np.array([[1e3, 0], [3, 1e-2]])
     one, other = np.array([[1, 2, 0], [0, 1, 1.0]]), np.array([[1.1, 2, 0.1], [0, 0.9, 1.0]])
-    assert change(one, other) < 0.5
-    assert change(mixing @ one, mixing @ other) == pytest.approx(change(one, other), rel=1e-6)
+    found = change(Rows(one), Rows(other))
+    assert found < 0.5
+    assert change(Rows(mixing @ one), Rows(mixing @ other)) == pytest.approx(found, rel=1e-6)
+    # a bound is enough where it is below what is asked for, and never below the change
+    for enough in np.linspace(0, 1, 11):
+        bound = change(Rows(one), Rows(other), enough)
+        assert bound == pytest.approx(found) or found < bound <= enough
 
 
-def along(part: float) -> np.ndarray | None:
+def along(part: float) -> Rows | None:
     """From (1, 0) through the origin to (-1, 0)."""
     return None if abs(1 - 2 * part) < 1e-3 else rows(1 - 2 * part, 0)
 
 
-def leaping(part: float) -> np.ndarray:
+def leaping(part: float) -> Rows:
     """From one axis to the other, beside the origin."""
     return rows(1 - part, 0) if part < 0.3 else rows(0, 1 - part)
 
 
-def hyperbola(part: float) -> np.ndarray:
+def hyperbola(part: float) -> Rows:
     """Along x y = 0.01, which has no singular position."""
     u = 3 - 6 * part
     return rows(0.1 * np.exp(u), 0.1 * np.exp(-u))

@@ -15,9 +15,9 @@ from __future__ import annotations
 from collections.abc import Callable
 
 import numpy as np
-import scipy
 
 from substructures.analysis.closed.constrained import SINGULAR, Singular
+from substructures.analysis.closed.jacobian import Rows
 from substructures.analysis.closed.pivoting import singular_values
 from substructures.array import Array
 
@@ -31,22 +31,27 @@ FINEST = 2.0**-20
 LOOKS = 500
 
 
-def change(A: Array, B: Array) -> float:
-    """The larger one of |S^-1 U^T (B - A)|, A = U S V^T, and of the same with A and B exchanged; r rows of G each."""
-    return max(_from(A, B - A), _from(B, B - A))
+def change(A: Rows, B: Rows, enough: float = 0.0) -> float:
+    """The larger one of |S^-1 U^T (B - A)|, A = U S V^T, and of the same with A and B exchanged; r rows of G each.
+
+    Where a bound of it is at most ``enough``, this bound.
+    """
+    difference = B.G - A.G
+    return max(_from(A, difference, enough), _from(B, difference, enough))
 
 
-def _from(A: Array, difference: Array) -> float:
-    if not len(A):
+def _from(A: Rows, difference: Array, enough: float) -> float:
+    if not len(A.G):
         return 0.0
-    # A^T = V S U^T
-    _, S, Ut, info = scipy.linalg.lapack.dgesdd(A.T, full_matrices=0)
-    if info or not S[-1] > 0:
+    if not A.values[-1] > 0:
         return np.inf
-    return float(singular_values((Ut @ difference) / S[:, None])[0])
+    E = (A.left @ difference) / A.values[:, None]
+    # Frobenius' norm is not below the largest singular value
+    bound = float(np.vdot(E, E)) ** 0.5
+    return bound if bound <= enough else float(singular_values(E)[0])
 
 
-def singular_part(G_at: Callable[[float], Array | None], first: Array, last: Array) -> float | None:
+def singular_part(G_at: Callable[[float], Rows | None], first: Rows, last: Rows) -> float | None:
     """Where a step comes to a singular position first, 0 to 1; None: nowhere, it stays on one branch.
 
     ``first``, ``last``: independent rows of the balanced G at its ends; ``G_at``: the same at a part of it, None where
@@ -57,7 +62,7 @@ def singular_part(G_at: Callable[[float], Array | None], first: Array, last: Arr
         if not left:
             return None
         low, A, high, B = left.pop()
-        if change(A, B) <= NEXT:
+        if change(A, B, NEXT) <= NEXT:
             continue
         if high - low < FINEST:
             break

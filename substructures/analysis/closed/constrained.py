@@ -21,7 +21,8 @@ import scipy
 from numpy.typing import NDArray
 
 from substructures.analysis.arguments import NumberOrExpression
-from substructures.analysis.closed.pivoting import pivoted, singular_values
+from substructures.analysis.closed.jacobian import Jacobian
+from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.closed.work import POWER, with_power
 from substructures.analysis.motion.conditions import read_conditions, state_names
@@ -106,8 +107,10 @@ class Constrained:
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
         self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
+        self._turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
         self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
         self.G = np.zeros((m, n))
+        self._jacobian: Jacobian | None = None
         # of q_a - s(t): d phi / d q_a = 1
         for k, a in enumerate(self.prescribed.index):
             self.G[self.closed + k, a] = 1
@@ -167,10 +170,10 @@ class Constrained:
             columns[:, : self.closed], spans[:, : self.closed] = found
         return RowBounds(columns, spans)
 
-    def move(self, t: float, q: Array, qd: Array) -> None:
-        """Evaluate everything at a state."""
+    def move(self, t: float, q: Array, qd: Array, *, jacobian: Jacobian | None = None) -> None:
+        """Evaluate everything at a state. ``jacobian``: as it is at t and q, where that is known."""
         n, x, out = self.n, self._x[0], self._out
-        self.t, self.q, self.qd = t, q, qd
+        self.t, self.q, self.qd, self._jacobian = t, q, qd, jacobian
         x[:n], x[n:], self._t[0] = q, qd, t
         self.inputs.fill()
         self._laws.run()
@@ -242,14 +245,20 @@ class Constrained:
         return float(np.abs(self.velocity_residual / self.width).max(initial=0))
 
     @property
-    def balanced(self) -> Array:
+    def jacobian(self) -> Jacobian:
         """G with its rows over their ``reach``: numbers without unit, about 1 away from singular positions."""
-        return np.asarray(self.G / self.reach[:, None], dtype=np.float64)
+        if self._jacobian is None:
+            self._jacobian = Jacobian(self.G / self.reach[:, None])
+        return self._jacobian
 
-    def share(self, rank: int, rows: NDArray[np.int64] | slice = ALL) -> float:
-        """The rank-th singular value of (some rows of) the balanced G, over the largest there, or elsewhere."""
-        values = singular_values(self.balanced[rows]) if rank else np.ones(1)
-        return 0.0 if len(values) < rank else float(values[rank - 1] / max(values[0], 1.0))
+    @property
+    def balanced(self) -> Array:
+        """The numbers of :attr:`jacobian` (m, n)."""
+        return self.jacobian.G
+
+    def share(self, rank: int) -> float:
+        """The rank-th singular value of the balanced G, over the largest there, or elsewhere."""
+        return self.jacobian.share(rank) if rank else 1.0
 
     @property
     def energies(self) -> tuple[float, float]:
@@ -263,8 +272,7 @@ class Constrained:
     @property
     def effort(self) -> float:
         """|Q_a| |q^a|, angles no less than 1: what forces do on the way to here, by which rounding is known [J]."""
-        turns = np.array([joint == "R" for joint in self.model.joints])
-        way = np.where(turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
+        way = np.where(self._turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
         return float(np.abs(self._out["forces"][0]) @ way)
 
     @property

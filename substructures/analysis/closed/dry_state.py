@@ -9,6 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.analysis.closed.constrained import Constrained, Equations, Singular
+from substructures.analysis.closed.jacobian import Jacobian
 from substructures.analysis.closed.pivoting import pivoted, singular_values
 from substructures.analysis.closed.sticking_forces import RANK, holding, unit_rows
 from substructures.analysis.motion.friction.dry_friction import FrictionLaws, Signs, friction_laws
@@ -41,9 +42,9 @@ class DryConstrained(Constrained):
         self.friction, self._smooth, self._without = np.zeros(k), np.zeros(k), np.zeros(self.n)
         self._forces = DryForces(tuple(self.laws.places.tolist()), self.laws.numbers)
 
-    def move(self, t: float, q: Array, qd: Array) -> None:
+    def move(self, t: float, q: Array, qd: Array, *, jacobian: Jacobian | None = None) -> None:
         """Evaluate everything at a state; ``f`` is without what sticks."""
-        super().move(t, q, qd)
+        super().move(t, q, qd, jacobian=jacobian)
         self._ways = None
         v = qd[self.laws.places]
         self._smooth = self.laws.smooth(v)

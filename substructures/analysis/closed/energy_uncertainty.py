@@ -14,7 +14,6 @@ where S_p / S_1 is 1e-3. It is found by evaluating both states; no property of t
 from __future__ import annotations
 
 import numpy as np
-import scipy
 
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import CLOSED
@@ -35,13 +34,13 @@ def energy_uncertainty(s: Constrained, rank: int, t: Array, x: Array, ends: Arra
         return np.zeros(len(t))
     shares, found = np.full(len(t), np.nan), np.zeros(len(t))
     for k in np.flatnonzero(np.isfinite(x).all(axis=1)).tolist():
-        s.move(float(t[k]), *np.split(x[k], 2))
+        s.move(float(t[k]), x[k, : s.n], x[k, s.n :])
         shares[k] = s.share(rank)
     best = float(np.nanmax(shares, initial=0))
     some = np.linspace(0, len(t) - 1, FEW).astype(np.int64)
     for k in np.union1d(np.flatnonzero(shares < NEAR * best), some).tolist():
         if np.isfinite(shares[k]):
-            s.move(float(t[k]), *np.split(x[k], 2))
+            s.move(float(t[k]), x[k, : s.n], x[k, s.n :])
             found[k] = _difference(s, rank, float(shares[k]) / best)
     worst = np.maximum.accumulate(np.nan_to_num(found, nan=0.0))
     after = np.append(ends, np.inf)[np.searchsorted(ends, t)]
@@ -51,16 +50,16 @@ def energy_uncertainty(s: Constrained, rank: int, t: Array, x: Array, ends: Arra
 def _difference(s: Constrained, rank: int, part: float) -> float:
     """The largest difference of T + V between where s is and beside it; ``part``: the share there over the best one."""
     t, q, qd, energy = s.t, s.q, s.qd, sum(s.energies)
-    _, S, W = scipy.linalg.svd(s.balanced)
+    S, V = s.jacobian.values, s.jacobian.right
     # r: of rounding, and what project() leaves open, over the lengths of the rows
     rounding = UNITS * np.finfo(float).eps * max(1.0, float(np.abs(q).max())) * max(1.0, float(S[0]))
     opening = rounding + part**2 * CLOSED / 100 * float((s.width / s.reach).max())
-    return max(abs(_energy(s, rank, t, q + opening / S[k] * W[k], qd) - energy) for k in range(rank))
+    return max(abs(_energy(s, rank, t, q + opening / S[k] * V[:, k], qd) - energy) for k in range(rank))
 
 
 def _energy(s: Constrained, rank: int, t: float, q: Array, qd: Array) -> float:
     """T + V with the nearest velocities that meet the closures at q."""
     s.move(t, q, qd)
-    U, S, W = scipy.linalg.svd(s.balanced)
-    s.move(t, q, qd - W[:rank].T @ ((U[:, :rank].T @ (s.velocity_residual / s.reach)) / S[:rank]))
+    G = s.jacobian
+    s.move(t, q, qd - G.right[:, :rank] @ ((G.left[:rank] @ (s.velocity_residual / s.reach)) / G.values[:rank]))
     return sum(s.energies)

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Callable, Collection
 from dataclasses import dataclass
 
 import numpy as np
 import scipy
 from numpy.typing import NDArray
 
-from substructures.analysis.closed.constrained import Constrained, Factor
+from substructures.analysis.closed.constrained import Constrained
 from substructures.array import Array
 from substructures.mechanics.closure_rows import RANK
 
@@ -141,20 +141,18 @@ def _rate_message(s: Constrained, fixed: Collection[str]) -> str:
 
 
 def project(
-    s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int64], closed: float = CLOSED / 100
-) -> tuple[Array, Array, Factor]:
-    """The nearest state in the metric that meets the independent ``rows``; for states that nearly do.
+    s: Constrained, t: float, q: Array, qd: Array, rows: NDArray[np.int64], closed: Callable[[], float]
+) -> tuple[Array, Array]:
+    """The nearest state in the metric that meets the independent ``rows``; for states that nearly do, where s is.
 
-    dq = -g^-1 G^T mu with G dq = -phi, repeated until residuals are below ``closed`` or no longer halved, and one step
-    of the same kind for the velocities; s stays at the result. Returns the factors of [g G^T; G 0] there. Raises
-    Singular.
+    dq = -g^-1 G^T mu with G dq = -phi, repeated until residuals are below ``closed`` of where s is, at most CLOSED /
+    100, or no longer halved, and one step of the same kind for the velocities; s stays at the result. Raises Singular.
     """
-    s.move(t, q, qd)
     factor = s.factor(rows)
-    nothing, size = np.zeros(s.n), np.inf
+    nothing, width, size = np.zeros(s.n), s.width[rows], np.inf
     for _ in range(8):
-        before, size = size, _largest(s.phi[rows] / s.width[rows])
-        if size <= closed or before / 2 < size:
+        before, size = size, _largest(s.phi[rows] / width)
+        if (size <= CLOSED / 100 and size <= closed()) or before / 2 < size:
             break
         # g dq + G^T mu = 0, G dq = -phi
         q = q + factor.solve(nothing, -s.phi[rows])[0]
@@ -162,5 +160,5 @@ def project(
         factor = s.factor(rows)
     # g dq' + G^T mu = 0, G dq' = -(G q' + phi_t)
     qd = qd + factor.solve(nothing, -s.velocity_residual[rows])[0]
-    s.move(t, q, qd)
-    return q, qd, factor
+    s.move(t, q, qd, jacobian=s.jacobian)
+    return q, qd

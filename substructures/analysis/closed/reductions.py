@@ -82,10 +82,12 @@ class Reduction(ABC):
 
     def land(self, t: float, y: Array) -> tuple[Array, Array]:
         """The state of y (q, q'), on the closures; s stays there. Raises Singular."""
-        q, qd = self.unpack(t, y)
+        return project(self.s, t, *self.unpack(t, y), self.rows, self._closed)
+
+    def _closed(self) -> float:
+        """Residuals over their width that count as none where s is."""
         part = min(1.0, self.s.share(self.rank) / self.best_share) if self.best_share else 1.0
-        q, qd, _ = project(self.s, t, q, qd, self.rows, part**2 * CLOSED / 100)
-        return q, qd
+        return part**2 * CLOSED / 100
 
     def is_singular(self) -> bool:
         """Whether s is at a singular position, or so near that it counts as one."""
@@ -110,7 +112,7 @@ class Reduction(ABC):
         self.best_share = max(self.best_share, share)
         if self.is_singular():
             raise Singular(SINGULAR)
-        if anew or self.s.share(self.rank, self.rows) < WORN * share:
+        if anew or self.s.jacobian.rows(self.rows).share(self.rank) < WORN * share:
             self.rows = np.sort(pivoted(self.s.balanced.T, self.rank)[: self.rank])
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
@@ -24,11 +24,13 @@ from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.integration import STIFF, IntegratedMotion, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
+from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges.states import energy_balance, unbalanced
 from substructures.analysis.motion.problems.kinds import ClosedMotion
-from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
+from substructures.analysis.motion.single_steps import careful, one_by_one
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
 from substructures.analysis.verdict import Check
 from substructures.array import Array
@@ -39,7 +41,6 @@ from substructures.tree.model import Model
 RESIDUAL = 1e-9
 #: of the event where the closures lose rank
 LOST_RANK = "lost-rank"
-OPENINGS = ("opening", "opening_rate")
 #: explicit ones, and implicit ones for stiff motions, that go on from the closures after every step
 METHODS = (*EXPLICIT, "Radau", "BDF")
 #: steps from which on it is looked whether friction makes a motion stiff, and near rest: in velocities v_0 of its law
@@ -87,15 +88,30 @@ def simulate_closed(problem: ClosedProblem) -> Trajectory:
     motion = _moved(s, problem, x, place.rank, progress, folder)
     found = _judged(s, problem, motion, place.rank)
     found = replace(found, message=". ".join(filter(None, (found.message, _stiff(s, problem, motion)))))
+    return replace(found, checks=(*found.checks, *_again(s, problem, motion, place.rank)))
+
+
+def _again(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, rank: int) -> tuple[Check, ...]:
+    """What is found when the motion, or steps of it, are computed once more."""
     s.conditions = replace(s.conditions, events=())
 
     def move(other: ClosedProblem, y: Array, told: ProgressReport | None, turning: bool) -> IntegratedMotion:
         """The motion once more."""
-        return _moved(s, other, y, place.rank, told, None, turning)
+        return _moved(s, other, y, rank, told, None, turning)
 
-    is_whole, groups = bool(s.conditions.varied_potential()), state_groups(s.n, s.n)
-    again = computed_again(problem, motion, groups, move, is_whole=is_whole)
-    return replace(found, checks=(*found.checks, *again))
+    is_whole, alone = bool(s.conditions.varied_potential()), None
+    if not (is_whole or isinstance(s, DryConstrained)):
+        s.move(motion.step_t[0], *_state(s, motion.step_x[0]))
+        reduction = REDUCTIONS[problem.kind.reduction](s, rank)
+        alone = one_by_one(reduction, _landing(reduction, careful(problem.integrator)), s.inputs.enter)
+    again = computed_again(problem, motion, state_groups(s.n, s.n), move, is_whole=is_whole, alone=alone)
+    s.inputs.leave()
+    return again
+
+
+def _state(s: Constrained, x: Array) -> tuple[Array, Array]:
+    """q, q' of (q, q', work)."""
+    return x[: s.n], x[s.n : 2 * s.n]
 
 
 def _stiff(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion) -> str:
@@ -132,14 +148,9 @@ def _moved(
 ) -> IntegratedMotion:
     """The motion. ``turning``: it begins anew at corners of force laws."""
     reduction: Reduction = REDUCTIONS[problem.kind.reduction](s, rank)
-    inner, span, breaks = problem.integrator.stepper(), problem.span, s.conditions.breaks(problem.span)
+    span, breaks = problem.span, s.conditions.breaks(problem.span)
     s.inputs.enter(span[0], [*breaks, span[1]][0])
-
-    def stepper(_f: object, t: float, y: Array, end: float) -> ClosedStepper:
-        """The stepper that lands on the closures."""
-        return ClosedStepper(reduction, inner, t, y, end)
-
-    settings = IntegratorSettings(stepper, problem.integrator.max_steps, ADVICE)
+    settings = IntegratorSettings(_landing(reduction, problem.integrator), problem.integrator.max_steps, ADVICE)
     watches, told = s.conditions.watches(lambda _, y: y[:-1], folder), share_of(span, progress)
     given = x, span, problem.times.grid(), settings
     motion: IntegratedMotion
@@ -153,11 +164,22 @@ def _moved(
     return motion
 
 
+def _landing(reduction: Reduction, integrator: Integrator) -> Stepper:
+    """Steps that land on the closures."""
+    inner = integrator.stepper()
+
+    def stepper(_f: object, t: float, y: Array, end: float, first_step: float | None = None) -> ClosedStepper:
+        """From y at t on."""
+        return ClosedStepper(reduction, inner, t, y, end, first_step)
+
+    return stepper
+
+
 def _judged(s: Constrained, problem: ClosedProblem, motion: IntegratedMotion, rank: int) -> Trajectory:
     """The motion with its series and checks."""
     t, x, results = motion.judged()
     judged = _at_states(_judged_quantities, s, t, x) | {"work": x[:, -1]}
-    residuals, effort = _residual_checks(t, [judged.pop(name) for name in OPENINGS]), judged.pop("effort")
+    residuals, effort = list(_residual_checks(t, judged, s.width)), judged.pop("effort")
     names = s.conditions.varied_potential()
     if names:
         balance = unbalanced(names)
@@ -206,7 +228,7 @@ def _at_states(
     """Quantities of a state at all states (q, q', work)."""
     rows = []
     for at, state in zip(t.tolist(), x, strict=True):
-        s.move(at, *np.split(state[:-1], 2))
+        s.move(at, *_state(s, state))
         rows.append(quantities(s))
     like = {name: np.shape(value) for name, value in quantities(s).items()}
     return {name: np.array([row[name] for row in rows]).reshape(len(rows), *shape) for name, shape in like.items()}
@@ -236,21 +258,21 @@ def _judged_quantities(s: Constrained) -> dict[str, Any]:
     return {
         "kinetic_energy": kinetic,
         "potential_energy": potential,
-        "position_residual": np.abs(s.phi).max(initial=0),
-        "velocity_residual": np.abs(s.velocity_residual).max(initial=0),
+        "position_residual": s.phi.copy(),
+        "velocity_residual": s.velocity_residual,
         "effort": s.effort,
-        "opening": s.opening,
-        "opening_rate": s.opening_rate,
     }
 
 
-def _residual_checks(t: Array, columns: Sequence[Array]) -> Iterator[Check]:
-    """``columns``: the OPENINGS."""
+def _residual_checks(t: Array, judged: dict[str, Array], width: Array) -> Iterator[Check]:
+    """Of the residuals of all rows (K, m), in whose place the largest of each state are put."""
     about = ("position residual", "the closures (and prescribed motions) are met", "1")
     rate = ("velocity residual", "G q' + phi_t = 0", "1/s")
     # max_k |phi_k| / width_k, max_k |(G q' + phi_t)_k| / width_k
-    for (name, reason, unit), residual in zip((about, rate), columns, strict=True):
-        yield Check.of((name, "zero", reason, unit), residual, t, 1.0, RESIDUAL)
+    for series, (name, reason, unit) in {"position_residual": about, "velocity_residual": rate}.items():
+        rows = np.abs(judged[series])
+        judged[series] = rows.max(axis=1, initial=0)
+        yield Check.of((name, "zero", reason, unit), (rows / width).max(axis=1, initial=0), t, 1.0, RESIDUAL)
 
 
 def _nothing(model: Model, state: Consistent, t: float, message: str) -> Trajectory:

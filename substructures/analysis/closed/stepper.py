@@ -14,6 +14,7 @@ import scipy
 
 from substructures.analysis.closed.branches import FAR, change, singular_part
 from substructures.analysis.closed.constrained import SINGULAR, Singular
+from substructures.analysis.closed.jacobian import Jacobian, Rows
 from substructures.analysis.closed.reductions import Reduction
 from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.steppers import Stepper, within
@@ -48,16 +49,28 @@ class _Step(NamedTuple):
 class ClosedStepper:
     """For states x = (q, q', work) on the closures; the attributes are those of scipy.integrate.OdeSolver."""
 
-    def __init__(self, reduction: Reduction, make: Stepper, t: float, x: Array, end: float) -> None:
+    def __init__(
+        self, reduction: Reduction, make: Stepper, t: float, x: Array, end: float, first_step: float | None = None
+    ) -> None:
         """Raises Singular."""
-        self.reduction, self.s, self.make, self.end = reduction, reduction.s, make, end
+        self.reduction, self.s, self.make = reduction, reduction.s, make
+        self.inner: Any = None
+        self._counted = 0
+        self.begin(t, x, end, first_step)
+
+    def begin(self, t: float, x: Array, end: float, first_step: float | None = None) -> None:
+        """From another state on. Raises Singular."""
         self.t = self.t_old = t
-        self.y, self.status, self._counted = x, "running", 0
-        self._way = x[: self.s.n], x[: self.s.n]
-        self.s.move(t, *self._state())
-        reduction.choose()
-        self.inner = self._begun(None)
+        self.y, self.end, self.status = x, end, "running"
         self.fresh, self._message = True, ""
+        self._landed = self._state()
+        self._way = self._landed[0], self._landed[0]
+        self.s.move(t, *self._landed)
+        is_other = self.reduction.choose()
+        if first_step is not None and not is_other and isinstance(self.inner, CompiledStepper):
+            self.inner.begin(t, self._packed(), end, first_step)
+        else:
+            self.inner = self._begun(first_step)
 
     @property
     def nfev(self) -> int:
@@ -68,9 +81,13 @@ class ClosedStepper:
         n = self.s.n
         return self.y[:n], self.y[n : 2 * n]
 
+    def _packed(self) -> Array:
+        """The present state as the reduction has it."""
+        return self.reduction.pack(*self._state(), float(self.y[-1]))
+
     def _begun(self, first: float | None) -> Any:
         """An integrator from the present state."""
-        y = self.reduction.pack(*self._state(), float(self.y[-1]))
+        y = self._packed()
         step = {} if first is None else {"first_step": min(first, self.end - self.t)}
         return self.make(self.reduction, self.t, y, self.end, **step)
 
@@ -79,8 +96,7 @@ class ClosedStepper:
         if self._message:
             self.status = "failed"
             return self._message
-        self._prepare()
-        before = self.s.balanced
+        before = self._prepare()
         self.t_old = self.t
         try:
             step = self._advanced(before)
@@ -92,7 +108,8 @@ class ClosedStepper:
         if step.stop is not None:
             self._stop_before(*step.stop)
             return None
-        self.t, self.y = float(self.inner.t), np.concatenate((step.q, step.qd, self.inner.y[-1:]))
+        self._landed = step.q, step.qd
+        self.t, self.y = float(self.inner.t), np.concatenate((*self._landed, self.inner.y[-1:]))
         self.status = self.inner.status
         return None
 
@@ -112,17 +129,19 @@ class ClosedStepper:
             return False
         return not self.reduction.is_singular()
 
-    def _prepare(self) -> None:
-        """Where s is on the closures: the reduction is chosen anew if it is worn, and the integrator begins there."""
-        self.s.move(self.t, *self._state())
+    def _prepare(self) -> Jacobian:
+        """G on the closures, where the reduction is chosen anew if it is worn, and the integrator begins."""
+        if self.s.q is not self._landed[0]:
+            # since the last step other states were looked at
+            self.s.move(self.t, *self._state())
+        jacobian = self.s.jacobian
         if self.fresh:
             self.fresh = False
-            return
-        if self.reduction.choose():
+        elif self.reduction.choose():
             self._begin(self.inner.h_abs)
         else:
-            self._go_on(self.reduction.pack(*self._state(), float(self.y[-1])))
-        self.s.move(self.t, *self._state())
+            self._go_on(self._packed())
+        return jacobian
 
     def _go_on(self, y: Array) -> None:
         """The next step goes on from the state on the closures: y and y' there."""
@@ -140,8 +159,8 @@ class ClosedStepper:
         self._counted += self.inner.nfev
         self.inner = self._begun(first)
 
-    def _advanced(self, before: Array) -> _Step:
-        """One step of the integrator, landed on the closures; ``before``: the balanced G at its start.
+    def _advanced(self, before: Jacobian) -> _Step:
+        """One step of the integrator, landed on the closures; ``before``: G at its start.
 
         Raises Singular.
         """
@@ -157,7 +176,7 @@ class ClosedStepper:
         self._way = old, q
         return _Step(message, q, qd, self._looked_at(before, qd))
 
-    def _retried(self, before: Array) -> _Step:
+    def _retried(self, before: Jacobian) -> _Step:
         """Shorter steps with other rows and coordinates from the present state, until one succeeds."""
         failure = Singular(SINGULAR)
         for _ in range(RETRIES):
@@ -172,28 +191,28 @@ class ClosedStepper:
                 failure = error
         raise failure
 
-    def _looked_at(self, before: Array, qd: Array) -> tuple[float, str] | None:
+    def _looked_at(self, before: Jacobian, qd: Array) -> tuple[float, str] | None:
         """Whether the way from the last state to s comes to a singular position; see _Step. Raises Singular."""
         rows, old = self.reduction.rows, self._state()[1]
         if not len(rows):
             return None
-        first, last = before[rows], self.s.balanced[rows]
+        first, last = before.rows(rows), self.s.jacobian.rows(rows)
         singular = self.reduction.is_singular()
         fastest = max(float(np.abs(old).max()), float(np.abs(qd).max()))
         kinked = bool(np.abs(qd - old).max() > KINK * fastest)
-        part = singular_part(self._inside(), first, last) if kinked or change(first, last) > FAR else None
+        part = singular_part(self._inside(), first, last) if kinked or change(first, last, FAR) > FAR else None
         if part is not None:
             time = self.t + part * float(self.inner.t - self.t)
             return time, f"a singular position is passed near t = {time:.6g} s: {SINGULAR}"
         return (float(self.inner.t), SINGULAR) if singular else None
 
-    def _inside(self) -> Callable[[float], Array | None]:
+    def _inside(self) -> Callable[[float], Rows | None]:
         """The independent rows of the balanced G at a part of the last step; None where it is singular."""
         state, start, h = self.rough_output(), self.t, self.inner.t - self.t
 
-        def rows_of_G(part: float) -> Array | None:
+        def rows_of_G(part: float) -> Rows | None:
             state(start + part * h)
-            return None if self.reduction.is_singular() else self.s.balanced[self.reduction.rows]
+            return None if self.reduction.is_singular() else self.s.jacobian.rows(self.reduction.rows)
 
         return rows_of_G
 

@@ -14,7 +14,6 @@ from typing import Any
 
 import numpy as np
 
-from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion
 from substructures.analysis.motion.integrators.steppers import Stepper
@@ -124,14 +123,17 @@ def one_by_one(f: Function, stepper: Stepper, enter: Callable[[float, float], No
         enter(*span)
         half = (span[1] - span[0]) / 2
         with np.errstate(all="ignore"):
-            if isinstance(solver, CompiledStepper):
-                solver.begin(span[0], x, span[1], half)
-            else:
-                solver = stepper(f, span[0], x, span[1], first_step=half)
-            for _ in range(MOST):
-                message = solver.step()
-                if solver.status != "running":
-                    break
+            try:
+                if hasattr(solver, "begin"):
+                    solver.begin(span[0], x, span[1], half)
+                else:
+                    solver = stepper(f, span[0], x, span[1], first_step=half)
+                for _ in range(MOST):
+                    message = solver.step()
+                    if solver.status != "running":
+                        break
+            except ValueError as error:  # of what is not finite
+                raise ArithmeticError(str(error)) from error
         if solver.status != "finished" or not np.isfinite(solver.y).all():
             raise ArithmeticError(message or f"{MOST:,} steps do not reach its end, or it is not finite")
         return np.array(solver.y, dtype=np.float64)
