@@ -10,7 +10,7 @@ from typing import Any
 from substructures.certificate.bodies import CHAINS, coordinates_of, in_order, limits_of
 from substructures.certificate.closures import ROWS
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.relations import is_ball, moved, mover, positions_of, rates_of
+from substructures.certificate.relations import is_ball, is_still, mover, positions_of, rates_of
 
 #: fields of a tree that take coordinates out of its equations
 GIVEN = ("driven", "ignored")
@@ -44,7 +44,7 @@ def described(tree: Plain, definitions: Mapping[str, Plain]) -> dict[str, Any]:
 def _bound(instance: str, definition: Plain) -> Iterable[str]:
     """Coordinates that limits of joints bound; of joints that move with one without moving it, none."""
     for joint, step, q in _joints_of(definition):
-        if limits_of(joint, step) and not _is_still(definition, q):
+        if limits_of(joint, step) and not is_still(definition, q):
             yield f"{instance}.{mover(definition, q)}"
 
 
@@ -167,16 +167,6 @@ def _joints_of(definition: Plain) -> Iterable[tuple[Plain, int, str]]:
     for body in in_order(definition):
         for step, name in enumerate(coordinates_of(body)):
             yield body["joint"], step, name
-
-
-def _is_still(definition: Plain, name: str) -> bool:
-    """Whether a relation holds a joint at rest: its multiplier is the number 0."""
-    relations = moved(definition)
-    while name in relations:
-        if relations[name].get("multiplier", 1) == 0:
-            return True
-        name = relations[name]["of"]
-    return False
 
 
 def hosts_first(tree: Plain) -> list[Plain]:

@@ -10,6 +10,7 @@ from substructures.certificate.bodies import Bodies, laws_of, limits_of, of_step
 from substructures.certificate.linear import Ball
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.outputs import Outputs
+from substructures.certificate.relations import is_still
 
 
 def limits(
@@ -22,8 +23,14 @@ def limits(
     n = len(bodies.joints)
     for name, inside, joints in loads:
         for a, (joint, step) in zip(joints, laws_of(definitions[name]), strict=True):
-            if bounds := limits_of(joint, step):
+            bounds = limits_of(joint, step)
+            if bounds and not _is_still(bodies, definitions, a):
                 _bounded(result.array("limits", (n, 2)), bodies, a, [inside.read(x) for x in bounds], inside)
+
+
+def _is_still(bodies: Bodies, definitions: Mapping[str, Plain], a: int) -> bool:
+    instance, _, name = bodies.joints[a].coordinate.partition(".")
+    return is_still(definitions[instance], name)
 
 
 def _bounded(found: dict[tuple[int, ...], Ball], bodies: Bodies, a: int, bounds: list[Ball], inside: Numbers) -> None:
@@ -31,8 +38,6 @@ def _bounded(found: dict[tuple[int, ...], Ball], bodies: Bodies, a: int, bounds:
     joint = bodies.joints[a]
     k = next(k for k, other in enumerate(bodies.joints) if other.coordinate == joint.mover)
     if k != a:
-        if joint.slope.is_zero():
-            return
         at = (
             inside.names[joint.coordinate.rpartition(".")[2]]
             - joint.slope * inside.names[joint.mover.rpartition(".")[2]]
@@ -65,7 +70,7 @@ def friction(
         fields = [inside.read(row.get(x, row["coulomb"])) for x in ("coulomb", "static", "stribeck", "velocity")]
         # q' of the joint is its slope times that of the coordinate: forces add up, rates are those of the coordinate
         rate, k = abs(bodies.joints[a].slope), index[bodies.joints[a].mover]
-        if not rate.is_zero():
+        if not _is_still(bodies, definitions, a):
             found = result.array("friction", (n, 4))
             for i, x in enumerate(fields):
                 found[k, i] = found.get((k, i), arb(0)) + x * rate if i < 2 else x / rate

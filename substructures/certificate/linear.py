@@ -108,11 +108,13 @@ def with_third_axis(direction: Matrix) -> Matrix:
     axis is e_i x direction, normalised, for the frame axis i that is least aligned with it.
     """
     given = direction.entries()
-    (largest, *rest) = sorted(range(3), key=lambda i: -abs(float(given[i].mid())))
+    (largest, *rest) = sorted(range(3), key=lambda i: -abs(given[i].mid()))
     if all(given[i].contains(0) for i in rest):
         renamed = onto_third_axis(largest)
         return renamed if given[largest] > 0 else renamed * arb_mat(3, 3, [1, 0, 0, 0, -1, 0, 0, 0, -1])
-    smallest = min(range(3), key=lambda i: abs(float(given[i].mid())))
+    # of components that are equal, however they are written, the first
+    sizes = [abs(x.mid()) for x in given]
+    smallest = next(i for i, size in enumerate(sizes) if not size > min(sizes) * (1 + arb(2) ** -80))
     third = direction / dot(direction, direction).sqrt()
     first = cross(unit(smallest), third)
     first = first / dot(first, first).sqrt()

@@ -9,7 +9,8 @@ from typing import Any
 from flint import arb, ctx, fmpq
 
 from substructures.certificate.linear import Ball, Matrix, vector
-from substructures.expr.direct import ball
+from substructures.expr.direct import ball, steps_of
+from substructures.expr.order import needed_first
 
 #: a document as plain data
 Plain = Mapping[str, Any]
@@ -45,11 +46,16 @@ class Bindings(Mapping[str, Ball]):
         self.values_of, self.bound = dict(values), dict(bound)
 
     def __getitem__(self, name: str) -> Ball:
-        if name in self.bound:
-            # taken out of what is bound first, so that a circle ends as an unknown name
-            given = self.bound.pop(name)
-            self.values_of[name] = Numbers(self).read(given)
+        # taken out of what is bound first, so that a circle ends as an unknown name
+        for each in needed_first(name, self._bound_in) if name in self.bound else ():
+            if each in self.bound:
+                given = self.bound.pop(each)
+                self.values_of[each] = Numbers(self).read(given)
         return self.values_of[name]
+
+    def _bound_in(self, name: str) -> list[str]:
+        names = (str(step.value) for step in steps_of(self.bound[name]) if step.op == "name")
+        return [each for each in names if each in self.bound]
 
     def __iter__(self) -> Any:
         return iter({**self.bound, **self.values_of})

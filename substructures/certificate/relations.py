@@ -6,20 +6,20 @@ joints that have no coordinates, but quaternions and rates: what these are calle
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterator, Mapping
 from decimal import Decimal
+from itertools import pairwise
 from typing import Any
 
 from flint import arb
 
 from substructures.certificate.linear import Ball, Matrix, turn_of, vector
 from substructures.certificate.numbers import Numbers, Plain
+from substructures.certificate.states import draws
+from substructures.expr.pieces import pieces
 
 #: fields of loads that are names
 _NAMES = frozenset(("type", "name", "coordinate", "body", "from", "to", "frame", "axes", "along", "title"))
-#: measures of frames, whose names are not those of coordinates; names with the mark of a rate
-_WORD = re.compile(r"(?:distance|angle)'?\([^()]*\)|[A-Za-z][A-Za-z0-9_]*'?")
 #: of joints whose axes move with the body that they carry, how many numbers say where it is: the place (x, y, z) of a
 #: floating one, and a quaternion (w, x, y, z)
 POSITIONS = {"ball": 4, "floating": 7}
@@ -73,6 +73,13 @@ def slope_of(definition: Plain, name: str, numbers: Numbers) -> Ball:
     return result
 
 
+def is_still(definition: Plain, name: str) -> bool:
+    """Whether relations hold a joint at rest whatever the parameters are: a multiplier is zero."""
+    (state,) = next(draws(dict.fromkeys(definition.get("parameters", ()), "parameter"), {}, 1))
+    slope = slope_of(definition, name, Numbers({p: arb(x) for p, x in state.items()}))
+    return bool(slope.is_finite() and slope.contains(0))
+
+
 def position_text(definition: Plain, name: str) -> str:
     """The position of a joint, or with the mark of a rate its velocity, in the coordinate that moves it."""
     relation, mark = moved(definition).get(name.rstrip("'")), "'" if name.endswith("'") else ""
@@ -94,6 +101,16 @@ def _text(number: Any) -> str:
     return format(number, "f") if isinstance(number, Decimal) else str(number)
 
 
+def _with_positions(definition: Plain, text: str) -> str:
+    found, result = [*pieces(text), ("", "")], ""
+    for (kind, piece), (_, after) in pairwise(found):
+        if kind == "name":
+            result += position_text(definition, piece + ("'" if after == "'" else ""))
+        elif piece != "'":  # the mark of a rate went with its name
+            result += piece
+    return result
+
+
 def written(definition: Plain) -> Plain:
     """The definition with the coordinates that are left in the texts of its laws and loads."""
     relations = moved(definition)
@@ -103,7 +120,7 @@ def written(definition: Plain) -> Plain:
     def shown(given: Any) -> Any:
         """With other names."""
         if isinstance(given, str):
-            return _WORD.sub(lambda found: position_text(definition, found[0]), given)
+            return _with_positions(definition, given)
         if isinstance(given, Mapping):
             return {key: x if key in _NAMES else shown(x) for key, x in given.items()}
         return [shown(x) for x in given] if isinstance(given, (list, tuple)) else given

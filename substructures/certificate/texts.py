@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
+from itertools import pairwise
 from typing import Any
 
 from flint import arb, arb_series, fmpq
 
 from substructures.certificate.linear import Ball
 from substructures.expr.direct import BALL_FUNCTIONS, ball_power, carried_out, steps_of
-from substructures.expr.syntax import Step
+from substructures.expr.syntax import Knots, Step
 
 Steps = tuple[Step, ...]
 
@@ -76,14 +77,24 @@ def _sum(terms: Sequence[Steps]) -> Steps:
     return (*terms[0], *(step for term in added for step in term))
 
 
-def slope(given: Any, names: Mapping[str, Ball], along: str) -> Ball:
+def slope(
+    given: Any, names: Mapping[str, Ball], along: str, functions: Mapping[str, Callable[..., Any]] = BALL_FUNCTIONS
+) -> Ball:
     """The derivative of a number, of an expression or of steps by a name; not finite where there is none."""
     steps = given if isinstance(given, tuple) else steps_of(given)
     if along not in names_of(steps):
         return arb(0)
     # x + h: the coefficient of h
     used = {name: names[name] for name in names_of(steps)}
-    return _series(steps, {**used, along: arb_series([names[along], 1])})[1]
+    return _series(steps, {**used, along: arb_series([names[along], 1])}, functions)[1]
+
+
+def depends_on(given: Any, names: Mapping[str, Ball], along: str) -> bool:
+    """Whether an expression changes with a name anywhere: a function that may be flat here, and not elsewhere, counts
+    as sum + sum^2 of its operands with weights.
+    """
+    found = slope(given, names, along, _NOWHERE_FLAT)
+    return not (found.is_finite() and found.contains(0))
 
 
 def with_rates(given: Any, names: Mapping[str, Ball], along: str) -> tuple[Ball, Ball, Ball]:
@@ -100,13 +111,34 @@ def value(steps: Steps, names: Mapping[str, Ball]) -> Ball:
     return _series(steps, names)[0]
 
 
-def _series(steps: Steps, names: Mapping[str, Any]) -> Any:
+def _series(
+    steps: Steps, names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]] = BALL_FUNCTIONS
+) -> Any:
     """The power series of an expression."""
     try:
-        return carried_out(steps, names, _number, _named, _pi, BALL_FUNCTIONS, ball_power)
+        return carried_out(steps, names, _number, _named, _pi, functions, ball_power)
     except (ZeroDivisionError, ValueError):
         # of python-flint for series whose leading term may be zero
         return arb_series([arb("nan"), arb("nan")])
+
+
+def _weighted(*operands: Any) -> Any:
+    total = sum(operands[1:], operands[0] * arb(fmpq(3, 7)))
+    return total + total * total
+
+
+def _weighted_table(knots: Knots, x: Any) -> Any:
+    """Of a table of one value alone: nothing."""
+    rise = sum((abs(b - a) for a, b in pairwise(knots.y)), Fraction(0))
+    return _weighted(x) * arb(fmpq(rise.numerator, rise.denominator))
+
+
+_FLAT = ("abs", "sign", "sqrt", "tanh", "min", "max", "atan2", "step")
+_NOWHERE_FLAT: Mapping[str, Callable[..., Any]] = {
+    **BALL_FUNCTIONS,
+    **dict.fromkeys(_FLAT, _weighted),
+    "table": _weighted_table,
+}
 
 
 def _number(x: Fraction) -> Any:

@@ -15,6 +15,7 @@ from substructures.certificate.part_outputs import metric_alone, part_outputs, p
 from substructures.certificate.states import draws, states_needed
 from substructures.certificate.written import defaults_of, plain
 from substructures.expr.program import Program
+from substructures.mechanics.accelerations import condition
 from substructures.part.mechanism import Mechanism
 from substructures.part.physics import physical_warnings
 
@@ -55,6 +56,5 @@ def _positive_definite(definition: Plain) -> bool | None:
     metric = np.array([[[float(x) for x in row] for row in g] for g in balls])
     if not np.isfinite(metric).all():
         return None
-    # lambda_min > 0 up to rounding: q'^T g q' > 0 for all q' that are not zero
-    eigenvalues = np.linalg.eigvalsh(metric)
-    return bool((eigenvalues[..., 0] > 1e-13 * eigenvalues[..., -1]).all())
+    # q'^T g q' > 0 for all q' that are not zero, up to rounding, whatever the units of coordinates
+    return bool((condition(metric) < 1e13).all())

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
+from flint import arb, ctx
+
+from substructures.documents.fields import in_si
+from substructures.expr.direct import ball
 from substructures.expr.graph import Expr
 from substructures.expr.interpret import interpret
 from substructures.expr.program import array, program
@@ -34,6 +39,10 @@ AXES: tuple[Matrix, Matrix, Matrix] = (
 )
 
 
+#: bits by which it is told whether a component of an axis is zero
+EXACT = 1100
+
+
 @dataclass(frozen=True, slots=True)
 class Frame:
     """A frame fixed in a carrier: ``E`` (components in the carrier's body frame -> components here), position [m]."""
@@ -51,21 +60,30 @@ class Frame:
         return add(self.position, apply(transpose(self.E), position))
 
 
-def axis_rotation(scope: Scope, axis: tuple[object, object, object], pointer: str) -> Matrix:
+def axis_rotation(scope: Scope, axis: tuple[Any, Any, Any], pointer: str) -> Matrix:
     """E of a frame whose third axis is the given constant direction, of any length but zero; faults (``bad-axis``) go
     to the scope.
     """
-    x, y, z = scope.vector(axis, pointer, no_names)
-    given = [i for i, component in enumerate((x, y, z)) if not component.is_zero]
-    if not given:
+    n = scope.vector(axis, pointer, no_names)
+    # which components are zero, and which one is the least, not even roots of roots may hide
+    balls = {i: ball(in_si(axis[i]), precision=EXACT) for i, component in enumerate(n) if not component.is_zero}
+    given = [i for i, x in balls.items() if not x.contains(0)]
+    if not given or not all(x.is_finite() for x in balls.values()):
         scope.fault(pointer, "bad-axis", "the joint axis must be three constant numbers, not all zero")
         return IDENTITY
-    numbers = constants((x, y, z))
+    x, y, z = (component if i in given else scope.graph.zero for i, component in enumerate(n))
     # along an axis of the frame axes change their names: neither roots nor products come into the formulas
     if len(given) == 1:
-        return AXES[given[0]] if numbers[given[0]] > 0 else _reversed(AXES[given[0]])
+        return AXES[given[0]] if balls[given[0]] > 0 else _reversed(AXES[given[0]])
     # |e_i x n|^2 = |n|^2 - n_i^2 is 2/3 |n|^2 or more for the axis that n is least along: never near zero
-    return _general_axis(scope, (x, y, z), min(range(3), key=lambda i: abs(numbers[i])))
+    return _general_axis(scope, (x, y, z), _least([balls.get(i, arb(0)) for i in range(3)]))
+
+
+def _least(n: Sequence[Any]) -> int:
+    """The axis that a direction is least along; of equal ones, however they are written, the first."""
+    with ctx.workprec(EXACT):
+        sizes = [abs(x.mid()) for x in n]
+        return next(i for i, size in enumerate(sizes) if not size > min(sizes) * (1 + arb(2) ** -80))
 
 
 class CutFrames(NamedTuple):
@@ -103,14 +121,8 @@ def joined_turns(first: Planar, second: Planar) -> Planar:
 
 
 def constant(x: Expr) -> float:
-    """The value of a constant expression."""
-    return constants((x, x.graph.zero, x.graph.zero))[0]
-
-
-def constants(v: tuple[Expr, Expr, Expr]) -> list[float]:
-    """The values of three constant expressions, roots and pi included."""
-    p = program(v[0].graph, {"v": array((3,), lambda i: v[i])}, {})
-    return [float(x) for x in interpret(p, {})["v"]]
+    """The value of a constant expression, roots and pi included."""
+    return float(interpret(program(x.graph, {"x": array((), lambda: x)}, {}), {})["x"])
 
 
 def _reversed(e: Matrix) -> Matrix:

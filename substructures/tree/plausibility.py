@@ -18,8 +18,10 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.known import Known
+from substructures.expr.order import needed_first
 from substructures.expr.syntax import ExpressionError
 from substructures.expr.units.unit_check import Notice
+from substructures.loads.names import names_in
 from substructures.part.definition import Definition
 from substructures.part.inertias import Tensor, faults_of, impossible, more
 from substructures.part.limits import limits_in_numbers
@@ -40,9 +42,12 @@ class _Values(Mapping[str, Any]):
         self._texts, self._found, self._read = texts, dict(given), read
 
     def __getitem__(self, name: str) -> Any:
-        if name not in self._found:
-            self._found[name] = self._read(self._texts[name], self)
+        for each in needed_first(name, self._unknown_in) if name not in self._found else ():
+            self._found[each] = self._read(self._texts[each], self)
         return self._found[name]
+
+    def _unknown_in(self, name: str) -> list[str]:
+        return [each for each in names_in(self._texts[name]) if each in self._texts and each not in self._found]
 
     def __contains__(self, name: object) -> bool:
         return name in self._found or name in self._texts

@@ -8,7 +8,9 @@ from dataclasses import dataclass
 from substructures.errors import among
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
+from substructures.expr.order import needed_first
 from substructures.loads.friction import TreeFriction, read_friction
+from substructures.loads.names import names_in
 from substructures.loads.scope import Scope
 from substructures.mechanics.cut_joints import ROWS
 from substructures.mechanics.linear3 import ZERO, Matrix, Vector
@@ -22,6 +24,9 @@ from substructures.tree.document import TreeSpec, misplaced
 from substructures.tree.given.loops.dependent import Dependent
 from substructures.tree.given.loops.reduction import dependent
 from substructures.tree.mounted_part import WORLD, MountedPart, friction_of_movers, limits_of_movers
+
+#: bindings that are read one within the other
+DEEP = 50
 
 
 def tree_name(instance: str, symbol: str) -> str:
@@ -52,7 +57,13 @@ class Bindings:
     def resolve_all(self) -> None:
         """Read all bindings."""
         for name in self.given:
-            self.lookup(name)
+            chain = needed_first(name, self._unread)
+            # few nest in each other, in the order in which their operations are stored
+            for each in chain if len(chain) > DEEP else (name,):
+                self.lookup(each)
+
+    def _unread(self, name: str) -> list[str]:
+        return [x for x in names_in(self.given[name][0]) if x in self.given and x not in self.values]
 
     def lookup(self, name: str) -> Expr | None:
         """A parameter by its name in the tree, with its binding put in."""
@@ -61,8 +72,8 @@ class Bindings:
         if name not in self.given:
             return self.scope.names.get(name)
         value, pointer = self.given[name]
-        # a parameter bound to itself over others, or so many of them that reading would nest too deeply
-        if name in self.open or len(self.open) > 50:
+        # a parameter bound to itself over others, so many maybe that reading would nest too deeply
+        if name in self.open or len(self.open) > DEEP:
             self.scope.fault(pointer, "cycle", f"the binding of '{name}' refers to itself")
             return self.scope.graph.zero
         self.open.append(name)

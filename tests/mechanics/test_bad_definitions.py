@@ -82,6 +82,7 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("negative rotor", (*J, "armature"), "-1/8", "negative-armature", "-0.125 kg m^2"),
     ("negative rotor of a slide", ("bodies", 2, "joint", "armature"), -2, "negative-armature", "-2 kg is negative"),
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
+    ("joint axis without a value", ("bodies", 2, "joint", "axis"), ["log(0)", 0, 1], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
     ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
     ("row and placement", (*J, "placement"), {"position": [0, 0, 0]}, "row-and-placement", "placement"),

@@ -9,6 +9,7 @@ import pytest
 from bad_documents import GOOD, TREE, Path, Plain, cell, changed, coupled, good, pointer_of, request
 
 from substructures import Definition, InvalidDocument, MissingValue, TreeSpec, couple, derive
+from substructures.certificate.numbers import Bindings
 from substructures.documents.fields import LONGEST
 from substructures.errors import InvalidArgument
 from substructures.expr.syntax import MAX_LENGTH
@@ -55,6 +56,19 @@ def test_tree_with_a_fault(path: Path, value: Any, code: str, culprit: str) -> N
     assert near, faults
     assert code in {f.code for f in near}, faults
     assert any(culprit in f.message for f in near), faults
+
+
+def test_a_long_chain_of_bindings_is_no_cycle() -> None:
+    slide = {"name": "b", "parent": "base", "joint": {"type": "prismatic"}, "mass": "l"}
+    part = derive({"name": "x", "parameters": {"l": {"value": 1}}, "bodies": [slide]})
+    last = {"name": "p0", "substructure": "x"}
+    others = [
+        {"name": f"p{k}", "substructure": "x", "parameters": {"l": f"p{k - 1}.l + 1"}} for k in reversed(range(1, 55))
+    ]
+    tree = {"name": "t", "instances": [*others, last]}
+    assert couple(tree, {each["name"]: part for each in tree["instances"]}).dof == 55
+    names = {f"p{k}": f"p{k - 1} + 1" for k in range(1, 3000)}
+    assert Bindings({"p0": 1}, names)["p2999"] == 3000
 
 
 def test_a_cycle_of_hosts() -> None:

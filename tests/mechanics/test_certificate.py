@@ -131,6 +131,31 @@ def test_definiteness_is_said() -> None:
     assert derive(Definition.read(PART)).certificate["positive_definite"] is True
     assert derive(Definition.read(with_parameter("m", 0))).certificate["positive_definite"] is False
     assert derive(Definition.read(with_parameter("m", None))).certificate["positive_definite"] is None
+    # a wheel of a milligram on a cart of a ton
+    cart = {"name": "cart", "parent": "base", "joint": {"type": "prismatic"}, "mass": 1000}
+    wheel = {
+        "name": "wheel",
+        "parent": "cart",
+        "joint": {"type": "revolute"},
+        "inertia": dict.fromkeys(("xx", "yy", "zz"), "1e-12"),
+    }
+    assert derive({"name": "light", "bodies": [cart, wheel]}).certificate["positive_definite"] is True
+
+
+@pytest.mark.parametrize(
+    "axis",
+    [
+        ["sqrt(5 + 2*sqrt(6)) - sqrt(2) - sqrt(3)", 1, 0],
+        ["sqrt(2) + sqrt(3)", "sqrt(5 + 2*sqrt(6))", 5],
+        ["sqrt(8)", "2*sqrt(2)", "1 + sqrt(8) - 1"],
+        ["1e-330", 0, 0],
+    ],
+)
+def test_an_axis_is_the_same_however_it_is_written(axis: list[Any]) -> None:
+    """Components that are zero, or equal, which neither formulas nor doubles show."""
+    joint = {"type": "revolute", "placement": {"rpy": [0.1, 0.2, 0.3]}, "axis": axis}
+    body = {"name": "b", "parent": "base", "joint": joint, "mass": 1, "com": [0.1, 0.2, 0.3]}
+    assert max(errors_of(derive({"name": "a", "bodies": [body]}).certificate).values()) <= TOLERANCE
 
 
 def test_damage_of_any_output_of_a_part_is_found() -> None:

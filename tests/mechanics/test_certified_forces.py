@@ -302,6 +302,22 @@ def test_what_is_left_out_is_told(loads: list[Plain]) -> None:
     assert model.certificate["direct_form"]["potential_left_out"] == ["x.x", "y.x"]
 
 
+@pytest.mark.parametrize(
+    "law", ["sign(x)", "max(x, 0.1)", "step(x, 0.1, l)", "table(x; 0.4: 0, 0.5: 1, 0.6: 0)", "abs(x)/x", "tanh(1000*x)"]
+)
+def test_springs_whose_laws_are_flat_somewhere_depend_on_the_state(law: str) -> None:
+    part_with({"joint": {"stiffness": law, "rest": 0.2}})
+    ends = {"from": {"body": "base", "at": [0, 0, 1]}, "to": {"body": "b"}}
+    part_with({"loads": [{"type": "spring", "stiffness": 2, "length": f"1 + ({law})^2", **ends}]})
+    steady = part_with({"joint": {"stiffness": f"k + 0*({law})"}}).certificate
+    assert "no-potential" not in {each["code"] for each in steady["warnings"]}
+
+
+def test_a_force_that_waits_for_its_time_is_no_potential_left_out() -> None:
+    part = part_with({"loads": [{"type": "joint", "coordinate": "x", "force": "k*step(t, 0, 0.1)"}]})
+    assert "potential_left_out" not in part.certificate["direct_form"]
+
+
 def tabulated(points: int, kind: str, number: int) -> tuple[list[float], list[float], str]:
     """Random places and values in decimals, and their table."""
     rng = np.random.default_rng([points, number])

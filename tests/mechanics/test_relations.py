@@ -191,6 +191,35 @@ def test_a_wrong_ratio_in_the_definition_is_found() -> None:
 
 
 @pytest.mark.parametrize(
+    ("name", "force"),
+    [
+        ("e3", "2e3*e3 + e3'"),
+        ("table", "table*table(table; 0: 1, 1: 2)"),
+        ("smooth", "table(smooth; 0: 1, 1: 2, 2: 5; smooth)"),
+        ("a", "a*distance (base, a)"),
+    ],
+)
+def test_laws_name_related_joints_as_numbers_and_functions_are_written(name: str, force: str) -> None:
+    joint = {"type": "prismatic", "coordinate": "q"}
+    bodies = [{"name": "a", "parent": "base", "mass": 1, "joint": joint}]
+    bodies.append({"name": "b", "parent": "a", "mass": 1, "joint": {**joint, "coordinate": name, "theta": 0.3}})
+    loads = [{"type": "joint", "coordinate": "q", "force": force}]
+    relations = [{"coordinate": name, "of": "q", "multiplier": 2, "offset": 0.1}]
+    assert derive({"name": "x", "bodies": bodies, "relations": relations, "loads": loads}).coordinates == ("q",)
+
+
+@pytest.mark.parametrize("multiplier", [0, "0*k", "sin(pi)"])
+def test_limits_and_friction_of_a_joint_that_is_held_bind_nothing(multiplier: Any) -> None:
+    bodies = [{**body, "joint": {**body["joint"], "friction": None}} for body in GEARS["bodies"]]
+    bodies[1]["joint"]["friction"] = {"coulomb": 0.4, "velocity": 0.02}
+    held = {**GEARS, "bodies": bodies, "relations": [{"coordinate": "b", "of": "a", "multiplier": multiplier}]}
+    tree = {"name": "t", "gravity": [0, 0, 0], "instances": [{"name": "x", "substructure": "gears"}]}
+    model = couple(tree, {"x": derive(held)})
+    assert model.limited == ()
+    assert not {"limits", "friction"} & model.program.outputs.keys()
+
+
+@pytest.mark.parametrize(
     ("relations", "pointer", "code"),
     [
         ([{"coordinate": "c", "of": "a"}], "/relations/0/coordinate", "unknown-coordinate"),

@@ -12,7 +12,7 @@ from substructures.certificate.by_coordinate import gathered
 from substructures.certificate.linear import Ball, Matrix, cross
 from substructures.certificate.loads.between import Between, MeasuredNames, Slopes
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.texts import Steps, names_of, slope
+from substructures.certificate.texts import Steps, depends_on, names_of, slope
 from substructures.expr.direct import steps_of
 from substructures.expr.syntax import measured
 
@@ -61,7 +61,7 @@ class Forces:
     def depends(self, *given: Any) -> bool:
         """Whether numbers depend on a coordinate or a velocity of the definition."""
         return any(
-            not slope(x, self.somewhere, name).contains(0)
+            depends_on(x, self.somewhere, name)
             for x in given
             for name in names_of(steps_of(x))
             if name.removesuffix("'") in self.coordinates
@@ -154,7 +154,7 @@ def _is_gradient(found: Forces, load: Plain, law: tuple[Ball, Ball], reach: Mapp
         """df by a name at fixed l."""
         return k * slope(given[1], names, name) - stretch * slope(given[0], names, name)
 
-    if not all(by(f"{name}'").contains(0) for name in found.coordinates):
+    if any(depends_on(x, names, f"{name}'") for name in found.coordinates for x in given):
         return False
     pairs = [(by(name), reach.get(a, arb(0))) for name, a in found.coordinates.items()]
     return all((f * v - g * w).contains(0) for f, w in pairs for g, v in pairs)

@@ -21,7 +21,7 @@ from substructures.certificate.loads.forces import Forces
 from substructures.certificate.numbers import Plain
 from substructures.certificate.outputs import Outputs, Values
 from substructures.certificate.relations import is_ball, positions_of, rates_of
-from substructures.certificate.texts import Steps, names_of, slope, summands, value
+from substructures.certificate.texts import Steps, depends_on, names_of, slope, summands, value
 
 #: what is not known: no finite value
 UNKNOWN = arb("nan")
@@ -157,7 +157,7 @@ def _at_rest(forces: Forces, a: int, names: Mapping[str, Ball]) -> _Given:
     kept: list[Steps] = []
     whole, exact = arb(0), True
     for term in (t for steps in forces.given[a] for t in summands(steps, "t")):
-        if "t" in names_of(term) and not slope(term, names, "t").contains(0):
+        if depends_on(term, names, "t"):
             continue
         here = value(term, names)
         exact &= here.is_finite()
