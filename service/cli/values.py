@@ -23,7 +23,18 @@ def pairs(given: Iterable[str] | None) -> dict[str, str]:
     return found
 
 
+def value(text: str) -> Any:
+    """A value as documents have it: ``500 mm`` is a number with its unit, all else a text."""
+    found = with_unit(text) or quantity_of(text)
+    return found.model_dump() if isinstance(found, Quantity) else found
+
+
 def values(given: Iterable[str] | None) -> dict[str, Any]:
-    """``NAME=VALUE`` with values as documents have them: texts, and ``500 mm`` as a number with its unit."""
-    found = {name: (with_unit(text) or quantity_of(text)) for name, text in pairs(given).items()}
-    return {name: x.model_dump() if isinstance(x, Quantity) else x for name, x in found.items()}
+    """``NAME=VALUE`` with values as documents have them."""
+    return {name: value(text) for name, text in pairs(given).items()}
+
+
+def number(text: str) -> float | dict[str, Any]:
+    """A number, or one with its unit. Raises ValueError."""
+    given = value(text)
+    return {**given, "value": float(given["value"])} if isinstance(given, dict) else float(given)

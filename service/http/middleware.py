@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+from collections.abc import Iterable
 from time import perf_counter
 
 from starlette.datastructures import Headers
@@ -29,6 +30,20 @@ GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
 
+#: headers that are lists, of which a client may send each element in a line of its own
+LISTS = frozenset((b"accept", b"accept-encoding", b"if-match", b"if-none-match"))
+
+
+def joined(headers: Iterable[tuple[bytes, bytes]]) -> list[tuple[bytes, bytes]]:
+    """Headers with one line of each list (RFC 9110, section 5.3)."""
+    given = list(headers)
+    for name in LISTS:
+        values = [value for key, value in given if key == name]
+        if len(values) > 1:
+            given = [*(pair for pair in given if pair[0] != name), (name, b", ".join(values))]
+    return given
+
+
 class Conventions:
     """ASGI middleware; sits outside of everything else."""
 
@@ -44,7 +59,7 @@ class Conventions:
 
     async def _serve(self, given: Scope, receive: Receive, send: Send) -> None:
         is_head = given["method"] == "HEAD"  # what GET would answer, without the body
-        scope = {**given, "method": "GET"} if is_head else given
+        scope = {**given, "headers": joined(given["headers"])} | ({"method": "GET"} if is_head else {})
         headers = Headers(scope=scope)
         identifier = begin_request(headers.get("x-request-id"))
         start = perf_counter()

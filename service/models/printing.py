@@ -13,6 +13,7 @@ from service.models.binding import Parameters, bound, bound_names
 from service.models.exporting import NAME
 from service.models.formulas import OF_PARTS, QUANTITIES, check_options
 from service.models.formulas.entry import Made, Options
+from service.models.numbers import OFFERED
 from service.models.source import Source
 from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.told import base_symbols
@@ -66,9 +67,10 @@ def check_quantity(model: Model, quantity: str) -> None:
         return
     if quantity == CHRISTOFFEL:  # of a large model, which says why
         require_stored(model.program, [quantity])
+    if quantity in OFFERED:
+        raise not_found(f"'{quantity}' are numbers, not formulas: POST a request to this path", "unknown-quantity")
     names = list(dict.fromkeys([*known, *QUANTITIES]))
-    like = meant(quantity, names)
-    there = like or f"; there are {', '.join(names)}"
+    there = meant(quantity, [*names, *OFFERED]) or f"; there are {', '.join(names)}"
     raise not_found(f"there is no quantity '{quantity[:80]}'{there}", "unknown-quantity")
 
 

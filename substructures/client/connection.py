@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from functools import partial
@@ -27,6 +28,8 @@ from substructures.formats.arrays import Npz
 Kind = TypeVar("Kind")
 RETRIES = 3
 KEY = "Idempotency-Key"
+#: what stands in a header as one word
+_KEY = re.compile(r"[!-~]+")
 
 
 def require_address(address: str) -> None:
@@ -52,9 +55,14 @@ class Caller:
 
     def __init__(self, address: str, key: str | None = None, timeout: float = 60.0, retries: int = RETRIES) -> None:
         """``timeout``: seconds without a byte; ``retries``: how often a request is sent again at most where the server
-        cannot be reached, is gone for a moment, or asks to wait; 0: never. Raises ValueError for what is no address.
+        cannot be reached, is gone for a moment, or asks to wait; 0: never. Raises ValueError for what is no address,
+        and for a key that no header can hold.
         """
         require_address(address)
+        if key is not None and not _KEY.fullmatch(key):
+            raise ValueError(
+                "this is no key of a server, which is a word of letters, digits and '_' that begins with sub_"
+            )
         self.address, self.timeout = address, timeout
         self._retries = Retries(retries, timeout)
         self._headers = {} if key is None else {"Authorization": f"Bearer {key}"}

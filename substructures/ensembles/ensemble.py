@@ -13,6 +13,7 @@ import numpy as np
 from substructures.analysis.arguments import values_of
 from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.integral import FirstIntegrals
+from substructures.analysis.motion.integrators.integration import NO_ERROR
 from substructures.analysis.motion.judges.balls import conditions_in_rates, with_lengths
 from substructures.analysis.motion.judges.integrals import AlongMotion, conditions
 from substructures.analysis.motion.judges.states import Condition, MotionStates
@@ -36,10 +37,10 @@ from substructures.tree.model import Model
 METHODS = ("DOP853", "RK45", "RK23")
 #: states of a part of the members, which are in memory together
 STATES = 400_000
-WHY = {
-    TOO_SMALL: "the steps became too small: a singular position, a law with a jump, or stiff equations (simulate the "
-    "member with the method Radau)",
-}
+STEPS_TOO_SMALL = (
+    "the steps became too small: a singular position, a law with a jump, or stiff equations (simulate the member with "
+    "the method Radau)"
+)
 DEFAULT, NO_VALUES, NO_COLUMNS = Integrator(), dict[str, Any](), dict[str, MotionColumn]()
 
 
@@ -173,8 +174,14 @@ class _Run:
         lost = np.flatnonzero(~np.isin(found.endings, (FINISHED, CUT)))
         self.failed += len(lost)
         for k in lost[: TOLD - len(self.failures)].tolist():
-            why = WHY.get(int(found.endings[k]), f"more than {self.integrator.max_steps:,} steps are needed")
-            self.failures.append(Failure(begin + k, float(found.reached[k]), why))
+            self.failures.append(Failure(begin + k, float(found.reached[k]), self._why(begin + k, found, k)))
+
+    def _why(self, member: int, found: LaneMotions, k: int) -> str:
+        if found.endings[k] != TOO_SMALL:
+            return f"more than {self.integrator.max_steps:,} steps are needed"
+        is_start = found.reached[k] == self.times.span[0]
+        is_tolerance = not self.integrator.absolute_tolerance and not self.members.start[member].all()
+        return f"{NO_ERROR}: give one, or start elsewhere" if is_start and is_tolerance else STEPS_TOO_SMALL
 
     def _part(
         self, chosen: slice, t: Array, wanted: int, x: Array, rates: KernelRates, integrals: FirstIntegrals | None

@@ -160,7 +160,7 @@ class _March:
     def run(self, progress: Callable[[int], bool]) -> LaneMotions:
         """All motions."""
         count = len(self.starts) if len(self.times) > 1 else 0
-        with np.errstate(over="ignore", invalid="ignore"):
+        with np.errstate(over="ignore", invalid="ignore", divide="ignore"):
             while self.ended < count:
                 idle = np.flatnonzero(self.member < 0)
                 if self.begun < count and len(idle) * 8 >= self.lanes:

@@ -166,6 +166,14 @@ def test_what_fails_is_told_and_the_others_stay(oscillator: Model) -> None:
     assert "more than 3 steps" in few.failures[0].message
 
 
+def test_no_absolute_tolerance_at_rest_is_named(acrobot: Model) -> None:
+    """As a motion alone does; the others move."""
+    how = Integrator(relative_tolerance=1e-9, absolute_tolerance=0)
+    found = simulate_ensemble(acrobot, [[1, 1], [1, 0.5]], (0, 0.1), qd=[[0, 0], [1, 1]], integrator=how)
+    assert [failure.member for failure in found.failures] == [0]
+    assert "an 'absolute_tolerance' of 0 allows no error of what is 0" in found.failures[0].message
+
+
 def test_a_wrong_force_is_seen(acrobot: Model, monkeypatch: pytest.MonkeyPatch) -> None:
     right = members.KernelRates.bound
 

@@ -105,8 +105,10 @@ def test_parameters_may_have_units(run: Runner, mass: str) -> None:
 
 def test_parts_are_coupled_with_parameters_in_units(run: Runner) -> None:
     run("tree", "measured", "--part", "a=pendulum")
-    run("couple", "measured", "pendulum", "--name", "b", "--at", "a.tip", "--set", "l=500 mm")
+    place = ("--at", "a.tip", "--position", "0, 0, 5 cm")
+    run("couple", "measured", "pendulum", "--name", "b", *place, "--set", "l=500 mm")
     tree = json.loads(run("show", "measured", "--json"))
+    assert tree["instances"][1]["placement"]["position"] == ["0", "0", {"value": "5", "unit": "cm"}]
     assert tree["instances"][1]["parameters"] == {"l": {"value": "500", "unit": "mm"}}
     run("rm", "measured")
 
@@ -273,6 +275,8 @@ def test_keys_that_do_not_do_come_with_a_remedy(run: Runner, tmp_path: Path) -> 
         database.close()
         told = run("list", "--server", address, code=1)
         assert "; give it by --key KEY, or the variable SUBSTRUCTURES_KEY" in told
+        for wrong in ("schl\u00fcssel", "sub_a\n"):
+            assert "this is no key of a server" in run("list", "--server", address, "--key", wrong, code=1)
         told = run("list", "--server", address, "--key", old, code=1)
         assert "ask whoever runs the server for a new one ('substructures key create') and give it by --key" in told
         told = run("pull", address, "pendulum", code=1)

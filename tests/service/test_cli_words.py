@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 import re
 from pathlib import Path
 from typing import Any
@@ -49,11 +50,23 @@ def run(capsys: pytest.CaptureFixture[str]) -> Run:
     [
         ("pair", "--q", "1", "--q: 1 number found, but there are 2 coordinates: arm.q, fore.q"),
         ("pair", "--qd", "1,2,3,4", "--qd: 4 numbers found, but there are 2 coordinates: arm.q, fore.q"),
+        (
+            "pair",
+            "--qd",
+            "1,x",
+            "--qd: numbers between commas are needed, in SI units or with their units, as in '30 d",
+        ),
         ("cell", "--q", "1,2", "--q: 2 numbers found, but there is 1 coordinate: arm.q"),
     ],
 )
 def test_a_state_of_another_length(run: Run, tree: str, option: str, numbers: str, expected: str) -> None:
     assert expected in run("evaluate", f"{tree}.json", "metric", option, numbers, code=2)
+
+
+@pytest.mark.usefixtures("folder")
+def test_a_state_with_units(run: Run) -> None:
+    here = [run("evaluate", "pair.json", "metric", "--q", numbers) for numbers in ("0,90 deg", f"0,{math.pi / 2}")]
+    assert here[0] == here[1]
 
 
 @pytest.mark.usefixtures("folder")

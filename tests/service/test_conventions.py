@@ -193,6 +193,17 @@ def test_versions_revalidate_and_definitions_are_immutable(filled: TestClient) -
         assert filled.get(f"/v1/trees/{reference}").headers["cache-control"] == "no-cache"
 
 
+def test_lists_may_stand_on_several_lines(filled: TestClient) -> None:
+    """RFC 9110, section 5.3: lines of one name are one list."""
+    latex = filled.get("/v1/trees/cell/metric", headers=[("Accept", "image/png"), ("Accept", "application/x-latex")])
+    assert (latex.status_code, latex.headers["content-type"].partition(";")[0]) == (200, "application/x-latex")
+    path = "/v1/substructures/pendulum@1/formulas"
+    tag = filled.get(path).headers["etag"]
+    assert filled.get(path, headers=[("If-None-Match", '"other"'), ("If-None-Match", tag)]).status_code == 304
+    seen = [("If-Match", '"other"'), ("If-Match", filled.get("/v1/trees/cell").headers["etag"])]
+    assert filled.request("DELETE", "/v1/trees/cell/couplings/hand", headers=seen).status_code == 404
+
+
 @pytest.fixture
 def small(tmp_path: Path) -> Iterator[TestClient]:
     """A server with tiny limits."""

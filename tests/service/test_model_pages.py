@@ -248,6 +248,33 @@ def test_parameters_that_differ_come_first_and_count(browser: Any, address: str,
 
 @in_browser
 @pytest.mark.deep
+def test_a_reload_shows_the_same(browser: Any, address: str, filled: TestClient) -> None:
+    """Pose, rates, parameters, tab and entry; and the eigenvalues are those of the parameters, too."""
+    request = {"q": [0.3, 0.4], "parameters": {"hand.l": 2}, "quantities": ["metric"]}
+    metric = filled.post("/v1/trees/cell@2/evaluations", json=request).json()["metric"]
+    tab = Tab(browser, address, "/trees/cell@2?entry=metric,1,1&pose=0.3,0.4")
+    tab.until(READY)
+    tab.page.evaluate("document.querySelector('.parameters').open = true")
+    tab.page.fill("[data-rate='0']", "2")
+    tab.page.fill("[aria-label='hand.l']", "2")
+    tab.page.press("[aria-label='hand.l']", "Tab")
+    shown = [float(x) for x in tab.until("document.getElementById('eigenvalues').textContent").split(", ")]
+    np.testing.assert_allclose(shown, np.linalg.eigvalsh(metric), rtol=5e-3)
+    tab.page.click(".tabs [data-tab=forces]")
+    tab.until("new URL(location.href).searchParams.get('qd') && document.querySelector('[data-quantity=forces]')")
+    all_of_it = (
+        "[...document.querySelectorAll('#grid, #value, #changed, #eigenvalues')].map((x) => x.textContent).join()"
+    )
+    before = tab.page.evaluate(all_of_it)
+    tab.page.reload()
+    tab.until(READY)
+    assert tab.page.evaluate(all_of_it) == before
+    assert tab.page.input_value("[data-rate='0']") == "2"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_results_are_removed_when_somebody_is_sure(browser: Any, address: str, filled: TestClient) -> None:
     job = submitted(filled, export("cell", "metric"))
     assert filled.post(f"/v1/jobs/{job}/cancel").status_code == 200

@@ -40,6 +40,8 @@ def said(answer: Any) -> str:
         ("substructures?sort=nam", "did you mean 'name'?"),
         ("trees/cell/export?target=cassadi", "did you mean 'casadi'?"),
         ("trees/cell/export?target=c&quantities=metrik", "no quantity 'metrik'; did you mean 'metric'?"),
+        ("trees/cell/linearisation", "there is no quantity 'linearisation'; did you mean 'linearisations'?"),
+        ("trees/cell/linearisations", "'linearisations' are numbers, not formulas: POST a request to this path"),
         ("trees/cell/metric?bind=arm.l:1 mmm", "'arm.l': the unit 'mmm' is not known; did you mean 'mm'?"),
         ("trees/cell/first_integrals?zero=arm.k", "unknown parameter 'arm.k'; did you mean 'arm.m'?"),
         ("trees?uses=pendulum@1", "'uses' is the name of a part alone; GET /v1/substructures/pendulum@1/uses, or "),

@@ -15,7 +15,7 @@ from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.tree_files import local_source
-from service.cli.values import values
+from service.cli.values import number, pairs
 from substructures.client.steps import step
 from substructures.documents.grouped import take
 from substructures.mechanics.state_names import BallRow, positions_of, resting_state
@@ -24,7 +24,9 @@ from substructures.quantities.numbers.evaluation import evaluate as evaluated
 from substructures.quantities.numbers.states import STATE, wrong_length
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
 
-Numbers = Annotated[str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates (zeros).")]
+Numbers = Annotated[
+    str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates, also '30 deg' (zeros).")
+]
 
 
 @with_server
@@ -56,7 +58,8 @@ def evaluate(
     json: Json = False,
 ) -> int:
     """Numbers at a state: metric, christoffel, forces, inverse dynamics, ..."""
-    states = {name: _numbers(text) for name, text in (("q", q), ("qd", qd), ("qdd", qdd)) if text is not None}
+    given = {"q": q, "qd": qd, "qdd": qdd}
+    states = {name: _numbers(f"--{name}", text) for name, text in given.items() if text is not None}
     request: dict[str, Any] = {"quantities": quantities, "t": t, **states}
     request |= {"parameters": _by_name(set), "inputs": _by_name(input)}
     with waiting("evaluating"):
@@ -102,23 +105,23 @@ def _resting(request: Mapping[str, Any], coordinates: Sequence[str], balls: Sequ
     return resting_state(positions, balls)
 
 
-def _numbers(text: str) -> list[float]:
+def _numbers(option: str, text: str) -> list[Any]:
     try:
-        return [float(each) for each in text.split(",")]
+        return [number(each) for each in text.split(",")]
     except ValueError:
-        raise typer.BadParameter(f"numbers between commas are needed, found '{text}'") from None
+        message = "numbers between commas are needed, in SI units or with their units, as in '30 deg,0.2'"
+        raise typer.BadParameter(f"{option}: {message}; found '{text}'") from None
 
 
 def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
     """Numbers, and those that have one with their units."""
     found: dict[str, Any] = {}
-    for name, value in values(given).items():
-        number, unit = (value["value"], value["unit"]) if isinstance(value, dict) else (value, None)
+    for name, text in pairs(given).items():
         try:
-            found[name] = float(number) if unit is None else {"value": float(number), "unit": unit}
+            found[name] = number(text)
         except ValueError:
             message = f"a number is needed for '{name}', in SI units or with its unit, as in {name}='500 mm'"
-            raise typer.BadParameter(f"{message}; found '{number}'") from None
+            raise typer.BadParameter(f"{message}; found '{text}'") from None
     return found
 
 

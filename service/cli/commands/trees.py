@@ -14,7 +14,7 @@ from service.cli.documents import is_document, named, read_document
 from service.cli.options import Json, Note, Private, Server, Wait, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.progress import became_job
-from service.cli.values import values
+from service.cli.values import value, values
 from substructures.client.steps import step
 
 Name = Annotated[str, typer.Argument(metavar="TREE", autocompletion=completion.trees)]
@@ -23,7 +23,7 @@ Set = Annotated[
     Several,
     typer.Option("--set", metavar="NAME=VALUE", help="A parameter of the part, also '500 mm'; may be repeated."),
 ]
-Vector = Annotated[str | None, typer.Option(metavar="X,Y,Z")]
+Vector = str | None
 
 
 @with_server
@@ -53,7 +53,11 @@ def tree(
             f"{what}; 'substructures show {tree}' shows a tree, 'couple {tree} PART' goes on with it"
         )
     else:
-        body = {"name": tree, "gravity": _vector(gravity), "instances": [_instance(each) for each in part or ()]}
+        body = {
+            "name": tree,
+            "gravity": _vector("--gravity", gravity),
+            "instances": [_instance(each) for each in part or ()],
+        }
     if isinstance(body, dict):
         body |= {"note": note} if note else {}
         body |= {"visibility": "private"} if private else {}
@@ -74,15 +78,17 @@ def couple(
     ] = "world",
     name: Annotated[str | None, typer.Option(help="Of the instance (that of the part).")] = None,
     set: Set = None,  # noqa: A002 -- name of the option
-    position: Vector = None,
-    rpy: Vector = None,
+    position: Annotated[Vector, typer.Option(metavar="X,Y,Z", help="In m, also '0,0,50 mm', and expressions.")] = None,
+    rpy: Annotated[Vector, typer.Option(metavar="X,Y,Z", help="Roll, pitch, yaw in rad, also '0,0,90 deg'.")] = None,
     wait: Wait = True,
     json: Json = False,
 ) -> int:
     """Couple a part onto a tree, which makes a new revision."""
     body: dict[str, Any] = {**_instance(part), "at": at, "parameters": values(set)}
     body |= {"name": name} if name else {}
-    placement = {key: _vector(text) for key, text in (("position", position), ("rpy", rpy)) if text is not None}
+    placement = {
+        key: _vector(f"--{key}", text) for key, text in (("position", position), ("rpy", rpy)) if text is not None
+    }
     body |= {"placement": placement} if placement else {}
     return _changed(server, "POST", f"/v1/trees/{step(tree)}/couplings", body, wait, json)
 
@@ -130,12 +136,12 @@ def _instance(text: str) -> dict[str, Any]:
     return {"name": name if sign else part.partition("@")[0].replace("-", "_"), "substructure": part}
 
 
-def _vector(text: str) -> list[Any]:
-    """Three numbers or expressions."""
+def _vector(option: str, text: str) -> list[Any]:
+    """Three numbers, also with units, or expressions."""
     found = [each.strip() for each in text.split(",")]
     if len(found) != 3 or not all(found):
-        raise typer.BadParameter(f"X,Y,Z is needed, found '{text}'")
-    return found
+        raise typer.BadParameter(f"{option}: X,Y,Z is needed, found '{text}'")
+    return [value(each) for each in found]
 
 
 COMMANDS = {"tree": tree, "couple": couple, "rm": remove}

@@ -32,13 +32,16 @@ Subject = Callable[[], modules.Subject]
 
 @dataclass(frozen=True)
 class Asked:
-    """What of a part or tree is shown: the state, a tab of formulas, one entry."""
+    """What of a part or tree is shown: the state, a tab of formulas, one entry; ``qd`` and ``set``, the rates and the
+    parameters that differ from their defaults, are read by scripts."""
 
     pose: Poses = None
     q: Numbers = None
-    tab: Text = "metric"
+    tab: Text = ""
     slice_: Slice = 0
     entry: Text = ""
+    qd: Text = ""
+    set: Text = ""
 
 
 def chosen_tab(shown: Shown, wanted: str) -> str:
@@ -51,7 +54,7 @@ def first_screen(store: Store, shown: Shown, subject: Subject, worker: Worker, a
     :func:`entry_of`."""
     if not shown.coordinates:
         return Html()
-    quantity = chosen_tab(shown, (read_entry(asked.entry) or (asked.tab,))[0])
+    quantity = chosen_tab(shown, asked.tab or (read_entry(asked.entry) or ("",))[0])
     has_numbers = bool(asked.q) and quantity != INTEGRALS
 
     def make() -> Html:

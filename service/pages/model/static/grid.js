@@ -1,4 +1,5 @@
 // The grid of a quantity: numbers and colours by |value|; links choose an entry, a slice, a quantity.
+import { keep } from "./address.js";
 import { fragment } from "./fragments.js";
 import { short } from "./numbers.js";
 
@@ -37,6 +38,8 @@ export class Grid {
     async show(quantity, slice) {
         const found = await fragment(`${this.path}/grid?tab=${quantity}&slice=${slice}`, "grid");
         document.getElementById("grid").replaceWith(found);
+        keep("tab", quantity);
+        keep("slice", slice ? String(slice) : "");
         for (const link of document.querySelectorAll(".tabs a")) {
             if (link.dataset.tab === quantity) link.setAttribute("aria-current", "page");
             else link.removeAttribute("aria-current");

@@ -1,5 +1,6 @@
 // The page of a part or a tree: one state, which sliders and parameters change, and what is drawn of it.
 import "./keys.js";
+import { keep, kept } from "./address.js";
 import { Chart } from "./chart.js";
 import { Grid } from "./grid.js";
 import { eigenvalues, short } from "./numbers.js";
@@ -39,8 +40,15 @@ async function start({ kind, reference, ranges, names, turns }) {
         const shown = found.length > 8 ? [...found.slice(0, 4), NaN, ...found.slice(-3)] : found;
         document.getElementById("eigenvalues").textContent = shown.map((x) => (x === x ? short(x) : "…")).join(", ");
     };
-    const sliders = new Sliders(state, ranges, chart, changed, rested);
-    parameters(state, changed);
+    const sliders = new Sliders(state, ranges, chart, changed, () => {
+        keep("qd", state.qd.some((x) => x) ? state.qd.join(",") : "");
+        rested();
+    });
+    sliders.move(kept("qd").split(",").map(Number));
+    parameters(state, () => {
+        changed();
+        rested();
+    });
     draw();
     rested();
     place.dataset.ready = "1";
@@ -50,12 +58,6 @@ async function start({ kind, reference, ranges, names, turns }) {
         view?.pose(program);
         place.dataset.view = view ? "3d" : "picture";
     }));
-}
-
-function keep(name, value) {
-    const address = new URL(location.href);
-    address.searchParams.set(name, value);
-    history.replaceState(null, "", address);
 }
 
 function failed(error) {

@@ -1,4 +1,5 @@
-// Sliders and parameters: what the user changes becomes the state of the page, and the pose its address.
+// Sliders and parameters: what the user changes becomes the state of the page, and its address.
+import { keep, kept } from "./address.js";
 
 export class Sliders {
     /** chart: what sliders are of states; changed() is called when a value has changed, rested() when none has for a
@@ -8,6 +9,7 @@ export class Sliders {
         this.form = document.getElementById("sliders");
         this.ranged = [...this.form.querySelectorAll("[data-q]")];
         this.numbers = [...this.form.querySelectorAll("[data-number]")];
+        this.rates = [...this.form.querySelectorAll("[data-rate]")];
         this.values = this.numbers.map((input) => Number(input.value));
         state.q.set(chart.state(this.values));
         this.form.addEventListener("input", (event) => this.moved(event.target));
@@ -28,10 +30,18 @@ export class Sliders {
         }
     }
 
+    /** Rates, of which those that are no numbers stay as they are. */
+    move(qd) {
+        for (const [k, input] of this.rates.entries()) {
+            if (!Number.isFinite(qd[k])) continue;
+            input.value = String(qd[k]);
+            this.state.qd[k] = qd[k];
+        }
+    }
+
     /** The state and the rates that the fields show. */
     given() {
-        const rates = [...this.form.querySelectorAll("[data-rate]")];
-        const [values, qd] = [this.numbers, rates].map((inputs) => inputs.map(({ valueAsNumber: x }) => (Number.isFinite(x) ? x : 0)));
+        const [values, qd] = [this.numbers, this.rates].map((inputs) => inputs.map(({ valueAsNumber: x }) => (Number.isFinite(x) ? x : 0)));
         return [this.chart.state(values), qd];
     }
 
@@ -74,7 +84,7 @@ export class Sliders {
     }
 }
 
-/** The table of parameters: those that differ from their defaults come first. */
+/** The table of parameters: those that differ from their defaults come first, and stand in the address. */
 export function parameters(state, changed) {
     const body = document.getElementById("parameters");
     if (!body) return;
@@ -91,9 +101,14 @@ export function parameters(state, changed) {
         const count = differ.filter(Boolean).length;
         all.hidden = count === 0;
         document.getElementById("changed").textContent = count ? `${count} changed` : "";
+        keep("set", inputs.filter((_, k) => differ[k]).map((input) => `${input.ariaLabel}:${input.value}`).join(","));
         changed();
     };
     const reset = (input) => (input.value = input.defaultValue);
+    const given = new Map(kept("set").split(",").map((text) => text.split(":")));
+    const set = inputs.filter((input) => given.has(input.ariaLabel));
+    for (const input of set) input.value = given.get(input.ariaLabel);
+    if (set.length) update();
     body.addEventListener("change", update);
     body.addEventListener("click", ({ target }) => {
         if (target.dataset.reset === undefined) return;

@@ -1,0 +1,14 @@
+// What of a page its address holds, so that a reload, a bookmark and the way back show the same.
+
+/** What the address holds under a name; "" where it holds nothing. */
+export function kept(name) {
+    return new URL(location.href).searchParams.get(name) ?? "";
+}
+
+/** Keeps a value, or forgets the name where there is none. */
+export function keep(name, value) {
+    const address = new URL(location.href);
+    if (value === "") address.searchParams.delete(name);
+    else address.searchParams.set(name, value);
+    history.replaceState(null, "", address);
+}
