@@ -13,6 +13,8 @@ import pytest
 
 # workers of pytest take all cores: a library of linear algebra that takes them, too, waits for them, busily
 os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = os.environ["MKL_NUM_THREADS"] = "1"
+# a process of a server or command would compile all modules that it imports, a quarter of its start
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.path.insert(0, str(Path(__file__).parent))
 
 import checked_graph
@@ -33,6 +35,7 @@ def pytest_configure(config: pytest.Config) -> None:
     Modules of anyio are loaded when they are first used, and rewritten by pytest then, which two threads cannot do at
     once: they are loaded here.
     """
+    sys.dont_write_bytecode = False
     for name in dir(anyio):
         getattr(anyio, name)
     if config.getoption("--checked"):
