@@ -14,11 +14,11 @@ from substructures import InvalidArgument, InvalidInput, Model
 from substructures.analysis.equations.first_integrals import _found, first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.integral import FirstIntegrals
-from substructures.analysis.equations.kernels import known_model
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.equations.states_in_field import state_in_field
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.memo import known_model
 
 FALL = (0, 0, -9.81)
 NONE = (0, 0, 0)
