@@ -62,6 +62,7 @@ def symbols_in(text: str) -> list[str] | None:
     found: dict[str, None] = {}
 
     def seen(name: str) -> Expr:
+        """A symbol, whose name is noted."""
         found[name] = None
         return graph.symbol(name)
 
