@@ -10,7 +10,7 @@ from flint import arb, arb_series, fmpq
 
 from substructures.certificate.linear import Ball
 from substructures.expr.direct import BALL_FUNCTIONS, ball_power, carried_out, steps_of
-from substructures.expr.syntax import Step
+from substructures.expr.steps import Step
 
 Steps = tuple[Step, ...]
 

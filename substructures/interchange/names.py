@@ -13,7 +13,7 @@ from substructures.documents.fields import shown
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.interchange.numbers import is_number
 from substructures.part.topology import BASE
 

@@ -18,7 +18,7 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.known import Known
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.expr.units.unit_check import Notice
 from substructures.part.definition import Definition
 from substructures.part.inertias import Tensor, faults_of, impossible, more

@@ -9,7 +9,8 @@ from typing import Any
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import read_unit
 from substructures.errors import InvalidDocument
-from substructures.expr.syntax import CURVES, LAWS, MAX_LENGTH, MEASURES, RESERVED, tokens
+from substructures.expr.steps import CURVES, LAWS, MEASURES, RESERVED
+from substructures.expr.syntax import MAX_LENGTH, tokens
 
 #: longest name
 LONGEST = 64
