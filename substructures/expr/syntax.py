@@ -12,8 +12,8 @@
     measure = ("distance" | "angle") [ "'" ] "(" name "," name ")"
     name    = letter { letter | digit | "_" } { "." name } { "'" }
 
-Functions: ``sin cos tan sqrt`` and, with their numbers of arguments, :data:`.steps.LAWS`; constants: ``pi``. Numbers are exact
-decimals. A measure of two frames of a tree, or its rate ('), is a name to whoever reads it further:
+Functions: ``sin cos tan sqrt`` and, with their numbers of arguments, :data:`.steps.LAWS`; constants: ``pi``. Numbers
+are exact decimals. A measure of two frames of a tree, or its rate ('), is a name to whoever reads it further:
 ``distance(a.tip, b.tip)``, spaced like that.
 
 What was read is a list of steps in postfix order, exactly as written: nothing is simplified, so that values straight
