@@ -17,7 +17,7 @@ import flint
 import numpy as np
 
 from substructures.expr import direct_laws
-from substructures.expr.rings.rationals import to_fmpq
+from substructures.expr.rationals import to_fmpq
 from substructures.expr.steps import ExpressionError, Knots, Step, decimal_number
 from substructures.expr.syntax import read
 

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_series, fmpq, fmpq_mat
 
-from substructures.expr.rings.rationals import fraction, to_fmpq
+from substructures.expr.rationals import fraction, to_fmpq
 from substructures.expr.steps import Knots
 
 UNKNOWN = arb("nan")
