@@ -28,7 +28,8 @@ from benchmarks.http import cpu_seconds, serving
 from benchmarks.report import keep, options
 from benchmarks.store import sizes
 from service.content.summaries import PartContent, part_content
-from service.content.tree_content import TreeContent, tree_summary
+from service.content.tree_content import TreeContent
+from service.content.tree_summaries import tree_summary
 from service.database.connections import Database
 from service.database.packed import pack
 from service.messages.viewer import ANYBODY

@@ -1,4 +1,5 @@
-"""Whom a request is for, decided once and strictly (RFC 9112, section 3.2): its one Host header, and its address.
+"""Whom a request is for, decided once and strictly (RFC 9112, section 3.2): its one Host header, and its address; and
+what counts as one address of those that requests come from.
 
 What is decided here is passed on as data: nobody makes an address of a header again.
 """
@@ -8,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 from functools import lru_cache
-from ipaddress import IPv6Address
+from ipaddress import IPv6Address, ip_address
 
 from service.messages.refusals import Refused
 
@@ -56,3 +57,14 @@ def origin_form(url: bytes, method: bytes, headers: Iterable[tuple[bytes, bytes]
 
 def _refused(detail: str) -> Refused:
     return Refused(400, "invalid-host", detail)
+
+
+def network_of(host: str) -> str:
+    """What counts as one address: that of IPv4, the first 64 bits of IPv6."""
+    try:
+        address = ip_address(host.partition("%")[0])
+    except ValueError:  # a socket of this machine
+        return host
+    if isinstance(address, IPv6Address):
+        return str(address.ipv4_mapped or IPv6Address(int(address) >> 64 << 64))
+    return str(address)

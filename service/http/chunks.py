@@ -1,4 +1,4 @@
-"""Large pieces of answers without a known length: into the connection from a thread, while who reads keeps up.
+"""How answers are sent: the head with the first piece, large pieces without a known length from a thread.
 
 The event loop would copy what the connection does not take at once, and be woken for every part of it; a thread waits
 in the kernel. It waits for nobody: whoever does not read on for a moment gets the rest from the loop, whose time limits
@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import asyncio
 import socket
+from asyncio import AbstractEventLoop
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import suppress
 from time import monotonic
@@ -71,3 +72,36 @@ def _pushed(connection: socket.socket, body: memoryview) -> int:
         while sent < len(body) and monotonic() < until:
             sent += connection.send(body[sent:])
     return sent
+
+
+class Joined:
+    """The transport of an answer, whose head leaves with the first piece of its body: two sends would cost twice."""
+
+    def __init__(self, loop: AbstractEventLoop, transport: asyncio.Transport) -> None:
+        self._loop, self._transport, self._held = loop, transport, b""
+        self._is_begun = False
+
+    def write(self, data: bytes | bytearray | memoryview) -> None:
+        """Hold the first one back, at most until the loop goes on."""
+        if not self._is_begun:
+            self._is_begun, self._held = True, bytes(data)
+            self._loop.call_soon(self._send)
+        elif len(data) <= AT_ONCE:
+            self._send(data)
+        else:
+            self._send()
+            self._transport.write(data)
+
+    def _send(self, more: bytes | bytearray | memoryview = b"") -> None:
+        held, self._held = self._held, b""
+        if held or more:
+            self._transport.write(b"".join((held, more)) if held else more)
+
+    def is_closing(self) -> bool:
+        """As of the connection."""
+        return self._transport.is_closing()
+
+    def close(self) -> None:
+        """Send, and close."""
+        self._send()
+        self._transport.close()

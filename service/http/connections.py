@@ -24,7 +24,6 @@ import socket
 from asyncio import AbstractEventLoop
 from collections.abc import Callable
 from contextvars import copy_context
-from ipaddress import IPv6Address, ip_address
 from typing import Any, cast
 
 import httptools
@@ -34,8 +33,8 @@ from uvicorn.protocols.http.httptools_impl import STATUS_LINE, HttpToolsProtocol
 from uvicorn.server import ServerState
 
 from service.http import problems
-from service.http.authority import origin_form
-from service.http.chunks import AT_ONCE, Chunked
+from service.http.authority import network_of, origin_form
+from service.http.chunks import Chunked, Joined
 from service.http.middleware import GUARDED
 from service.http.request_id import begin_request
 from service.messages.refusals import Refused
@@ -96,17 +95,6 @@ def too_many() -> Refused:
     """503: no room for one more connection."""
     detail = "too many connections are open; try again"
     return Refused(503, "too-many-connections", detail, headers={"Retry-After": "1"})
-
-
-def network_of(host: str) -> str:
-    """What counts as one address: that of IPv4, the first 64 bits of IPv6."""
-    try:
-        address = ip_address(host.partition("%")[0])
-    except ValueError:  # a socket of this machine
-        return host
-    if isinstance(address, IPv6Address):
-        return str(address.ipv4_mapped or IPv6Address(int(address) >> 64 << 64))
-    return str(address)
 
 
 class Connection(HttpToolsProtocol):
@@ -262,39 +250,6 @@ class Connection(HttpToolsProtocol):
             "rest": limits.body_seconds,
             "answer": limits.answer_seconds,
         }.get(waits, float("inf"))
-
-
-class Joined:
-    """The transport of an answer, whose head leaves with the first piece of its body: two sends would cost twice."""
-
-    def __init__(self, loop: AbstractEventLoop, transport: asyncio.Transport) -> None:
-        self._loop, self._transport, self._held = loop, transport, b""
-        self._is_begun = False
-
-    def write(self, data: bytes | bytearray | memoryview) -> None:
-        """Hold the first one back, at most until the loop goes on."""
-        if not self._is_begun:
-            self._is_begun, self._held = True, bytes(data)
-            self._loop.call_soon(self._send)
-        elif len(data) <= AT_ONCE:
-            self._send(data)
-        else:
-            self._send()
-            self._transport.write(data)
-
-    def _send(self, more: bytes | bytearray | memoryview = b"") -> None:
-        held, self._held = self._held, b""
-        if held or more:
-            self._transport.write(b"".join((held, more)) if held else more)
-
-    def is_closing(self) -> bool:
-        """As of the connection."""
-        return self._transport.is_closing()
-
-    def close(self) -> None:
-        """Send, and close."""
-        self._send()
-        self._transport.close()
 
 
 def _too_long_head(limit: int) -> Refused:

@@ -34,8 +34,6 @@ from substructures.tree.document import TreeSpec
 from substructures.tree.glossary import glossary, part_glossary
 from substructures.tree.model import Model
 
-#: of trees with contacts alone
-OF_CONTACTS = "substructures.analysis.motion.contacts.exporting"
 #: prefix of functions where none is given
 NAME = "model"
 ZIP = "application/zip"
@@ -183,8 +181,9 @@ def _contacts(
     """Of an FMU the contacts of the tree, and what makes the programs that they need."""
     if request.target != FMU or not model.contacts:
         return (), {}
-    made = import_module(OF_CONTACTS)
-    return made.contact_laws(model), made.contact_programs(model)
+    contacts = import_module("substructures.analysis.motion.problems.contacts").contacts_of(model)
+    made = import_module("substructures.analysis.motion.contacts.exporting")
+    return contacts, made.contact_programs(model, CONTACTS)
 
 
 def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:

@@ -142,6 +142,16 @@ def _resolved(connection: Connection, viewer: Viewer, ref: Reference, text: str 
     return version
 
 
+def used(connection: Connection, viewer: Viewer, text: str) -> tuple[str, int | None]:
+    """The name and the version whose uses are wanted, None for all versions, of a bare name. Raises Refused 404."""
+    ref = parse_reference(text)
+    if ref is None or ref.is_pinned or ref.alias is not None:
+        version = find(connection, viewer, text)
+        return version.name, version.version
+    owners.seen(connection, viewer, "substructure", ref.name)
+    return ref.name, None
+
+
 def set_alias(
     connection: Connection, viewer: Viewer, name: str, alias: str, version: int, if_match: str | None
 ) -> aliases.Alias:

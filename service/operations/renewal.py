@@ -15,7 +15,7 @@ from service.content.derivation import software
 from service.content.improvement import Improvement
 from service.content.integrity import checked, digest_of
 from service.content.summaries import PartContent
-from service.content.tree_content import TreeSummary
+from service.content.tree_summaries import TreeSummary
 from service.database.connections import Connection, Database
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome
@@ -23,7 +23,7 @@ from service.jobs.kinds.requested import REQUESTED
 from service.messages.refusals import Refused
 from service.messages.viewer import CONSOLE, OPEN, SCOPES, Viewer
 from service.operations.catalogue import mend_part
-from service.queries import audit, catalogue, content, trees
+from service.queries import audit, catalogue, content, seals, trees
 from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument
 from substructures.documents import read_json
@@ -149,7 +149,7 @@ def renew_part(
     """
     with database.read() as connection:
         row = content.get_row(connection, digest)
-        before, is_ours = row["program"], row["seal"] == content.seal_of_part(connection, row)
+        before, is_ours = row["program"], row["seal"] == seals.seal_of_part(connection, row)
         made = part_anew(connection, digest, max_nodes, compute)
     with database.write() as connection:
         mend_part(connection, made)

@@ -15,7 +15,7 @@ from fastapi.concurrency import run_in_threadpool
 from fastapi.routing import APIRoute
 from starlette.requests import cookie_parser
 
-from service.http.connections import network_of
+from service.http.authority import network_of
 from service.http.requests import SESSION, RawBody, StoreOf, authenticated, credentials
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY, Viewer

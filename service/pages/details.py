@@ -33,9 +33,32 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, 
     """The bytes of the page of a version; ``work``: its first screen
     (:func:`service.pages.model.place.place`); ``notes``: what is said before and after its sections.
     """
-    path, definition = version_path(version), part.definition
-    reference = f"{version.name}@{version.version}"
-    about = facts(
+    path, reference = version_path(version), f"{version.name}@{version.version}"
+    certificate = {**read_json(version.certificate.encode()), "warnings": part_warnings(version)}
+    return document(
+        f"{reference} - substructures",
+        tag("h1", version.title or version.name),
+        _first(reference, (version.dof, version.joints, version.mass), certificate),
+        _acts(path, link("Couple onto a tree", f"/trees?part={reference}"), exported=OF_PARTS if version.dof else ()),
+        _withdrawn(version),
+        *notes[0],
+        work,
+        tag("p", version.description) if version.description else Html(),
+        _split(path, reference, _about_part(version, aliases, part)),
+        *_sections(
+            words.coordinates(part.coordinates, part.joints),
+            words.parameters(read_json(version.parameters.encode())),
+            words.operations(read_json(version.operations.encode()), OF_PART),
+            certificate,
+        ),
+        *notes[1],
+        crumbs=[("catalogue", "/")],
+    )
+
+
+def _about_part(version: Version, aliases: Sequence[str], part: Part) -> Html:
+    reference, definition = f"{version.name}@{version.version}", part.definition
+    return facts(
         [
             ("Reference", tag("code", reference)),
             ("Aliases", joined([tag("code", f"{version.name}@{alias}") for alias in aliases])),
@@ -55,28 +78,8 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, 
             ("Stored", version.created[:10]),
             ("Derived", "here, of the definition"),
             ("Digest", tag("code", version.digest, class_="small")),
-            ("As data", joined([link("JSON", path), *links(version)], " · ")),
+            ("As data", joined([link("JSON", version_path(version)), *links(version)], " · ")),
         ]
-    )
-    certificate = {**read_json(version.certificate.encode()), "warnings": part_warnings(version)}
-    return document(
-        f"{reference} - substructures",
-        tag("h1", version.title or version.name),
-        _first(reference, (version.dof, version.joints, version.mass), certificate),
-        _acts(path, link("Couple onto a tree", f"/trees?part={reference}"), exported=OF_PARTS if version.dof else ()),
-        _withdrawn(version),
-        *notes[0],
-        work,
-        tag("p", version.description) if version.description else Html(),
-        _split(path, reference, about),
-        *_sections(
-            words.coordinates(part.coordinates, part.joints),
-            words.parameters(read_json(version.parameters.encode())),
-            words.operations(read_json(version.operations.encode()), OF_PART),
-            certificate,
-        ),
-        *notes[1],
-        crumbs=[("catalogue", "/")],
     )
 
 

@@ -13,8 +13,8 @@ from service.messages.references import Reference
 from service.messages.refusals import NotDerived
 from service.messages.viewer import PUBLIC, Viewer
 from service.queries.common import now
-from service.queries.content import seal_of_part
 from service.queries.owners import reference, seen_by, visible
+from service.queries.seals import seal_of_part
 from service.queries.searching.terms import Term, exchange, stored_terms, terms_of
 
 _NAMES = ("name", "version", "digest", "created", "withdrawn_at", "withdrawal_reason", "author")

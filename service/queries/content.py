@@ -6,22 +6,16 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any
 
-from sqlalchemy import Connection, RowMapping, bindparam, delete, exists, func, select, union_all, update
+from sqlalchemy import Connection, bindparam, delete, exists, func, select, union_all, update
 
 from service.content.derivation import software
 from service.content.integrity import checked, missing, reading
 from service.database.packed import unpack
-from service.database.seals import seal
 from service.database.tables import parts, programs, summary_forms, trees
 from service.queries.common import insert_missing, now
 from service.queries.jobs.uploads import get_upload
+from service.queries.seals import PART, seal_of_part
 from service.queries.searching.formulas import FormulaRow, packed
-
-#: what follows from the definition of a part and is served; the program is in it by its digest, as are the formulas
-SEALED = (
-    *("digest", "program", "software", "title", "description", "tags", "dof", "joints", "mass", "coordinates"),
-    *("bodies", "ports", "parameters", "operations", "certificate", "index_digest"),
-)
 
 AT_A_TIME = 500  # rows that are looked at
 
@@ -83,11 +77,6 @@ def _sealed(connection: Connection, row: Mapping[str, Any], formula_rows: Sequen
     return {**found, "seal": seal_of_part(connection, found)}
 
 
-def seal_of_part(connection: Connection, row: Mapping[str, Any] | RowMapping) -> str:
-    """The seal that a row with these values has to have."""
-    return seal(connection, ["part", *(row[name] for name in SEALED)])
-
-
 def replace_part(
     connection: Connection,
     row: Mapping[str, Any],
@@ -144,7 +133,7 @@ def get_recipe(connection: Connection, digest: str) -> str | None:
 
 def stale_parts(connection: Connection) -> list[str]:
     """The digests of all parts that other software has derived, or that are not as this server stored them."""
-    columns = select(*(parts.c[name] for name in SEALED), parts.c.seal).order_by(parts.c.digest).limit(AT_A_TIME)
+    columns = select(*(parts.c[name] for name in PART), parts.c.seal).order_by(parts.c.digest).limit(AT_A_TIME)
     ours, last, found = software(), "", list[str]()
     while rows := connection.execute(columns.where(parts.c.digest > last)).mappings().all():
         last = rows[-1]["digest"]
@@ -183,7 +172,7 @@ _RECIPE = select(parts.c.recipe).where(parts.c.digest == bindparam("of_digest"))
 _HAS_PROGRAM = select(programs.c.nodes).where(programs.c.digest == bindparam("digest"))
 _PROGRAM_OF = select(parts.c.program, parts.c.software).where(parts.c.digest == bindparam("digest"))
 _STORED = (
-    select(*(parts.c[name] for name in (*SEALED, "definition", "recipe", "seal")), programs.c.content)
+    select(*(parts.c[name] for name in (*PART, "definition", "recipe", "seal")), programs.c.content)
     .join(programs, programs.c.digest == parts.c.program, isouter=True)
     .where(parts.c.digest == bindparam("of_digest"))
 )

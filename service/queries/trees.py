@@ -6,18 +6,18 @@ from collections.abc import Mapping
 from dataclasses import asdict, dataclass
 from typing import Any, Self
 
-from sqlalchemy import Connection, Row, RowMapping, Select, bindparam, delete, func, insert, select, update
+from sqlalchemy import Connection, Row, Select, bindparam, delete, func, insert, select, update
 
 from service.content.derivation import software
 from service.content.integrity import checked
-from service.content.tree_content import summary_text
-from service.database.seals import seal
+from service.content.tree_summaries import summary_text
 from service.database.tables import parts, summary_forms, tree_names, tree_parts, trees
 from service.messages.references import Reference
 from service.messages.refusals import NotDerived
 from service.messages.viewer import ANYBODY, PUBLIC, Viewer
 from service.queries.common import insert_missing
 from service.queries.owners import seen_by, visible
+from service.queries.seals import TREE, seal_of_tree
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,11 +130,6 @@ def _sealed(connection: Connection, row: Mapping[str, Any]) -> dict[str, Any]:
     return {**found, "seal": seal_of_tree(connection, found)}
 
 
-def seal_of_tree(connection: Connection, row: Mapping[str, Any] | RowMapping) -> str:
-    """The seal that a row with these values has to have."""
-    return seal(connection, ["tree", *(row[name] for name in SEALED)])
-
-
 def remove(connection: Connection, name: str) -> None:
     """Remove all revisions; the name stays its owner's, and later ones count on, so that no number is two trees."""
     for table in (tree_parts, trees):
@@ -220,7 +215,7 @@ def wrong_latest(connection: Connection, tree: Tree) -> list[str]:
 
 def stale_revisions(connection: Connection) -> list[tuple[str, int]]:
     """Name and number of all revisions that other software has coupled, or that are not as this server stored them."""
-    columns = [trees.c[name] for name in SEALED]
+    columns = [trees.c[name] for name in TREE]
     rows = connection.execute(select(*columns, trees.c.seal).order_by(trees.c.name, trees.c.revision)).mappings()
     ours = software()
     return [
@@ -249,11 +244,6 @@ def _all() -> Select[Any]:
 
 _OWNED, _MADE = ("owner", "visibility"), ("is_derived",)
 _COLUMNS = frozenset(trees.columns.keys())
-#: what is served of a revision, but for documents that are in it by their digests
-SEALED = (
-    *("name", "revision", "digest", "program", "software", "dof", "joints", "mass", "summary_digest"),
-    *("created", "based_on", "author", "note"),
-)
 _VISIBLE, _IS_LATEST = visible(tree_names), tree_names.c.latest == trees.c.revision
 
 # Built once: to build a statement takes longer than to execute it.

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from statistics import median
 from time import monotonic
 
-from service.content.tree_content import TreeSummary
+from service.content.tree_summaries import TreeSummary
 from service.database.connections import Connection
 from service.queries import content
 from service.queries.attempts import Attempt

@@ -11,9 +11,8 @@ from service.http.requests import StoreOf, ViewerOf, needs
 from service.http.responses import link_header, next_link, response_of
 from service.messages.answers import REVALIDATE, json_answer
 from service.messages.paging import limited, read_token, write_token
-from service.operations import owners, versions
-from service.queries import uses
-from service.queries import versions as rows
+from service.operations import catalogue, owners
+from service.queries import uses, versions
 from service.routes.bodies import APIRouter
 from service.schemas.versions import RevisionList, UsePage, VersionList
 from service.views.resources import dump
@@ -40,7 +39,7 @@ def list_substructure_versions(
     before = read_token(search, page_token, int)
     with store.database.read() as connection:
         owners.seen(connection, viewer, "substructure", name)
-        found = rows.page_versions(connection, viewer, name, before[0] if before else None, size + 1)
+        found = versions.page_versions(connection, viewer, name, before[0] if before else None, size + 1)
     token = write_token(search, found[size - 1].version) if len(found) > size else None
     return _page(request, [version_item(each) for each in found[:size]], token)
 
@@ -54,7 +53,7 @@ def list_tree_revisions(
     before = read_token(search, page_token, int)
     with store.database.read() as connection:
         owners.seen(connection, viewer, "tree", name)
-        found = rows.page_revisions(connection, viewer, name, before[0] if before else None, size + 1)
+        found = versions.page_revisions(connection, viewer, name, before[0] if before else None, size + 1)
     token = write_token(search, found[size - 1].revision) if len(found) > size else None
     return _page(request, [revision_item(each) for each in found[:size]], token)
 
@@ -68,7 +67,7 @@ def list_substructure_uses(
     position = read_token(search, page_token, str, str, int)
     after: uses.Position | None = None if position is None else (position[0], position[1], position[2])
     with store.database.read() as connection:
-        name, version = versions.used(connection, viewer, ref)
+        name, version = catalogue.used(connection, viewer, ref)
         found = uses.page(connection, viewer, name, version, after, size + 1)
     last = found[size - 1] if len(found) > size else None
     token = None if last is None else write_token(search, last.kind, last.name, last.number)

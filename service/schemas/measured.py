@@ -17,7 +17,8 @@ from substructures.documents import escape, read_model
 from substructures.documents.fields import Real
 from substructures.documents.units import Dimension, si_text
 from substructures.errors import Fault, InvalidArgument
-from substructures.expr.syntax import ExpressionError, read
+from substructures.expr.steps import ExpressionError
+from substructures.expr.syntax import read
 from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference, Inferred
 from substructures.expr.units.unit_check import UnitCheck, dimension_of
 from substructures.mechanics.state_names import EFFORTS

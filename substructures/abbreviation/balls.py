@@ -12,7 +12,7 @@ import flint
 
 from substructures.expr.direct import BALL_FUNCTIONS, ball_power
 from substructures.expr.graph import Expr
-from substructures.expr.rings.rationals import to_fmpq
+from substructures.expr.rationals import to_fmpq
 from substructures.expr.walk import reachable
 
 #: bits of the arithmetic

@@ -15,7 +15,7 @@ from substructures.expr.direct import ball
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program
 from substructures.expr.replay import replay
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.tree.model import Model
 
 #: names that stand for all of a kind that are not named themselves

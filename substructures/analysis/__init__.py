@@ -23,6 +23,7 @@ motion           ``problems``: what is asked of a motion (its kind, integrator, 
 equations        ``nonholonomic``: velocity constraints, Voronets and Boltzmann-Hamel; ``first_integrals`` (``energy``:
                  its rule; ``symmetries``); ``perturbation``, ``curvature``, ``routh``; ``dependencies``: exact linear
                  dependencies between functions; ``formulas``: a model in a new graph
+continuation     curves F(u) = 0 by pseudo-arclength, and where two cross
 report           a model told in words: structure, symmetries, sizes of terms; as text, LaTeX, a page
 verdict          what checks found, and what they say together: right, wrong, or nobody knows
 ===============  ===================================================================================================

@@ -17,7 +17,7 @@ from flint import ctx, fmpq
 from substructures.certificate.numbers import Plain
 from substructures.expr.direct import BALL_FUNCTIONS
 from substructures.expr.operations import Operation
-from substructures.expr.syntax import MEASURES
+from substructures.expr.steps import MEASURES
 
 State = dict[str, Any]
 #: what is positive in the first state; everything else has both signs

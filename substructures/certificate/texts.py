@@ -11,7 +11,7 @@ from flint import arb, arb_series, fmpq
 
 from substructures.certificate.linear import Ball
 from substructures.expr.direct import BALL_FUNCTIONS, ball_power, carried_out, steps_of
-from substructures.expr.syntax import Knots, Step
+from substructures.expr.steps import Knots, Step
 
 Steps = tuple[Step, ...]
 

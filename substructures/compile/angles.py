@@ -36,6 +36,7 @@ def by_addition_theorem(source: Program, names: Sequence[str]) -> Program:
     pairs: dict[int, tuple[int, int]] = {}
 
     def write(*operation: str | int) -> int:
+        """The number of a new operation."""
         made.append(operation)
         return len(made) - 1
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from typing import Protocol
 
 from substructures.errors import TooLarge
 
@@ -17,15 +17,28 @@ OF_EACH |= {"indicator_1": "", "indicator_2": ""}
 OF_ALL = {"impact_energy": "J", "impacts": "", "last_impact": "s"}
 
 
-@dataclass(frozen=True)
-class ContactLaw:
-    """Of one contact: its numbers, as of the tree; ``tangents``: 1 where it slides along x alone, else 2."""
+class ContactLaw(Protocol):
+    """What is needed of a contact of the tree."""
 
-    name: str
-    tangents: int
-    restitution: float
-    friction: float
-    rest_velocity: float
+    @property
+    def name(self) -> str:
+        """As of the tree."""
+
+    @property
+    def tangents(self) -> int:
+        """1 where it slides along x alone, else 2."""
+
+    @property
+    def restitution(self) -> float:
+        """Of an impact, 0 to 1."""
+
+    @property
+    def friction(self) -> float:
+        """Coulomb's coefficient."""
+
+    @property
+    def rest_velocity(self) -> float:
+        """Along the normal, at which an impact ends with none [m/s]."""
 
 
 def require_few(contacts: Sequence[ContactLaw]) -> None:

@@ -25,7 +25,7 @@ from substructures.errors import InvalidArgument, among
 from substructures.export.exported import Function
 from substructures.export.interface import Interface
 from substructures.expr.program import Program
-from substructures.expr.rings.rationals import to_fmpq
+from substructures.expr.rationals import to_fmpq
 
 #: of single precision: unit roundoff, smallest normal number
 UNIT, SMALLEST = 2.0**-24, 2.0**-126

@@ -13,7 +13,7 @@ from substructures.expr.parse import parse
 from substructures.expr.program import Program
 from substructures.expr.program import program as collect
 from substructures.expr.replay import replay
-from substructures.expr.syntax import ExpressionError, decimal_number
+from substructures.expr.steps import ExpressionError, decimal_number
 
 Value = int | str | Decimal | Fraction
 

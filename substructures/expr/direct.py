@@ -17,8 +17,9 @@ import flint
 import numpy as np
 
 from substructures.expr import direct_laws
-from substructures.expr.rings.rationals import to_fmpq
-from substructures.expr.syntax import ExpressionError, Knots, Step, decimal_number, read
+from substructures.expr.rationals import to_fmpq
+from substructures.expr.steps import ExpressionError, Knots, Step, decimal_number
+from substructures.expr.syntax import read
 
 SHORT = 100  # characters of a decimal number
 #: a number as documents give it: exact, or an expression

@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 from flint import arb, arb_series, fmpq, fmpq_mat
 
-from substructures.expr.rings.rationals import fraction, to_fmpq
-from substructures.expr.syntax import Knots
+from substructures.expr.rationals import fraction, to_fmpq
+from substructures.expr.steps import Knots
 
 UNKNOWN = arb("nan")
 #: a function with its partial derivatives, and with the second ones row by row, where these are not all 0

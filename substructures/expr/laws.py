@@ -25,7 +25,7 @@ from fractions import Fraction
 from itertools import pairwise
 
 from substructures.expr.graph import Expr
-from substructures.expr.syntax import Knots
+from substructures.expr.steps import Knots
 
 HALF = Fraction(1, 2)
 #: where exp(c) is held; at no place that is a short decimal

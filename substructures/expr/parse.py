@@ -9,7 +9,8 @@ from fractions import Fraction
 from substructures.errors import TooLarge
 from substructures.expr import laws
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.syntax import LEAVES, ExpressionError, Knots, Step, read
+from substructures.expr.steps import LEAVES, ExpressionError, Knots, Step
+from substructures.expr.syntax import read
 from substructures.expr.trigonometry import cos, sin, tan
 
 _ARITHMETIC: dict[str, Callable[[Expr, Expr], Expr]] = {

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from substructures.expr.syntax import CURVES, LAWS, MEASURES, RESERVED, tokens
+from substructures.expr.steps import CURVES, LAWS, MEASURES, RESERVED
+from substructures.expr.syntax import tokens
 
 
 def pieces(text: str) -> Iterator[tuple[str, str]]:

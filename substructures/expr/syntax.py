@@ -12,8 +12,8 @@
     measure = ("distance" | "angle") [ "'" ] "(" name "," name ")"
     name    = letter { letter | digit | "_" } { "." name } { "'" }
 
-Functions: ``sin cos tan sqrt`` and, with their numbers of arguments, :data:`LAWS`; constants: ``pi``. Numbers are exact
-decimals. A measure of two frames of a tree, or its rate ('), is a name to whoever reads it further:
+Functions: ``sin cos tan sqrt`` and, with their numbers of arguments, :data:`.steps.LAWS`; constants: ``pi``. Numbers
+are exact decimals. A measure of two frames of a tree, or its rate ('), is a name to whoever reads it further:
 ``distance(a.tip, b.tip)``, spaced like that.
 
 What was read is a list of steps in postfix order, exactly as written: nothing is simplified, so that values straight
@@ -23,97 +23,34 @@ from the text (:mod:`substructures.expr.direct`) share nothing with the graph th
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
-from decimal import Decimal
 from fractions import Fraction
 from functools import lru_cache
 from itertools import pairwise
 from typing import Literal
 
 from substructures.expr.construction.exact import MAX_EXPONENT
+from substructures.expr.steps import (
+    CURVES,
+    FUNCTIONS,
+    LAWS,
+    MAX_DIGITS,
+    MEASURES,
+    ExpressionError,
+    Knots,
+    Step,
+    decimal_number,
+)
 
 #: longest text of which the steps are kept
 SHORT = 100
 MAX_LENGTH = 10_000
 MAX_DEPTH = 64
-MAX_DIGITS = 400
 
 _TOKEN = re.compile(
     r"\s*(?:(?P<number>(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)|(?P<name>[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*'*)"
     r"|(?P<op>\*\*|[-+*/^(),;:]))",
     re.ASCII,
 )
-FUNCTIONS = ("sin", "cos", "tan", "sqrt")
-RESERVED = frozenset((*FUNCTIONS, "pi", "t"))
-#: words after the knots of a table
-CURVES = ("monotone", "smooth")
-#: measures of two frames
-MEASURES = ("distance", "angle")
-_MEASURE = re.compile(r"((?:distance|angle)'?)\(([A-Za-z0-9_.]+), ([A-Za-z0-9_.]+)\)", re.ASCII)
-#: further functions and how many arguments they have; only names before a parenthesis, so that names stay free
-LAWS = {
-    **dict.fromkeys(("abs", "sign", "exp", "log", "tanh", "asin", "acos", "atan"), 1),
-    **dict.fromkeys(("min", "max", "atan2"), 2),
-    "step": 3,
-}
-#: operations without operands
-LEAVES = frozenset(("number", "name", "pi"))
-
-
-class ExpressionError(ValueError):
-    """An expression that cannot be read; ``column`` counts from 1, ``name`` is the unknown name, if any."""
-
-    def __init__(self, message: str, column: int, name: str | None = None) -> None:
-        self.column, self.name = column, name
-        super().__init__(f"{message} (column {column})")
-
-
-@dataclass(frozen=True, slots=True)
-class Knots:
-    """A table: places x, which rise, and values y. Outside it has the first or the last value; in between it is linear,
-    or ``monotone``: cubics that rise and fall where the values do (F. N. Fritsch and J. Butland, 1984), or ``smooth``:
-    the cubic spline, whose second derivative is continuous, with slope 0 at both ends.
-    """
-
-    x: tuple[Fraction, ...]
-    y: tuple[Fraction, ...]
-    kind: Literal["linear", "monotone", "smooth"]
-
-
-@dataclass(frozen=True, slots=True)
-class Step:
-    """One step of an expression in postfix order; operands are the results of the steps before it.
-
-    ``op`` with its number of operands, and what ``value`` is: ``number`` 0 (the exact value), ``name`` 0 (the name),
-    ``pi`` 0, ``neg`` 1, ``add sub mul div`` 2, ``pow`` 1 (the integer exponent), ``power`` 2 (any other exponent),
-    ``call`` 1 or as :data:`LAWS` say (the function's name), ``table`` 1 (the table). ``column``: where it stands in the
-    text, from 1.
-    """
-
-    op: str
-    value: Fraction | str | int | Knots | None
-    column: int
-
-    @property
-    def exponent(self) -> int:
-        """Of an integer power, else 0."""
-        return self.value if isinstance(self.value, int) else 0
-
-    @property
-    def operands(self) -> int:
-        """How many results before it are taken."""
-        if self.op == "call":
-            return LAWS.get(str(self.value), 1)
-        return 0 if self.op in LEAVES else 2 if self.op in ("add", "sub", "mul", "div", "power") else 1
-
-
-def decimal_number(text: str) -> Fraction:
-    """The exact value of a decimal literal of at most 400 digits (exponent included). Raises ValueError."""
-    value = Decimal(text)
-    exponent = value.as_tuple().exponent
-    if not isinstance(exponent, int) or len(value.as_tuple().digits) + abs(exponent) > MAX_DIGITS:
-        raise ValueError(f"number has more than {MAX_DIGITS} digits")
-    return Fraction(value)
 
 
 class _Reader:
@@ -318,16 +255,6 @@ def tokens(text: str) -> list[tuple[str, str, int]]:
     ['2', '*', "l'", '']
     """
     return _Reader(text).tokens
-
-
-def measured(name: str) -> tuple[str, str, str] | None:
-    """The measure with its mark, and the frames, of the name of a measure; None of any other name.
-
-    >>> measured("angle'(a.base, b.base)"), measured("a.q1'")
-    (("angle'", 'a.base', 'b.base'), None)
-    """
-    found = _MEASURE.fullmatch(name)
-    return (found[1], found[2], found[3]) if found else None
 
 
 def read(text: str) -> tuple[Step, ...]:

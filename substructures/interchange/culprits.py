@@ -42,6 +42,7 @@ class _Carried:
     J: Array
 
     def ten(self) -> Array:
+        """m, s and the six moments."""
         return np.array([self.m, *self.s, *(self.J[i] for i in _MOMENTS)])
 
     def described(self) -> dict[str, float]:

@@ -136,6 +136,7 @@ def _loads(
         coordinates |= {joint: f"{instances[piece]}.{name}" for joint, name in own if name not in moved}
 
     def point(link: str | None, at: Triple) -> dict[str, Any]:
+        """A point of a link, or of the world, as loads name it."""
         place = place_of({} if link is None else parts[pieces[link]].seats, link, at)
         return place | {"frame": WORLD if link is None else f"{instances[pieces[link]]}.{place['frame']}"}
 

@@ -13,7 +13,7 @@ from substructures.documents.fields import shown
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.interchange.numbers import is_number
 from substructures.part.topology import BASE
 
@@ -62,6 +62,7 @@ def symbols_in(text: str) -> list[str] | None:
     found: dict[str, None] = {}
 
     def seen(name: str) -> Expr:
+        """A symbol, whose name is noted."""
         found[name] = None
         return graph.symbol(name)
 

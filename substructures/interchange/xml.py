@@ -103,6 +103,7 @@ class _Builder(ContentHandler):
         self.spaces: dict[str, str] = {}  #: namespaces by prefix
 
     def startElement(self, name: str, attrs: Any) -> None:
+        """A node below the one that is open. Raises InvalidDocument for too many, and what points to other files."""
         given = dict(attrs.items())
         self.spaces |= {key[6:]: uri for key, uri in given.items() if key.startswith("xmlns:")}
         plain = {key: x for key, x in given.items() if ":" not in key and key != "xmlns"}
@@ -126,6 +127,7 @@ class _Builder(ContentHandler):
         self.stack.append(node)
 
     def endElement(self, name: str) -> None:  # noqa: ARG002
+        """The node above is open again."""
         self.stack.pop()
 
     def characters(self, content: str) -> None:

@@ -10,7 +10,8 @@ from typing import Any
 from substructures.documents.fields import in_si
 from substructures.errors import SOUGHT, listed, meant
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.syntax import ExpressionError, measured, read
+from substructures.expr.steps import ExpressionError, measured
+from substructures.expr.syntax import read
 from substructures.loads.measures import MEASURES, Measure
 from substructures.loads.pairs import Pair, Place, Reach, rate
 from substructures.loads.scope import ExprVector, Lookup, Scope

@@ -12,7 +12,7 @@ from substructures.documents.fields import Number
 from substructures.documents.units import Dimension
 from substructures.expr.differentiate import derivative
 from substructures.expr.graph import Expr
-from substructures.expr.syntax import measured
+from substructures.expr.steps import measured
 from substructures.expr.walk import transfer
 from substructures.loads.document import Load, LoadFormulas, OfTree
 from substructures.loads.measures import Measure

@@ -12,7 +12,7 @@ from substructures.errors import SOUGHT, Fault, InvalidDocument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse, parse_terms
-from substructures.expr.syntax import MAX_DIGITS, ExpressionError, decimal_number, measured
+from substructures.expr.steps import MAX_DIGITS, ExpressionError, decimal_number, measured
 from substructures.expr.trigonometry import cos_sin
 from substructures.mechanics.linear3 import Planar, Rotation
 

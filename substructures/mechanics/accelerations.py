@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 import numpy as np
+from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.mechanics.closure_rows import RANK, RowSizes, ranks
@@ -113,20 +114,8 @@ def closed_solve(
     # G = U diag(sizes) V^T; the rows of V^T beyond the rank span the velocities that G leaves free
     left, sizes, right = np.linalg.svd(np.where(np.isfinite(G), G, 0), full_matrices=True)
     rank_here = ranks(sizes)
-    # mu^T G'v of one free velocity v and all mu with mu^T G = 0
-    probe = np.random.default_rng(5).standard_normal(G.shape[2])
-    free = np.arange(G.shape[2]) >= rank_here[:, None]
-    along = np.einsum("nka,nk->na", right, np.where(free, right @ probe, 0))
-    across = np.arange(G.shape[1]) >= rank_here[:, None]
-    curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along) / reach), 0)
-    speed = np.abs(qd).max(axis=1, initial=1)
-    # G q' and phi, which have to be zero
-    rate = np.einsum("nka,na->nk", found["closure.jacobian"], np.broadcast_to(qd, result.shape)) / rows.width
-    good = np.abs(found["closure.residual"] / rows.width).max(axis=1, initial=0) <= MET * np.abs(q).max(
-        axis=1, initial=1
-    )
-    good = good & (np.abs(rate).max(axis=1, initial=0) <= MET_RATE * speed)
-    good = good & (np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
+    good = _keeps_rank(left, right, rank_here, lambda v: second(v) / reach)
+    good = good & _met(found, q, np.broadcast_to(qd, result.shape), rows)
     for rank in np.unique(rank_here):
         some = np.flatnonzero(good & (rank_here == rank))
         N = right[some, rank:].swapaxes(1, 2)
@@ -142,3 +131,23 @@ def closed_solve(
             np.maximum(sizes[some, 0], 1.0) / sizes[some, rank - 1] if rank else 1.0
         )
     return result, conditions
+
+
+def _keeps_rank(
+    left: Array, right: Array, rank: NDArray[np.int64], second: Callable[[Array], Array]
+) -> NDArray[np.bool_]:
+    """Where (n,) mu^T G'v is zero of one free velocity v and all mu with mu^T G = 0."""
+    probe = np.random.default_rng(5).standard_normal(right.shape[-1])
+    free = np.arange(right.shape[-1]) >= rank[:, None]
+    along = np.einsum("nka,nk->na", right, np.where(free, right @ probe, 0))
+    across = np.arange(left.shape[-1]) >= rank[:, None]
+    curved = np.where(across, np.einsum("nkj,nk->nj", left, second(along)), 0)
+    return np.asarray(np.abs(curved).max(axis=1, initial=0) <= np.sqrt(RANK))
+
+
+def _met(found: Mapping[str, Array], q: Array, qd: Array, rows: RowSizes) -> NDArray[np.bool_]:
+    """Which states (n,) meet the closures, positions and velocities: phi = 0 and G q' = 0."""
+    rate = np.einsum("nka,na->nk", found["closure.jacobian"], qd) / rows.width
+    opened = np.abs(found["closure.residual"] / rows.width).max(axis=1, initial=0)
+    met = opened <= MET * np.abs(q).max(axis=1, initial=1)
+    return np.asarray(met & (np.abs(rate).max(axis=1, initial=0) <= MET_RATE * np.abs(qd).max(axis=1, initial=1)))

@@ -114,6 +114,7 @@ def shape(link: Link, moves: bool) -> Shape:
     turning = CONSTANT if link.s else STATE
 
     def kind(x: Scalar, other: int) -> int:
+        """Zero, one, or as the ``other`` says."""
         return ZERO_ if exactly(x, 0) else ONE if exactly(x, 1) or exactly(x, -1) else other
 
     factors = list[tuple[int, ...]]()

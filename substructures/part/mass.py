@@ -10,7 +10,7 @@ import flint
 
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, value
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.part.definition import Definition
 
 PRECISION = 128  # bits

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import NamedTuple
 
 from substructures.errors import Fault, InvalidDocument, TooLarge, among
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.part.balls import BALLS, ball_faults, ball_names

@@ -12,7 +12,7 @@ from typing import Any
 
 from substructures.documents.units import NUMBER, Dimension
 from substructures.errors import Fault
-from substructures.expr.syntax import measured
+from substructures.expr.steps import measured
 from substructures.expr.units.angles import angle_warnings
 from substructures.expr.units.dimensions import Dimensioned, Inferred
 from substructures.expr.units.unit_check import Place, UnitCheck, dimension_of

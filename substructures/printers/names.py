@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterable, Sequence
 
 from substructures.expr.operations import Output, Symbol
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.quantities.quantity import OUTPUTS
 
 _SAFE = frozenset("ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789 _.'-+^()[]*/,:;=<>")

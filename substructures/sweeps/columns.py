@@ -11,7 +11,7 @@ import numpy as np
 from substructures.array import Array
 from substructures.ensembles.quantity_columns import TAKEN, QuantityColumn, check_quantity, numbers_of, require_columns
 from substructures.errors import InvalidArgument, InvalidDocument, among
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.late import Table
 from substructures.mechanics.state_names import resting_state
 from substructures.quantities.numbers.evaluation import EvaluationOptions, evaluate

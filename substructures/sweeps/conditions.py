@@ -17,7 +17,7 @@ from substructures.expr.interpret import interpret_in_blocks
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import Program, array, program
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 
 Truths = NDArray[np.bool_]
 _COMPARISON = re.compile(r"(<=|>=|==|!=|<|>)")

@@ -160,6 +160,8 @@ class _Search:
         """By sequential quadratic programming; the start where that leads nowhere."""
 
         def differenced(of: Callable[[tuple[Array, Array]], Array]) -> Callable[[Array], Array]:
+            """The slopes of a function of the values."""
+
             def slopes(x: Array) -> Array:
                 """Central differences, within the bounds."""
                 above, below = np.minimum(x + self.step, 1.0), np.maximum(x - self.step, 0.0)

@@ -9,7 +9,7 @@ from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx
 
-from substructures.expr.rings.rationals import fraction, to_fmpq
+from substructures.expr.rationals import fraction, to_fmpq
 from substructures.textbook.atoms import Monomial, Polynomial, monomial_key, times
 from substructures.textbook.work import Work
 

@@ -10,7 +10,7 @@ from typing import NamedTuple
 
 from flint import fmpq
 
-from substructures.expr.rings.rationals import fraction
+from substructures.expr.rationals import fraction
 from substructures.textbook.harmonics import Mode
 from substructures.textbook.work import Work
 

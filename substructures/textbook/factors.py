@@ -13,7 +13,7 @@ from typing import Any
 
 from flint import Ordering, fmpq_mpoly_ctx
 
-from substructures.expr.rings.rationals import fraction, to_fmpq
+from substructures.expr.rationals import fraction, to_fmpq
 from substructures.textbook.divisors import is_fraction
 from substructures.textbook.exponentials import Laurent, harmonics_of, spread, tangent
 from substructures.textbook.harmonics import Mode, Waves, angle_key, cost, normal, shortest

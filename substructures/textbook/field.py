@@ -16,9 +16,9 @@ from typing import Any
 from flint import Ordering, fmpq_mpoly_ctx
 
 from substructures.expr.graph import Expr
+from substructures.expr.rationals import to_fmpq
 from substructures.expr.rings.expand import classified
 from substructures.expr.rings.generators import Angle, Generators, Product, Sum, is_function, turned
-from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.walk import reachable
 from substructures.textbook.work import Work
 

@@ -16,7 +16,7 @@ from math import comb, prod
 
 from flint import fmpq
 
-from substructures.expr.rings.rationals import fraction, to_fmpq
+from substructures.expr.rationals import fraction, to_fmpq
 from substructures.textbook.work import Work
 
 #: a harmonic: multiples of the angles, the first of which that is not zero is positive

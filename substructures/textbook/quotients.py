@@ -12,7 +12,7 @@ from fractions import Fraction
 from typing import Any
 
 from substructures.expr.graph import Expr
-from substructures.expr.rings.rationals import fraction, to_fmpq
+from substructures.expr.rationals import fraction, to_fmpq
 from substructures.textbook.atoms import INPUT, MASS, MOVING, Atoms, Monomial, times
 from substructures.textbook.collect import length
 from substructures.textbook.contents import Ring, divided, monomial_of

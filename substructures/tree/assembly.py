@@ -9,7 +9,7 @@ from typing import Any
 
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.loads.scope import Scope, no_names
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.kinematics import INTERFACE

@@ -14,7 +14,7 @@ from substructures.documents import DocumentPart, read_model
 from substructures.documents.faults import PATTERNS
 from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector, PlainNumber
 from substructures.errors import Fault, InvalidDocument, among, listed, meant
-from substructures.expr.syntax import RESERVED
+from substructures.expr.steps import RESERVED
 from substructures.loads.document import AT
 from substructures.loads.kinds import LoadOfTree
 from substructures.part.definition import Definition, Input, Parameter, PartClosure, Placement, WithTables

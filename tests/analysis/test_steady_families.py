@@ -13,7 +13,7 @@ from random_trees import Plain, model_of
 from scipy.optimize import brentq
 
 from substructures import InvalidInput, Model
-from substructures.analysis.stability.continuation import Continuation
+from substructures.analysis.continuation import Continuation
 from substructures.analysis.stability.steady_motions import steady_motions
 from substructures.analysis.stability.steady_result import SteadyMotions
 from substructures.analysis.stability.steady_search import SteadySearch

@@ -14,7 +14,8 @@ from contact_models import BALL, PLACED, G, block, box, disc, of, on_moving_plat
 from run_code import require_clean_sources
 
 from substructures import Model, couple, derive, simulate
-from substructures.analysis.motion.contacts.exporting import contact_laws, contact_programs
+from substructures.analysis.motion.contacts.exporting import contact_programs
+from substructures.analysis.motion.problems.contacts import contacts_of
 from substructures.errors import TooLarge
 from substructures.export import Exported, exported_model, files, interface_of_model
 from substructures.export.contacts import CONTACTS
@@ -34,8 +35,10 @@ IMPACTS = ("contact.impacts", "contact.impact_energy", "contact.last_impact")
 def exported_of(model: Model) -> Exported:
     interface = interface_of_model(model, "demo", "sha256:1")
     names = (CONTACTS, "forward_dynamics", "kinetic_energy", "potential_energy")
-    made = exported_model(Sources(model), interface, names, "demo", packed=True, others=contact_programs(model))
-    return replace(made, contacts=contact_laws(model))
+    made = exported_model(
+        Sources(model), interface, names, "demo", packed=True, others=contact_programs(model, CONTACTS)
+    )
+    return replace(made, contacts=contacts_of(model))
 
 
 def feet(friction: str) -> list[dict[str, str]]:

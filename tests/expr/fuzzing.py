@@ -21,7 +21,7 @@ from substructures.expr.direct import ball, value
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Program, Symbol, program
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 
 NAMES = ("a", "b", "k", "q0", "q1", "w")
 #: what stands in a formula; the last ones are rare

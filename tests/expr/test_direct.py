@@ -14,7 +14,7 @@ import pytest
 import sympy
 
 from substructures.expr.direct import ball, value
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 
 
 @pytest.mark.parametrize(

@@ -29,7 +29,7 @@ from substructures.expr.parse import parse
 from substructures.expr.program import Formulas, Program, Symbol, program
 from substructures.expr.replay import replay
 from substructures.expr.rings.expand import Expander
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.printers import entries
 
 from .fuzzing import NAMES, PRECISION, Texts, agrees, balls, built, measure

@@ -18,7 +18,8 @@ from substructures.expr.interpret import interpret
 from substructures.expr.operations import Symbol
 from substructures.expr.parse import parse
 from substructures.expr.program import array, program
-from substructures.expr.syntax import ExpressionError, read
+from substructures.expr.steps import ExpressionError
+from substructures.expr.syntax import read
 from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference
 
 X, Y = np.array([0.0, 0.5, 1.25, 2.0, 3.5, 4.0]), np.array([1.0, 3.0, 2.5, 2.5, 4.0, 7.0])

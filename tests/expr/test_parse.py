@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from substructures.errors import TooLarge
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.expr.trigonometry import cos, sin
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 from service.content.derivation import software
-from service.content.tree_content import summary_text, tree_summary
+from service.content.tree_summaries import summary_text, tree_summary
 from service.jobs.engines.engine import AttemptReport, Budget, Engine, Work
 from service.jobs.kinds import expand, resolve, submission
 from service.jobs.kinds.library import StoredTree, StoredVersion

@@ -10,9 +10,8 @@ from sqlalchemy import select, true, update
 
 from service.database.connections import Database
 from service.database.tables import parts, trees
-from service.queries.content import seal_of_part
+from service.queries.seals import seal_of_part, seal_of_tree
 from service.queries.searching.formulas import index_digest
-from service.queries.trees import seal_of_tree
 
 
 def seal_again(store: Path | str, software: str | None = None, only: Collection[str] = ()) -> None:

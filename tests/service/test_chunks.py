@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from service.http import chunks
-from service.http.connections import Joined
+from service.http.chunks import Joined
 from service.operations import exchange
 from service.server import background
 from service.settings import Settings

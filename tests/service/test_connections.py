@@ -19,7 +19,8 @@ from typing import Any
 import pytest
 
 from service.database.connections import Database
-from service.http.connections import Complaints, Connection, network_of
+from service.http.authority import network_of
+from service.http.connections import Complaints, Connection
 from service.server import background
 from service.settings import Limits, Settings
 

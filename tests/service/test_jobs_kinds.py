@@ -8,7 +8,8 @@ from typing import Any
 import pytest
 
 from service.content.summaries import PartContent, part_content
-from service.content.tree_content import TreeContent, summary_text
+from service.content.tree_content import TreeContent
+from service.content.tree_summaries import summary_text
 from service.database.packed import unpack
 from service.jobs.kinds import KINDS, expand, run, submission
 from service.jobs.kinds import derive as of_derive

@@ -11,7 +11,7 @@ import sqlalchemy as sa
 from fastapi.testclient import TestClient
 
 from service.app import open_store
-from service.content.tree_content import summary_text
+from service.content.tree_summaries import summary_text
 from service.database.connections import Database
 from service.database.migrate import upgrade
 from service.database.tables import metadata, search_terms

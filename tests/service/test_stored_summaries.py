@@ -12,7 +12,7 @@ import pytest
 
 from service.app import open_store
 from service.content.integrity import digest_of
-from service.content.tree_content import HOLE, summary_text, tree_summary
+from service.content.tree_summaries import HOLE, summary_text, tree_summary
 from service.operations.renewing import Renewal
 from service.operations.verification import verify_all
 from service.settings import Settings

@@ -16,7 +16,7 @@ from sqlalchemy import update
 from service.cli.main import main
 from service.content.integrity import digest_of
 from service.content.summaries import part_content
-from service.content.tree_content import TreeSummary
+from service.content.tree_summaries import TreeSummary
 from service.database.tables import trees
 from service.messages.references import Reference
 from service.messages.viewer import ANYBODY

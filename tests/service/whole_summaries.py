@@ -5,7 +5,7 @@ from __future__ import annotations
 import sqlite3
 
 from service.content.integrity import digest_of
-from service.content.tree_content import summary_text
+from service.content.tree_summaries import summary_text
 
 
 def whole_summary(connection: sqlite3.Connection) -> str:

@@ -67,14 +67,24 @@ def evaluate(
     if json:
         print_json(found)
     else:
-        for name in quantities:
-            _print(name, found[name], found)
-            if TABLE[name].note:
-                print(f"  {TABLE[name].note}")
+        _print_all(quantities, found)
     tell_warnings(found)
-    for failure in found.get("failures", ()):
+    return _failed(found)
+
+
+def _print_all(quantities: Sequence[str], found: Mapping[str, Any]) -> None:
+    for name in quantities:
+        _print(name, found[name], found)
+        if TABLE[name].note:
+            print(f"  {TABLE[name].note}")
+
+
+def _failed(found: Mapping[str, Any]) -> int:
+    """1 where there are states without a result, which are told."""
+    failures = found.get("failures", ())
+    for failure in failures:
         print(f"no result: {failure['message']}")
-    return int(bool(found.get("failures")))
+    return int(bool(failures))
 
 
 def _here(path: Path, request: Mapping[str, Any]) -> dict[str, Any]:

@@ -79,17 +79,23 @@ def export(
     request = ExportRequest(target, names, name, bind, together, packed, fmi, precision, ranges, stages, standard, own)
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
-    path, ending = out or Path(package.name), Path(package.name).suffix
-    if path.suffix == ".zip" != ending:
-        raise ValueError(f"{target} is one file and no archive: --out {path.with_suffix(ending)}")
-    if not force and path.exists() and (not path.is_file() or path.read_bytes() != package.data):
-        raise ValueError(f"{path} is another file already: name one with --out, or write over it with {FORCE}")
+    path = _place(out, target, package, force)
     path.write_bytes(package.data)
     if json:
         print_json({"file": str(path), "bytes": len(package.data)})
     else:
         print(f"{path}: {len(package.data)} bytes")
     return 0
+
+
+def _place(out: Path | None, target: str, package: Package, force: bool) -> Path:
+    """Where it is written. Raises ValueError for another file that is there, and for one file in an archive."""
+    path, ending = out or Path(package.name), Path(package.name).suffix
+    if path.suffix == ".zip" != ending:
+        raise ValueError(f"{target} is one file and no archive: --out {path.with_suffix(ending)}")
+    if not force and path.exists() and (not path.is_file() or path.read_bytes() != package.data):
+        raise ValueError(f"{path} is another file already: name one with --out, or write over it with {FORCE}")
+    return path
 
 
 def _is_file(given: str) -> bool:

@@ -8,7 +8,7 @@ from functools import partial
 from service.content.cache import Cache
 from service.content.derivation import software
 from service.content.summaries import part_content
-from service.content.tree_content import tree_summary
+from service.content.tree_summaries import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of

@@ -17,7 +17,7 @@ from substructures.documents import read_json
 from substructures.errors import Fault, InvalidDocument, TooLarge, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.part.definition import Definition
 from substructures.part.derive import derive
 from substructures.part.topology import topology

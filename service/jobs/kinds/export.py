@@ -56,7 +56,7 @@ from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge,
 from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
-from substructures.expr.syntax import ExpressionError
+from substructures.expr.steps import ExpressionError
 from substructures.quantities.quantity import REGRESSOR, TABLE, askable
 
 PART = "substructure"

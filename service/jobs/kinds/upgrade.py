@@ -12,7 +12,7 @@ from service.content.derivation import derived_part, software
 from service.content.improvement import improvement
 from service.content.integrity import reading
 from service.content.summaries import part_content
-from service.content.tree_content import tree_summary
+from service.content.tree_summaries import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts

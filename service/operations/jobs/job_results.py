@@ -9,7 +9,8 @@ from typing import Any
 from service.content.improvement import Improvement
 from service.content.integrity import checked
 from service.content.summaries import UNKNOWN, PartContent
-from service.content.tree_content import TreeContent, TreeSummary
+from service.content.tree_content import TreeContent
+from service.content.tree_summaries import TreeSummary
 from service.database.connections import Connection
 from service.database.packed import unpack
 from service.jobs.engines.engine import Outcome

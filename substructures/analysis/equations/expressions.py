@@ -41,10 +41,12 @@ def _dependent(model: Model, scope: Scope) -> Callable[[str], Expr | None]:
     """The lookup of dependent coordinates, z(y), and of their rates, d z/d y y' + d z/dt (reduced level)."""
 
     def declared(name: str) -> Expr:
+        """A symbol of the model, declared in the scope."""
         symbol = symbols[name]
         return scope.declare(name, symbol.kind, symbol.unit)
 
     def lookup(name: str) -> Expr | None:
+        """z or its rate; None of all other names."""
         z = name.removesuffix("'")
         if z not in model.dependent:
             return None

@@ -79,6 +79,7 @@ def _mixed(f: ModelFormulas) -> Iterator[list[int]]:
         yield own
 
     def within(x: Expr) -> set[int]:
+        """The coordinates that it names, or whose rate."""
         return {place[str(n.value)] for n in reachable([x]) if n.op == "sym" and str(n.value) in place}
 
     yield from map(list, f.elements("metric"))  # where these join all, nothing else is looked at

@@ -64,6 +64,7 @@ class Rolled(Loops):
         ways = SPREAD * rng.uniform(-1, 1, (count, len(self.independent)))
 
         def rates(x: Array) -> Array:
+            """Along the ways, of what the constraints allow."""
             return self._allowed(x, ways)
 
         h = 1 / STEPS

@@ -156,6 +156,7 @@ def _forwards(report: ProgressReport | None) -> ProgressReport | None:
     most = 0.0
 
     def told(share: float) -> bool | None:
+        """The largest share until now is told."""
         nonlocal most
         most = max(most, share)
         return None if report is None else report(most)

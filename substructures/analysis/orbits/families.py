@@ -19,11 +19,11 @@ from dataclasses import replace
 
 import numpy as np
 
+from substructures.analysis.continuation import Change, Continuation
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.orbits.flow import EndsEarlyError
 from substructures.analysis.orbits.orbit import NOISE, BifurcationKind, Family, Orbit, OrbitBifurcation, Shooting
 from substructures.analysis.orbits.search import Search
-from substructures.analysis.stability.continuation import Change, Continuation
 from substructures.array import Array
 
 #: of the range, in differences by the parameter

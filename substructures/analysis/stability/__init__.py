@@ -21,7 +21,6 @@ steady_balls            the same with ball joints, precessions included
 steady_ball_search      how these are found and linearised
 steady_search           how they are found, and what linearises them
 steady_families         families of them over a parameter, a rate or a momentum, and their bifurcations
-continuation            curves F(u) = 0 by pseudo-arclength, and where two cross
 energy_integrals        stability by the energy at constant other first integrals (Routh, Lyapunov)
 ======================  ==============================================================================================
 

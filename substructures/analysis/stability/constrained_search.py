@@ -226,6 +226,7 @@ class ConstrainedSearch:
         unit = np.where(sizes > 0, sizes, 1.0)
 
         def both(z: Array) -> tuple[Array, Array]:
+            """Equations and Jacobian over the units."""
             F, J = self.equations_at(z)
             return F / unit, np.where(np.isfinite(J), J, 0.0) / unit[:, None]
 

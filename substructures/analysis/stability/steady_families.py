@@ -25,7 +25,7 @@ from typing import Generic, Protocol, TypeVar
 
 import numpy as np
 
-from substructures.analysis.stability.continuation import LOST, Change, Continuation
+from substructures.analysis.continuation import LOST, Change, Continuation
 from substructures.analysis.stability.steady_result import CROSSED, Kind
 from substructures.analysis.stability.vibrations import NEUTRAL
 from substructures.array import Array, ComplexArray

@@ -192,6 +192,7 @@ def _families(
         found = _TreeFamilies(search, vary, between, steps, held == "momenta").run(starts)
 
     def described(x: Array, value: float, branch: int) -> SteadyMotion:
+        """A point of a family."""
         search.put(vary, value)
         return replace(_described(search, search.wound(x), held), value=value, branch=branch)
 

@@ -105,6 +105,7 @@ def _contacts(tree: Plain, bodies: Bodies, numbers: Numbers, values: Mapping[str
     """By joint the power of the forces of edges and rolling contacts at q' = 1: force . velocity of the point."""
 
     def along(label: str, direction: Matrix) -> Matrix:
+        """The force of a multiplier."""
         return direction * values.get(f"lambda.{label}", arb(0))
 
     for given in tree.get("velocity_constraints", ()):

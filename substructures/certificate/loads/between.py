@@ -16,7 +16,7 @@ from flint import arb, fmpq
 from substructures.certificate.bodies import NONE, Bodies, Frame
 from substructures.certificate.linear import Ball, Matrix, column, cross, dot, zeros
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.expr.syntax import measured
+from substructures.expr.steps import measured
 
 HALF = fmpq(1, 2)
 Slopes = dict[int, Ball]

@@ -14,7 +14,7 @@ from substructures.certificate.loads.between import Between, MeasuredNames, Slop
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import Steps, depends_on, names_of, slope
 from substructures.expr.direct import steps_of
-from substructures.expr.syntax import measured
+from substructures.expr.steps import measured
 
 
 class Forces:

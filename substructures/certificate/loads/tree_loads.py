@@ -28,7 +28,7 @@ from substructures.certificate.loads.joint_laws import friction_force
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.texts import names_of, slope
 from substructures.expr.direct import steps_of
-from substructures.expr.syntax import measured
+from substructures.expr.steps import measured
 
 
 class TreeForces(Between):

@@ -276,6 +276,7 @@ def nested(array: Output, texts: Sequence[str], ends: tuple[str, str], zero: str
         rows[index] = formulas[entry] if sign > 0 else f"-({formulas[entry]})"
 
     def level(index: tuple[int, ...]) -> str:
+        """What stands behind these leading indices."""
         if len(index) == len(array.shape):
             return rows.get(index, zero)
         inner = (level((*index, i)) for i in range(array.shape[len(index)]))

@@ -90,6 +90,7 @@ def _with_chains(definition: Definition, layout: Topology) -> Definition:
     """With angles, called like the rates, in place of quaternions; where these turn nothing, all are zero."""
 
     def chain(i: int, body: Body) -> Body:
+        """A body whose joint has angles."""
         if body.joint.type not in BALLS:
             return body
         rates = tuple(joint.coordinate for joint in layout.joints if joint.body == i)
@@ -114,6 +115,7 @@ def _constants(m: Mechanism, law: str) -> dict[int, Expr]:
     """Of every joint whose law depends on parameters alone."""
 
     def is_constant(x: Expr) -> bool:
+        """Whether it depends on parameters alone."""
         found = program(m.graph, {"x": array((), lambda: x)}, m.scope.symbols)
         return all(symbol.kind == "parameter" for symbol in found.symbols)
 

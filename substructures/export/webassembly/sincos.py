@@ -17,6 +17,24 @@ def sincos(sine_import: int, cosine_import: int) -> Body:
     x, k, r, z, s, c = 0, *(b.local() for _ in range(5))
     q = b.local(I32)
     _beyond(b, x, sine_import, cosine_import)
+    _reduce(b, x, k, r)
+    b.get(r)
+    b.do("f64.mul")
+    b.set(z)
+    _sine(b, r, z)
+    b.set(s)
+    _cosine(b, z)
+    b.set(c)
+    b.get(k)
+    b.do("i32.trunc_f64_s")
+    b.set(q)
+    _turned(b, q, 0, (s, c))
+    _turned(b, q, 1, (c, s))
+    return b
+
+
+def _reduce(b: Body, x: int, k: int, r: int) -> None:
+    """k and r = x - k pi/2, which is left on the stack, too."""
     b.get(x)
     b.number(TWO_OVER_PI)
     b.do("f64.mul", "f64.nearest")
@@ -30,10 +48,10 @@ def sincos(sine_import: int, cosine_import: int) -> Body:
         b.number(part)
         b.do("f64.mul", "f64.sub")
     b.tee(r)
-    b.get(r)
-    b.do("f64.mul")
-    b.set(z)
-    # sin r = r + r z S(z), with the sign of r also at -0
+
+
+def _sine(b: Body, r: int, z: int) -> None:
+    """sin r = r + r z S(z), with the sign of r also at -0."""
     b.get(r)
     b.get(r)
     b.get(z)
@@ -42,8 +60,10 @@ def sincos(sine_import: int, cosine_import: int) -> Body:
     b.do("f64.mul", "f64.add")
     b.get(r)
     b.do("f64.copysign")
-    b.set(s)
-    # cos r = 1 + z (z C(z) - 1/2)
+
+
+def _cosine(b: Body, z: int) -> None:
+    """cos r = 1 + z (z C(z) - 1/2)."""
     b.get(z)
     b.get(z)
     _polynomial(b, z, COSINE)
@@ -52,13 +72,6 @@ def sincos(sine_import: int, cosine_import: int) -> Body:
     b.do("f64.sub", "f64.mul")
     b.number(1.0)
     b.do("f64.add")
-    b.set(c)
-    b.get(k)
-    b.do("i32.trunc_f64_s")
-    b.set(q)
-    _turned(b, q, 0, (s, c))
-    _turned(b, q, 1, (c, s))
-    return b
 
 
 def _beyond(b: Body, x: int, sine_import: int, cosine_import: int) -> None:

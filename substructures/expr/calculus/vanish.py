@@ -26,8 +26,8 @@ import flint
 from substructures.errors import TooLarge
 from substructures.expr.calculus.plain import PlainFormulas
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.rationals import to_fmpq
 from substructures.expr.rings.expand import is_zero
-from substructures.expr.rings.rationals import to_fmpq
 from substructures.expr.walk import reachable
 
 #: points, and at how many of them a formula must have a value to be called zero

@@ -10,9 +10,9 @@ from typing import Any
 from substructures.errors import TooLarge
 from substructures.expr.construction.exact import MAX_BITS
 from substructures.expr.graph import Expr
+from substructures.expr.rationals import fraction
 from substructures.expr.rings.generators import Angle, Basis, Generators, Product, Sum, is_function, turned
 from substructures.expr.rings.laurent import Laurent, Quotient, Ring
-from substructures.expr.rings.rationals import fraction
 
 Terms = tuple[tuple[Basis, Fraction], ...]
 

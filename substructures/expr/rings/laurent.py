@@ -16,7 +16,7 @@ from typing import Any
 from flint import Ordering, fmpq, fmpq_mpoly_ctx
 
 from substructures.errors import TooLarge
-from substructures.expr.rings.rationals import to_fmpq
+from substructures.expr.rationals import to_fmpq
 
 #: a product may need this many times ``limit`` products of terms, and all results together have as many terms
 WORK = 100

@@ -13,7 +13,7 @@ from fractions import Fraction
 from typing import Literal
 
 from substructures.documents.units import NUMBER, Dimension, si_text
-from substructures.expr.syntax import Step
+from substructures.expr.steps import Step
 
 #: of names without a unit; of numbers; of sines and cosines, which are pure numbers but may stand alone for anything
 Open = Literal["unknown", "number", "pure"]

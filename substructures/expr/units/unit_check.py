@@ -10,7 +10,8 @@ from typing import Any
 from substructures.documents.fields import Quantity
 from substructures.documents.units import Dimension, UnknownUnitError, read_unit, si_text
 from substructures.errors import Fault, InvalidDocument
-from substructures.expr.syntax import ExpressionError, Step, read
+from substructures.expr.steps import ExpressionError, Step
+from substructures.expr.syntax import read
 from substructures.expr.units.dimensions import Dimensioned, DimensionError, Inference, Inferred
 
 #: pointer, code, message

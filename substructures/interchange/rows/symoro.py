@@ -167,6 +167,7 @@ class _Reader:
         graph, symbols = Graph(), set[str]()
 
         def seen(symbol: str) -> Expr:
+            """A symbol, which is noted."""
             symbols.add(symbol)
             return graph.symbol(symbol)
 

@@ -139,6 +139,7 @@ def _parameters(bodies: list[dict[str, Any]], taken: Iterable[str]) -> dict[str,
     names = Names((*taken, *(body["joint"].get("coordinate", "") for body in bodies)))
 
     def named(wanted: str, x: Any, unit: str) -> Any:
+        """A name in the place of a number that is not zero."""
         if not x or isinstance(x, str):
             return x
         name = names.new(wanted)

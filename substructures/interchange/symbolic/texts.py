@@ -14,7 +14,7 @@ from sympy.physics.vector import dynamicsymbols
 from sympy.printing.str import StrPrinter
 
 from substructures.errors import InvalidArgument
-from substructures.expr.syntax import FUNCTIONS, LAWS, RESERVED
+from substructures.expr.steps import FUNCTIONS, LAWS, RESERVED
 
 _NAME = re.compile(r"[A-Za-z_][A-Za-z0-9_]*(?:\.[A-Za-z0-9_]+)*'*", re.ASCII)
 #: names of functions here by those of SymPy

@@ -38,7 +38,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.laws import SLOPES
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, array
-from substructures.expr.syntax import Knots
+from substructures.expr.steps import Knots
 from substructures.expr.units.unit_check import steps_of
 from substructures.expr.walk import transfer
 from substructures.part.relations import OF_COORDINATES

@@ -10,7 +10,8 @@ from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import read_unit
 from substructures.errors import InvalidDocument
 from substructures.expr.pieces import pieces
-from substructures.expr.syntax import MAX_LENGTH, RESERVED
+from substructures.expr.steps import RESERVED
+from substructures.expr.syntax import MAX_LENGTH
 
 #: longest name
 LONGEST = 64

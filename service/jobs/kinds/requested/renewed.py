@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 from service.content.derivation import derived_part
 from service.content.summaries import part_content
-from service.content.tree_content import tree_summary
+from service.content.tree_summaries import tree_summary
 from service.database.packed import pack
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.decoded import part_of

@@ -46,9 +46,11 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     GIVEN,
     Closed,
     Constraint,
+    VelocityRows,
     constraints_of,
 )
 from substructures.errors import InvalidArgument, listed
+from substructures.expr.graph import Expr
 from substructures.expr.program import Program, array, program
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
@@ -102,12 +104,8 @@ def quasi_velocity_equations(
     require_undriven([name for name in model.driven if name in model.inputs], "give their motions as formulas in t")
     require_unignored(model.ignored)
     constraints = constraints_of(model, constraints)
-    if (
-        velocities is None
-        and independent is None
-        and near is None
-        and all(isinstance(each, Closed) for each in constraints)
-    ):
+    is_free = velocities is None and independent is None and near is None
+    if is_free and all(isinstance(each, Closed) for each in constraints):
         independent = model.reduction.independent or None
     f = Workspace(model)
     rows, dependent = independent_rows(f, constraints)
@@ -119,13 +117,7 @@ def quasi_velocity_equations(
         pointer = "/independent" if velocities is None else "/velocities"
         message = "these velocities and the constraints do not determine the velocities of all coordinates"
         raise InvalidArgument.at(pointer, "dependent", message)
-    given = [rows.given.get(label, f.graph.zero) for label in rows.labels] if rows.given else []
-    equations = QuasiEquations(f, names, Y, inverted, given)
-    outputs = equations.outputs()
-    gaps = list(rows.gaps.values())
-    if gaps:
-        outputs["gaps"] = array((len(gaps),), lambda k: gaps[k])
-    result = program(f.graph, outputs, f.symbols)
+    result = _formed(QuasiEquations(f, names, Y, inverted, _given(rows, f)), rows)
     texts = {name: name for name in names} if velocities is None else dict(velocities)
     expectation = quasi_expected(model, result, texts, rows, constraints)
     kinds = {s.name: s.kind for s in f.symbols.values()}
@@ -133,3 +125,16 @@ def quasi_velocity_equations(
     result = certified(result, model, expectation, "velocity equations", needs=needs, more=kinds)
     labels = tuple(rows.labels), tuple(rows.gaps), tuple(dependent)
     return QuasiVelocities(model, result, tuple(names), *labels, vanishing(f, Y))
+
+
+def _given(rows: VelocityRows, f: Workspace) -> list[Expr]:
+    """The given velocities of all rows; none where no row has one."""
+    return [rows.given.get(label, f.graph.zero) for label in rows.labels] if rows.given else []
+
+
+def _formed(equations: QuasiEquations, rows: VelocityRows) -> Program:
+    """The equations, with the gaps that the constraints keep closed."""
+    outputs, gaps = equations.outputs(), list(rows.gaps.values())
+    if gaps:
+        outputs["gaps"] = array((len(gaps),), lambda k: gaps[k])
+    return program(equations.f.graph, outputs, equations.f.symbols)

@@ -33,7 +33,7 @@ from substructures.analysis.motion.contacts.pressing import (
 )
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
 from substructures.analysis.motion.integrators.zeros import Watch
-from substructures.analysis.motion.problems.contacts import TANGENTS, Contact
+from substructures.analysis.motion.problems.contacts import Contact
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.array import Array
 from substructures.compile.motion import CompiledRates
@@ -84,7 +84,7 @@ class ContactMotion(RightHandSide):
         self.modes: Modes = np.zeros((k, 4))
         self._rows: tuple[bytes, Rows] = b"", NO_ROWS
         self.friction = np.array([contact.friction for contact in self.contacts])
-        count = np.array([TANGENTS[contact.type] for contact in self.contacts])
+        count = np.array([contact.tangents for contact in self.contacts])
         self.tangents = (np.arange(2) < count[:, None]) & (self.friction > 0)[:, None]
         self.rest_velocity = speed = np.array([contact.rest_velocity for contact in self.contacts])
         self.approach, self.rest = (share * np.minimum(speed, FAST) for share in (APPROACH, REST))

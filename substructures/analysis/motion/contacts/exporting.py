@@ -1,13 +1,12 @@
-"""Contacts of a tree for what simulates it elsewhere: formulas of what is seen of them, and their numbers."""
+"""Contacts of a tree for what simulates it elsewhere: formulas of what is seen of them."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
 from substructures.analysis.motion.contacts.rows import BIAS, GAP, RATE, ROWS, WHEN, contact_rows
-from substructures.analysis.motion.problems.contacts import TANGENTS, contacts_of
+from substructures.analysis.motion.problems.contacts import contacts_of
 from substructures.analysis.motion.right_hand_side import ACCELERATION, forward_dynamics
-from substructures.export.contacts import CONTACTS, ContactLaw
 from substructures.expr.graph import Graph
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.replay import replay
@@ -16,22 +15,14 @@ from substructures.tree.document import require_unignored
 from substructures.tree.model import Model
 
 
-def contact_laws(model: Model) -> tuple[ContactLaw, ...]:
-    """Of the contacts of a tree, in their order. Raises InvalidArgument."""
-    return tuple(
-        ContactLaw(each.name, TANGENTS[each.type], each.restitution, each.friction, each.rest_velocity)
-        for each in contacts_of(model)
-    )
-
-
-def contact_programs(model: Model) -> Mapping[str, Callable[[], Program]]:
-    """What makes the accelerations while contacts are open, and the function CONTACTS of what is seen of them: gap (k,)
-    [m], rows (k, 3, n), rate (k, 3), bias (k, 3), when (k,), as of :func:`contact_rows`, and the metric (n, n).
+def contact_programs(model: Model, name: str) -> Mapping[str, Callable[[], Program]]:
+    """What makes the accelerations while contacts are open, and under ``name`` the function of what is seen of them:
+    gap (k,) [m], rows (k, 3, n), rate (k, 3), bias (k, 3), when (k,), as of :func:`contact_rows`, the metric (n, n).
 
     They raise InvalidInput.
     """
     require_unignored(model.ignored if model.contacts else ())
-    return {CONTACTS: lambda: _seen(model), FORWARD: lambda: forward_dynamics(model).select([ACCELERATION])}
+    return {name: lambda: _seen(model), FORWARD: lambda: forward_dynamics(model).select([ACCELERATION])}
 
 
 def _seen(model: Model) -> Program:

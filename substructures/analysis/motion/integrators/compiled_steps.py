@@ -61,6 +61,7 @@ def _first_step(
     """The size of the first step, as SciPy chooses it (Hairer, Norsett, Wanner, section II.4)."""
 
     def size(y: Array) -> float:
+        """The root mean square over the scale."""
         return float(np.linalg.norm(y / scale) / len(y) ** 0.5)
 
     start, length = span[0], abs(span[1] - span[0])

@@ -48,6 +48,11 @@ class Contact:
             message = f"'{self.point}' cannot touch itself: name a frame of another body, or '{WORLD}'"
             raise InvalidArgument.at("/plane", "same-frame", message)
 
+    @property
+    def tangents(self) -> int:
+        """How many directions it slides along."""
+        return TANGENTS[self.type]
+
 
 def contacts_of(model: Model, given: Sequence[Contact] = ()) -> tuple[Contact, ...]:
     """The contacts of a motion: those of the tree, or those that are ``given``.

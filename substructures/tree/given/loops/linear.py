@@ -30,9 +30,11 @@ def solver(A: Sequence[Sequence[Expr]], again: bool = True) -> Solve:
         raise NotReduced("it does not tell the coordinates that are unknown") from None
 
     def once(b: Sequence[Expr]) -> list[Expr]:
+        """The solution by the factors."""
         return factors.solve([_product(a, b) for a in columns])
 
     def refined(b: Sequence[Expr]) -> list[Expr]:
+        """With one step of iterative refinement."""
         x = once(b)
         rest = [y - _product(row, x) for row, y in zip(A, b, strict=True)]
         return [v + more for v, more in zip(x, once(rest), strict=True)]

@@ -15,7 +15,6 @@ from dataclasses import dataclass
 import numpy as np
 import scipy
 
-from substructures.analysis.stability.equilibrium_search import TOLERANCES
 from substructures.array import Array
 
 #: of u, F (k,) and its Jacobian (k, n + 1) of rank n
@@ -30,6 +29,8 @@ CHANGES = 12
 STEPS, SMALL, ROUNDED = 12, 1e-13, 1e-9
 #: of a step, a gap that no curve has: the step led to another one; the shortest step, of the longest
 GAP, SHORT = 1e-2, 1e-5
+#: of least squares: as exactly as rounding allows
+FINEST = dict.fromkeys(("xtol", "ftol", "gtol"), 1e-15)
 #: why a curve ends
 LOST = "there is no next point, however near, or these coordinates are singular there"
 #: least cosine between tangents of two points
@@ -121,7 +122,7 @@ class Continuation:
         start = np.concatenate((u, [0.0], np.eye(n)[n - 1]))
         if not np.isfinite(both(start)).all():
             return None
-        found = scipy.optimize.least_squares(both, start, jac="3-point", max_nfev=STEPS, **TOLERANCES)
+        found = scipy.optimize.least_squares(both, start, jac="3-point", max_nfev=STEPS, **FINEST)
         place, b = found.x[: n + 1], found.x[n + 1]
         is_near = np.linalg.norm(place - u) < self.step
         return place if is_near and max(abs(b), np.abs(found.fun).max()) < CROSSED else None
