@@ -100,7 +100,7 @@ class FieldValues:
     def __init__(self, field: Field, program: Program, symbols: Mapping[str, int], names: Iterable[str]) -> None:
         self.field, self.program, self.symbols = field, program, symbols
         self.needed = program.reachable(names)
-        self.values: dict[int, int] = {}
+        self.values = [0] * len(program)
         self.linear: dict[int, AngleForm] = {}
         self.points: dict[int, Point] = {}
         self.is_exact = True
