@@ -221,8 +221,8 @@ class _Search:
         """For the exact search, from states of a field that tells all; formulas are made where it needs them."""
         states = chain([state], iter(state.another, None))
         samples = (_rows(some.slopes, some.forces, {}) for some in states)
-        needed = self.f.model.program.needs(["christoffel", "forces"])
-        return self._functions(sorted({*needed} - {*state.fixed} - self.f.zero), state.field, samples, state.fixed)
+        needed = {x for name in ("christoffel", "forces") for x in self.f.model.program.needs([name])}
+        return self._functions(sorted(needed - {*state.fixed} - self.f.zero), state.field, samples, state.fixed)
 
     def functions(self) -> Functions:
         """For the exact search, in a field that holds the square roots of the parameters. Raises TooLarge."""

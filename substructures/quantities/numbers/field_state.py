@@ -62,7 +62,7 @@ class FieldState:
     def slopes(self) -> dict[tuple[int, int, int], int]:
         """d_c g_ab = Gamma_abc + Gamma_bac at (a, b, c), a <= b, where it is not zero."""
         found: dict[tuple[int, int, int], int] = {}
-        for (a, b, c), x in self.bending.elements("christoffel").items():
+        for (a, b, c), x in self.bending.elements("christoffel"):
             index = (a, b, c) if a < b else (b, a, c)
             found[index] = found.get(index, 0) + (x if a != b else 2 * x)
         return {index: x for index, x in found.items() if x % self.field.prime}
@@ -76,30 +76,24 @@ class FieldState:
     def told_rates(self) -> list[Literal["zero", "varies"] | None]:
         """Of the derivatives along the motion of the linear momentum of the whole, and of the angular one, by axis:
         whether they are zero, or vary with the state; None where they may be constant."""
-        pairs = zip(self._momentum_rates(), self._resting_rates(), strict=True)
+        now, at_rest = self._accelerations()
+        columns, rates = [self.inertia.output(name) for name in MOMENTA], [self.at[name] for name in self.velocities]
+        along = dict(zip(self.model.coordinates, rates, strict=True)) | {"t": 1}
+        # (n_ai q'^a)', at rest n_ai q''^a
+        carried = self._summed(self.inertia.changes(MOMENTA, along), rates)
+        moving = [(x + y) % self.field.prime for x, y in zip(self._summed(columns, now), carried, strict=True)]
+        pairs = zip(moving, self._summed(columns, at_rest), strict=True)
         return ["zero" if not x else "varies" if x != y else None for x, y in pairs]
 
-    def _momentum_rates(self) -> list[int]:
-        """(n_ai q'^a)' along the motion."""
-        rates = [self.at[name] for name in self.velocities]
-        along = dict(zip(self.model.coordinates, rates, strict=True)) | {"t": 1}
-        bias = self.inertia.output("bias")
-        pushed = self._pushed([self.forces.get(a, 0) - bias.get((a,), 0) for a in range(self.model.dof)])
-        carried = self._summed(self.inertia.changes(MOMENTA, along), rates)
-        return [(x + y) % self.field.prime for x, y in zip(pushed, carried, strict=True)]
-
-    def _resting_rates(self) -> list[int]:
-        """The same at rest in this position."""
+    def _accelerations(self) -> tuple[list[int], list[int]]:
+        """q''^a with g q'' + Gamma q' q' = Q, and at rest in this position."""
         at = self.at | dict.fromkeys(self.velocities, 0)
-        forces = FieldValues(self.field, self.model.program, at, ["forces"]).output("forces")
-        return self._pushed([forces.get((a,), 0) for a in range(self.model.dof)])
-
-    def _pushed(self, forces: Sequence[int]) -> list[int]:
-        """n_ai q''^a with g q'' = forces."""
-        g, n, ring = self.inertia.elements("metric"), range(self.model.dof), fmpz_mod_ctx(self.field.prime)
-        matrix = fmpz_mod_mat([[g.get((a, b), 0) for b in n] for a in n], ring)
-        accelerations = [int(x) for x in matrix.solve(fmpz_mod_mat([[x] for x in forces], ring)).entries()]
-        return self._summed([self.inertia.output(name) for name in MOMENTA], accelerations)
+        resting = FieldValues(self.field, self.model.program, at, ["forces"]).output("forces")
+        g, bias, n = dict(self.inertia.elements("metric")), self.inertia.output("bias"), range(self.model.dof)
+        right = [[self.forces.get(a, 0) - bias.get((a,), 0), resting.get((a,), 0)] for a in n]
+        matrix, ring = [[g.get((a, b), 0) for b in n] for a in n], fmpz_mod_ctx(self.field.prime)
+        found = [int(x) for x in fmpz_mod_mat(matrix, ring).solve(fmpz_mod_mat(right, ring)).entries()]
+        return found[::2], found[1::2]
 
     def _summed(self, columns: Sequence[Mapping[tuple[int, ...], int]], by: Sequence[int]) -> list[int]:
         """n_ai x^a of each of the momenta."""
