@@ -6,6 +6,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
+from itertools import compress
 from typing import Any, Protocol
 
 from flint import arb, fmpq
@@ -59,24 +60,26 @@ class Pruned:
 def pruned(program: Stored, names: Iterable[str]) -> Pruned:
     """The program with the outputs of these names that it has, and what they need."""
     outputs = {name: program.outputs[name] for name in names if name in program.outputs}
-    needed = bytearray(len(program.operations))
+    given, needed = program.operations, bytearray(len(program.operations))
     for output in outputs.values():
         for entry in output.entries:
             needed[entry] = 1
     for i in range(len(needed) - 1, -1, -1):
         if needed[i]:
-            operation = program.operations[i]
-            for k in operation[1:] if operation[0] in _BINARY else operands(operation):
-                needed[k] = 1
-    place, operations = [0] * len(needed), list[Operation]()
-    for i, operation in enumerate(program.operations):
-        if needed[i]:
-            place[i] = len(operations)
+            operation = given[i]
             if operation[0] in _BINARY:
-                operations.append((operation[0], place[operation[1]], place[operation[2]]))
+                needed[operation[1]] = needed[operation[2]] = 1
             else:
-                used = operands(operation)
-                operations.append((operation[0], *[place[k] for k in used], *operation[1 + len(used) :]))
+                for k in operands(operation):
+                    needed[k] = 1
+    place, operations = [0] * len(needed), list[Operation]()
+    for i in compress(range(len(needed)), needed):
+        place[i], operation = len(operations), given[i]
+        if operation[0] in _BINARY:
+            operations.append((operation[0], place[operation[1]], place[operation[2]]))
+        else:
+            used = operands(operation)
+            operations.append((operation[0], *[place[k] for k in used], *operation[1 + len(used) :]))
     moved = {name: replace(x, entries=tuple(place[entry] for entry in x.entries)) for name, x in outputs.items()}
     return Pruned(program.symbols, tuple(operations), moved)
 

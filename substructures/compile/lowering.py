@@ -17,6 +17,7 @@ from substructures.compile.order import REGIONS, depth_first, sharp, stage_of
 from substructures.compile.signs import negatives
 from substructures.expr.construction.exact import MAX_EXPONENT
 from substructures.expr.interpret import constant
+from substructures.expr.operations import BINARY
 from substructures.expr.program import Operation, Program, operands
 
 #: operations in one function: LLVM's register allocation grows faster than linearly, its overhead per function is small
@@ -149,10 +150,11 @@ class _Builder:
         segments = list(self._segments(needed, size))
         computed = {i for segment in segments for i in segment.compute}
         segments[-1].copies += [(i, place) for i, place in results.items() if i not in computed]
-        last = self._last_uses(segments) | dict.fromkeys(kept, len(segments))
+        used = [self._used(segment) for segment in segments]
+        last = {x: k for k, some in enumerate(used) for x in some} | dict.fromkeys(kept, len(segments))
         free: list[int] = []
         for k, segment in enumerate(segments):
-            expired = self._function(segment, k, last, results, free)
+            expired = self._function(segment, used[k], k, last, results, free)
             self.stage.steps += segment.steps
             free += expired
 
@@ -173,8 +175,12 @@ class _Builder:
             operation = self.ops[i]
             if operation[0] in LEAVES:
                 continue
-            at = max([level.get(x, 0) for x in operands(operation)])
-            is_batched = batch_name(operation) is not None
+            if operation[0] in BINARY:
+                a, b = level.get(operation[1], 0), level.get(operation[2], 0)
+                at, is_batched = a if a > b else b, False
+            else:
+                at = max([level.get(x, 0) for x in operands(operation)])
+                is_batched = batch_name(operation) is not None
             level[i] = at + is_batched
             if level[i] == len(levels):
                 levels.append(([], []))
@@ -208,24 +214,26 @@ class _Builder:
         self.literals[number] = float(exponent)
         return number
 
-    def _last_uses(self, segments: list[_Segment]) -> dict[int, int]:
-        last: dict[int, int] = {}
-        for k, segment in enumerate(segments):
-            last |= dict.fromkeys((x for i in segment.compute for x in operands(self.ops[i])), k)
-            last |= dict.fromkeys((x for x, _ in segment.copies), k)
-        return last
+    def _used(self, segment: _Segment) -> set[int]:
+        """What a segment needs of others, and of itself."""
+        found = {x for x, _ in segment.copies}
+        return found.union(*[operands(self.ops[i]) for i in segment.compute])
 
     def _function(
-        self, segment: _Segment, k: int, last: dict[int, int], results: dict[int, Place], free: list[int]
+        self,
+        segment: _Segment,
+        used: set[int],
+        k: int,
+        last: dict[int, int],
+        results: dict[int, Place],
+        free: list[int],
     ) -> list[int]:
         """Adds the function of a segment; returns the places that are free after it."""
         if not segment.compute and not segment.copies:
             return []
         part = StageFunction(segment.compute, stores=list(segment.copies))
-        inside = set(segment.compute)
-        outside = [x for i in segment.compute for x in operands(self.ops[i]) if x not in inside]
-        outside += [x for x, _ in segment.copies if x not in inside]
-        part.loads = {x: self.place[x] for x in outside if x not in self.literals}
+        outside = used.difference(segment.compute, self.literals)
+        part.loads = {x: self.place[x] for x in outside}
         for i in segment.compute:
             if i in results:
                 part.stores.append((i, results[i]))

@@ -35,15 +35,14 @@ def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
     for result in results:
         stack = [result]
         while stack:
-            i = stack[-1]
-            waiting = [x for x in operands(ops[i]) if not done[x]]
-            if waiting and not done[i]:
-                stack += waiting
-                continue
-            stack.pop()
-            if not done[i]:
+            i = stack.pop()
+            # ~i: all operands of i are there
+            if i < 0:
+                order.append(~i)
+            elif not done[i]:
                 done[i] = 1
-                order.append(i)
+                stack.append(~i)
+                stack += operands(ops[i])
     return order
 
 

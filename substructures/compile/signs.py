@@ -36,10 +36,12 @@ class _Signs:
         self.users: dict[int, list[int]] = defaultdict(list)
         self.fixed = set(results)
         for i in needed:
-            for x in operands(ops[i]):
+            operation = ops[i]
+            used = operation[1:] if operation[0] in KEPT else operands(operation)
+            for x in used:
                 self.users[x].append(i)
-                if ops[i][0] not in KEPT and ops[i][0] != "neg":
-                    self.fixed.add(x)
+            if operation[0] not in KEPT and operation[0] != "neg":
+                self.fixed.update(used)
 
     def turn(self, x: int) -> None:
         """Keep -x in the place of x, with what this asks for, if that leaves fewer signs."""

@@ -13,6 +13,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Mapping, Sequence
+from itertools import compress
 
 import numpy as np
 
@@ -37,7 +38,7 @@ def needed(operations: Sequence[Operation], entries: Iterable[int]) -> list[int]
                 continue
             for operand in operands(operation):
                 is_needed[operand] = 1
-    return [i for i, flag in enumerate(is_needed) if flag]
+    return list(compress(range(len(is_needed)), is_needed))
 
 
 def totals(operations: Sequence[Operation], groups: Sequence[Sequence[int]]) -> list[int]:

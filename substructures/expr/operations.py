@@ -22,6 +22,8 @@ ARITY = {
 }
 #: sums, products and quotients: most of what a program consists of
 BINARY = ("add", "sub", "mul", "div")
+#: all of them by name
+NAMES = {name: name for name in (*ARITY, "powi", "int", "rat", "sym")}
 #: operations that count in the literature
 ARITHMETIC = ("add", "sub", "mul", "div", "powi")
 #: kinds of symbols that are the same in all states
@@ -113,7 +115,7 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
     try:
         symbols = tuple(_read_symbol(s) for s in document["symbols"])
         # what is no list of an operation and more is refused by _check, at its position
-        operations = tuple([tuple(op) if isinstance(op, list) else () for op in document["operations"]])
+        operations = tuple([_named(op) if isinstance(op, list) else () for op in document["operations"]])
         outputs = {n: _read_output(n, o, len(operations)) for n, o in document["outputs"].items()}
     except KeyError as error:
         raise InvalidProgram(f"{error} is missing") from None
@@ -128,6 +130,13 @@ def read_parts(document: Any) -> tuple[tuple[Symbol, ...], tuple[Operation, ...]
                 continue
         _check(i, operation, len(symbols))
     return symbols, operations, outputs
+
+
+def _named(document: list[Any]) -> Operation:
+    """Its name is the one that all operations of this name have, which every walk compares by identity first."""
+    if document and type(document[0]) is str:
+        document[0] = NAMES.get(document[0], document[0])
+    return tuple(document)
 
 
 def _read_symbol(document: Any) -> Symbol:

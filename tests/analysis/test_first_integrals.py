@@ -12,12 +12,11 @@ from random_trees import Kind, Plain, add_inertia, model_of, random_definition, 
 
 from substructures import InvalidArgument, InvalidInput, Model
 from substructures.analysis.equations.first_integrals import _found, first_integrals
-from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.integral import FirstIntegrals
 from substructures.analysis.equations.routh import routh
-from substructures.analysis.equations.states_in_field import state_in_field
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.evaluation import evaluate
+from substructures.quantities.numbers.field_state import field_state
 from substructures.quantities.numbers.memo import known_model
 
 FALL = (0, 0, -9.81)
@@ -93,11 +92,11 @@ def test_told_by_values(name: str, gravity: tuple[Any, ...], monkeypatch: pytest
     """What values in a field rule out, or find, is what formulas do."""
     model = catalogue_model(name, gravity)
     told = []
-    for state in (state_in_field, lambda _: None):
-        monkeypatch.setattr("substructures.analysis.equations.first_integrals.state_in_field", state)
+    for state in (field_state, lambda *_: None):
+        monkeypatch.setattr("substructures.analysis.equations.first_integrals.field_state", state)
         found = _found.__wrapped__(known_model(model), frozenset(), frozenset(), 1)
         told.append((found.summary(), found.program.digest))
-    assert state_in_field(ModelFormulas(model, model.input_names)) is not None
+    assert field_state(model, model.input_names) is not None
     assert told[0] == told[1]
 
 

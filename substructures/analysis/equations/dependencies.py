@@ -14,7 +14,7 @@ Columns F_1(q), ..., F_m(q) are given as rows of formulas for exact values of q.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from fractions import Fraction
@@ -64,10 +64,13 @@ class Dependencies:
 
 def dependencies(functions: Functions) -> Dependencies:
     """All dependencies. Raises TooLarge where MAX_SAMPLES exact points do not suffice for a coefficient."""
-    echelon = _Echelon(functions.field.prime)
-    # rows of another random point that are in the span of those before tell that all are
-    while sum(echelon.add(row) for row in functions.random()):
-        pass
+    echelon, rows, is_new = _Echelon(functions.field.prime), functions.random(), True
+    while is_new:
+        for row in rows:
+            echelon.add(row)
+        # a random sum of rows of another random point that is in the span of those before tells that all are
+        rows = functions.random()
+        is_new = echelon.add(_random_sum(rows, functions.field))
     reduced = echelon.reduced()
     expected = {
         j: {b: row[j] for b, row in sorted(reduced.items()) if j in row}
@@ -75,6 +78,16 @@ def dependencies(functions: Functions) -> Dependencies:
         if j not in reduced
     }
     return Dependencies(tuple(sorted(reduced)), _solved(functions, expected))
+
+
+def _random_sum(rows: Iterable[Mapping[int, int]], field: Field) -> dict[int, int]:
+    """Rows times random elements."""
+    found: dict[int, int] = {}
+    for row in rows:
+        factor = field.draw()
+        for j, x in row.items():
+            found[j] = found.get(j, 0) + factor * x
+    return {j: x % field.prime for j, x in found.items()}
 
 
 def _solved(functions: Functions, expected: Mapping[int, Mapping[int, int]]) -> dict[int, dict[int, Expr]]:

@@ -26,7 +26,6 @@ from substructures.analysis.equations.integral import SIZES, FirstIntegrals, Int
 from substructures.analysis.equations.integral_search import IntegralSearch, not_searched
 from substructures.analysis.equations.nonholonomic.constrained_formulas import formulas_of, rows_expected
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
-from substructures.analysis.equations.states_in_field import StateInField, state_in_field
 from substructures.analysis.equations.subsystems import subsystems
 from substructures.analysis.equations.symmetries import Direction, directions, varied
 from substructures.certificate.derived.integrals import constant
@@ -41,6 +40,7 @@ from substructures.expr.walk import transfer
 from substructures.printers import entries
 from substructures.quantities.certificate import DYNAMICS, certified
 from substructures.quantities.numbers.defaults import input_defaults
+from substructures.quantities.numbers.field_state import field_state
 from substructures.quantities.numbers.memo import known_model
 from substructures.tree.model import KINEMATICS, Model
 
@@ -86,9 +86,8 @@ def acting_inputs(model: Model) -> list[str]:
 @without_collections
 def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegrals:
     model: Model = known.source
-    tied = constraints_of(model)
     unused = {s.name for s in model.program.symbols if s.kind == "input" and s.name not in given}
-    f = formulas_of(model, tied, unused | zero)
+    f = formulas_of(model, constraints_of(model), unused | zero)
     search = _Search(f)
     search.energy(given)
     freely = search.momenta()
@@ -97,21 +96,21 @@ def _found(known: Known, given: Names, zero: Names, degree: int) -> FirstIntegra
     searched = search.beyond(degree)
     outputs = {name: Formulas((), {(): x}) for name, x in [*((i.name, x) for i, x in search.found), ("power", f.power)]}
     outputs |= dict(zip(SIZES, f.formulas([*SIZES.values()]).values(), strict=True))
-    integrals, rows = tuple(i for i, _ in search.found), f.multipliers
-    result = FirstIntegrals(f.program(outputs), integrals, tuple(search.cyclic_names), *searched)
-    source = result.program
-    expectation = constant(source, [vars(each) for each in integrals], rows, rows_expected(f, source), model.balls)
+    along, integrals, rows = f.program(outputs), tuple(i for i, _ in search.found), f.multipliers
+    some, held = [vars(each) for each in integrals], rows_expected(f, along)
+    expectation = constant(along, some, rows, held, model.balls, SIZES)
     needs = (*DYNAMICS, *MOMENTA, *KINEMATICS)
     kinds = dict.fromkeys(rows, "input")
-    source = certified(source, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
-    return replace(result, along=result.along.marked(source.not_judged))
+    along = certified(along, model, expectation, "first_integrals", needs=needs, zero=unused | zero, more=kinds)
+    return FirstIntegrals(along, integrals, tuple(search.cyclic_names), *searched)
 
 
 class _Search:
-    """Integrals found so far, and the tests."""
+    """Integrals found so far, and the tests; ``state``: one of a field, where that tells all."""
 
     def __init__(self, f: ModelFormulas) -> None:
         self.f, self.zero, self.vanishes = f, f.graph.zero, VanishingOnAllSides(f.graph)
+        self.state = field_state(f.model, f.zero)
         self.found: list[tuple[Integral, Expr]] = []
         self.cyclic_names: list[str] = []
 
@@ -155,11 +154,6 @@ class _Search:
         if integral.rule != "constant" or self.generators.is_new(value):
             self.found.append((integral, value))
             self.generators.add(value)
-
-    @cached_property
-    def state(self) -> StateInField | None:
-        """Of a field, where that tells all."""
-        return state_in_field(self.f)
 
     @cached_property
     def varied(self) -> set[int]:

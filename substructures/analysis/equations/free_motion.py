@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from itertools import takewhile
 
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.equations.integral import Integral, IntegralKind
@@ -124,8 +125,8 @@ def kept_axes(
         frame = min((k for k, b, _ in columns if b == a), default=None)
         if frame is None:
             continue
-        world = [_turned(f, rotation, columns, (frame, a, j)) for j in range(3)]
-        axis = [x for x in map(constant, world) if x is not None]
+        world = (constant(_turned(f, rotation, columns, (frame, a, j))) for j in range(3))
+        axis = [x for x in takewhile(lambda x: x is not None, world) if x is not None]
         if len(axis) == 3 and sum(not vanishes(x) for x in axis) > 1:
             yield name, axis
 

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from fractions import Fraction
 from functools import cached_property
 from typing import Any, Literal
 
 from substructures.analysis.equations.energy import EnergyRule
 from substructures.errors import listed
 from substructures.expr.program import Program
+from substructures.tree.numbers import with_numbers
 
 IntegralKind = Literal[
     "energy",
@@ -53,7 +55,8 @@ SIZES = {f"size of {name}": name for name in ("metric", "linear_momentum", "angu
 @dataclass(frozen=True)
 class FirstIntegrals:
     """``cyclic``: coordinates. ``degree``: in the momenta, of the integrals that were looked for; ``searched``: among
-    which, or why not. ``along``: ``program`` with SIZES of the model, which share most of their operations.
+    which, or why not. ``along``: ``program`` with SIZES of the model, which share most of their operations;
+    ``numbers``: what symbols of it are in the tree, where it is of all trees of its shape.
     """
 
     along: Program
@@ -61,11 +64,13 @@ class FirstIntegrals:
     cyclic: tuple[str, ...]
     degree: int
     searched: str
+    numbers: Mapping[str, Fraction] = field(default_factory=dict, hash=False)
 
     @cached_property
     def program(self) -> Program:
         """An output without axes for every integral, and ``power``: H' [W]."""
-        return self.along.select([name for name in self.along.outputs if name not in SIZES])
+        own = self.along.select([name for name in self.along.outputs if name not in SIZES])
+        return with_numbers(own, self.numbers)
 
     def __repr__(self) -> str:
         names = listed(f"{integral.name} ({integral.rule})" for integral in self.integrals)

@@ -22,7 +22,6 @@ import numpy as np
 
 from substructures.analysis.equations.dependencies import Dependencies, Functions, dependencies
 from substructures.analysis.equations.formulas import ModelFormulas
-from substructures.analysis.equations.states_in_field import StateInField
 from substructures.errors import TooLarge
 from substructures.expr.calculus.corners import corners
 from substructures.expr.differentiate import gradient
@@ -34,6 +33,7 @@ from substructures.expr.rings.expand import Expanded, expand
 from substructures.expr.rings.generators import times_power
 from substructures.expr.rings.modular import Field, NoSquareRoot
 from substructures.expr.walk import transfer
+from substructures.quantities.numbers.field_state import FieldState
 
 X = TypeVar("X", int, Expr)
 
@@ -76,7 +76,7 @@ def directions(
     moving: Collection[int],
     cyclic: Collection[int],
     vanishes: Callable[[Expr], bool],
-    state: StateInField | None,
+    state: FieldState | None,
 ) -> list[Direction]:
     """All that are not along one coordinate; ``moving``: coordinates that the metric varies with, ``cyclic``: those
     that are directions by themselves; ``state``: one of a field that tells all. None are found where the functions take
@@ -217,12 +217,12 @@ class _Search:
         singular = np.linalg.svd(stacked / np.where(sizes > 0, sizes, 1), compute_uv=False)
         return len(singular) < len(left) or bool(singular[-1] <= FREE * singular[0])
 
-    def in_field(self, state: StateInField) -> Functions:
+    def in_field(self, state: FieldState) -> Functions:
         """For the exact search, from states of a field that tells all; formulas are made where it needs them."""
         states = chain([state], iter(state.another, None))
         samples = (_rows(some.slopes, some.forces, {}) for some in states)
-        needed = self.f.model.program.needs(["christoffel", "forces"])
-        return self._functions(sorted({*needed} - {*state.fixed} - self.f.zero), state.field, samples, state.fixed)
+        needed = {x for name in ("christoffel", "forces") for x in self.f.model.program.needs([name])}
+        return self._functions(sorted(needed - {*state.fixed} - self.f.zero), state.field, samples, state.fixed)
 
     def functions(self) -> Functions:
         """For the exact search, in a field that holds the square roots of the parameters. Raises TooLarge."""

@@ -40,13 +40,14 @@ def constant(
     multipliers: Sequence[str],
     rows: Rows | None = None,
     balls: BallRows = (),
+    beside: Mapping[str, str] | None = None,
 ) -> Expectation:
     """Energies, momenta and combinations of them, and the power; ``integrals``: name, kind, rule and direction of each.
 
     ``program``: of the integrals, whose derivatives along the motion have to vanish. ``multipliers``: symbols of the
-    reactions of closures, or of all ``rows``.
+    reactions of closures, or of all ``rows``. ``beside``: outputs of the model by the names that they have there.
     """
-    return partial(_constant, _Held(program, multipliers, rows, balls), integrals)
+    return partial(_constant, _Held(program, multipliers, rows, balls), integrals, beside or {})
 
 
 @dataclass(frozen=True)
@@ -59,7 +60,7 @@ class _Held:
     balls: BallRows
 
 
-def _constant(given: _Held, integrals: Sequence[Mapping[str, Any]], m: ModelAt) -> Outputs:
+def _constant(given: _Held, integrals: Sequence[Mapping[str, Any]], beside: Mapping[str, str], m: ModelAt) -> Outputs:
     program, balls = given.program, given.balls
     result = Outputs()
     found = {"linear_momentum": m.momentum("linear"), "angular_momentum": m.momentum("angular")}
@@ -86,6 +87,10 @@ def _constant(given: _Held, integrals: Sequence[Mapping[str, Any]], m: ModelAt) 
             value = _component(m, found, kind, name.removeprefix(f"{kind}."), balls)
         result.scalar(name, value)
     power_of(result, "power", m, balls)
+    for name, source in beside.items():
+        output = m.program.outputs[source]
+        values = (m.found[entry] for entry in output.entries)
+        result.array(name, output.shape, output.symmetry).update(zip(output.index, values, strict=True))
     held = [each for each in integrals if each["rule"] == "constant"]
     _require_constant(given, held, m)
     return result

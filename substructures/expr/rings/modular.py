@@ -9,7 +9,7 @@ independent values.
 from __future__ import annotations
 
 import secrets
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from math import lcm
 
@@ -100,7 +100,7 @@ class FieldValues:
     def __init__(self, field: Field, program: Program, symbols: Mapping[str, int], names: Iterable[str]) -> None:
         self.field, self.program, self.symbols = field, program, symbols
         self.needed = program.reachable(names)
-        self.values: dict[int, int] = {}
+        self.values = [0] * len(program)
         self.linear: dict[int, AngleForm] = {}
         self.points: dict[int, Point] = {}
         self.is_exact = True
@@ -122,9 +122,10 @@ class FieldValues:
         output = self.program.outputs[name]
         return {index: self.values[e] for index, e in zip(output.index, output.entries, strict=True)}
 
-    def elements(self, name: str) -> dict[tuple[int, ...], int]:
-        """All of them, those that follow from a symmetry included."""
-        return {index: sign * self.values[e] for index, e, sign in self.program.outputs[name].expanded()}
+    def elements(self, name: str) -> Iterator[tuple[tuple[int, ...], int]]:
+        """All of them by index, those that follow from a symmetry included."""
+        for index, entry, sign in self.program.outputs[name].expanded():
+            yield index, sign * self.values[entry]
 
     def changes(self, names: Sequence[str], rates: Mapping[str, int]) -> list[dict[tuple[int, ...], int]]:
         """The derivatives of some of the outputs where symbols change at these rates, where all is exact."""

@@ -16,7 +16,6 @@ from substructures.analysis.verdict import Check, Rule
 from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.tree.model import Model
-from substructures.tree.numbers import with_numbers
 
 #: kinds that are compared with the size of another quantity of the whole
 SIZED = {
@@ -42,8 +41,9 @@ class AlongMotion:
     @classmethod
     def of(cls, model: Model, integrals: FirstIntegrals, states: MotionStates) -> AlongMotion:
         """All of them at once."""
-        source = integrals.along
-        found = states.found(model, source, list(source.outputs))
+        source, numbers = integrals.along, {name: float(x) for name, x in integrals.numbers.items()}
+        given = replace(states, values={**states.values, **numbers})
+        found = given.found(model, source, list(source.outputs))
         sizes = {name: found.pop(size) for size, name in SIZES.items()}
         if not source.outputs["power"].entries or "energy" not in found:
             del found["power"]
@@ -174,4 +174,4 @@ def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) 
     told = str(found.summary()["integrals"])
     if shape is not model and (found.degree > 1 or any(name in told for name in shape.numbers)):
         return first_integrals(model, forces, zero)
-    return replace(found, along=with_numbers(found.along, shape.numbers))
+    return replace(found, numbers=shape.numbers)
