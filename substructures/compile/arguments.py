@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import count, repeat
 from math import prod
 from operator import itemgetter
 from typing import Any, NamedTuple
@@ -15,20 +16,24 @@ from substructures.array import Array
 NamedColumns = tuple[Sequence[str], Array]
 
 
-class ArgumentColumn(NamedTuple):
-    """A column of an array of doubles, one row for every state."""
+class ArgumentColumn(tuple[int, int, Array, int]):
+    """A column of an array of doubles, one row for every state: address, stride in bytes, the array, its number."""
 
-    address: int
-    stride: int
-    array: Array
-    number: int
+    __slots__ = ()
+
+    @classmethod
+    def all_of(cls, array: Array) -> Iterator[ArgumentColumn]:
+        """Those of an array (N, k)."""
+        row, step = array.strides
+        addresses = count(array.__array_interface__["data"][0], step)
+        return map(cls, zip(addresses, repeat(row), repeat(array), range(array.shape[1]), strict=False))
 
 
 class Arguments(NamedTuple):
-    """Inputs of one stage: numbers for all states, and (place, address, stride in bytes) of those that vary."""
+    """Inputs of one stage: numbers for all states, and rows of the table INPUT of those that vary."""
 
     numbers: Array
-    varying: list[tuple[int, int, int]]
+    varying: list[tuple[int, int, int, int]]
     alive: list[Array]
 
 
@@ -56,18 +61,20 @@ def merged(values: Mapping[str, Any], columns: Iterable[NamedColumns], batch: tu
         if not shape or shape[-1] != len(names):
             raise ValueError(f"{len(names)} names for an array of shape {shape}")
         if isinstance(array, np.ndarray) and array.dtype == np.float64 and shape[:-1] == batch and len(batch) == 1:
-            base, (row, step) = array.__array_interface__["data"][0], array.strides
-            result |= {name: ArgumentColumn(base + k * step, row, array, k) for k, name in enumerate(names)}
+            result.update(zip(names, ArgumentColumn.all_of(array), strict=True))
         else:
             result |= {name: np.asarray(array)[..., k] for k, name in enumerate(names)}
     return values if result is None else result
 
 
 class Inputs:
-    """The inputs of a stage by name, looked up at once."""
+    """The inputs of a stage by name, looked up at once; ``size`` of a vector in bytes."""
 
-    def __init__(self, names: Sequence[str]) -> None:
-        self.names = tuple(names)
+    def __init__(self, names: Sequence[str], stage: int, size: int) -> None:
+        self.names, self.stage = tuple(names), stage
+        self.offsets = tuple(size * k for k in range(len(names)))
+        #: where all of them vary
+        self.none = np.full(len(names), np.nan)
         # a getter of two names and more answers with a tuple; of the repeated first one with a pair
         self.get = itemgetter(*self.names, *self.names[:1]) if names else lambda _: (None,)
 
@@ -79,35 +86,39 @@ class Inputs:
         """Arguments from the values. ``in_place``: arrays of one element are read anew by every run."""
         if not found:
             return NOTHING
+        kinds = set(map(type, found))
+        if kinds == {float}:
+            return Arguments(np.array(found), [], [])
+        if kinds == {ArgumentColumn}:
+            addresses, rows, arrays, _ = zip(*found, strict=True)
+            if in_place or all(rows):
+                varying = list(zip(addresses, rows, self.offsets, repeat(self.stage), strict=False))
+                return Arguments(self.none, varying, list(arrays))
         result = Arguments(np.empty(len(found)), [], [])
-        if set(map(type, found)) - {float}:
-            found = tuple([self._number(result, k, x, batch, in_place) for k, x in enumerate(found)])
-        result.numbers[:] = found
+        result.numbers[:] = [self._number(result, k, x, batch, in_place) for k, x in enumerate(found)]
         return result
 
-    @staticmethod
-    def _number(result: Arguments, place: int, value: Any, batch: tuple[int, ...], in_place: bool) -> float:
-        """The value when it is the same for all states; arrays are noted in the result."""
+    def _number(self, result: Arguments, k: int, value: Any, batch: tuple[int, ...], in_place: bool) -> float:
+        """The k-th value when it is the same for all states; arrays are noted in the result."""
         if type(value) is float:
             return value
         if type(value) is ArgumentColumn:
-            if not value.stride and not in_place:
-                return float(value.array[0, value.number])
-            result.varying.append((place, value.address, value.stride))
-            result.alive.append(value.array)
-            return np.nan
-        value = np.asarray(value, dtype=np.float64)
-        if value.ndim and (in_place or (value.size != 1 and any(value.strides))):
-            _vary(result, place, value, batch)
-            return np.nan
-        return float(value.reshape(-1)[0])
+            address, row, array, number = value
+            if not row and not in_place:
+                return float(array[0, number])
+        else:
+            array = np.asarray(value, dtype=np.float64)
+            if not array.ndim or not (in_place or (array.size != 1 and any(array.strides))):
+                return float(array.reshape(-1)[0])
+            array = _for_every_state(array, batch)
+            address, row = array.__array_interface__["data"][0], array.strides[0]
+        result.varying.append((address, row, self.offsets[k], self.stage))
+        result.alive.append(array)
+        return np.nan
 
 
-def _vary(result: Arguments, place: int, value: Array, batch: tuple[int, ...]) -> None:
-    """A value for every state; arrays of more axes are laid out in one."""
+def _for_every_state(value: Array, batch: tuple[int, ...]) -> Array:
+    """A value for each; arrays of more axes are laid out in one."""
     if value.shape != batch:
         value = np.broadcast_to(value, batch)
-    if value.ndim != 1:
-        value = value.reshape(prod(batch))
-    result.varying.append((place, value.__array_interface__["data"][0], value.strides[0]))
-    result.alive.append(value)
+    return value if value.ndim == 1 else value.reshape(prod(batch))

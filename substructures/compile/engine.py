@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import ctypes
 import os
+from array import array
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
+from itertools import chain
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -45,9 +47,8 @@ class WordTable(NamedTuple):
     @classmethod
     def written(cls, rows: Sequence[Iterable[int]]) -> WordTable:
         """A table for one call."""
-        words = [word for row in rows for word in row]
-        memory = (ctypes.c_int64 * len(words))(*words)
-        return cls(ctypes.addressof(memory), len(rows), memory)
+        memory = array("q", chain.from_iterable(rows))
+        return cls(memory.buffer_info()[0], len(rows), memory)
 
 
 class Scratch(NamedTuple):

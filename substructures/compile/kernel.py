@@ -284,7 +284,10 @@ def with_elements(found: Mapping[str, Array], places: Places) -> dict[str, Array
 
 def _array(value: Any) -> Any:
     """A value as the interpreter takes it."""
-    return value.array[:, value.number] if type(value) is ArgumentColumn else value
+    if type(value) is not ArgumentColumn:
+        return value
+    _, _, array, number = value
+    return array[:, number]
 
 
 def _independent(output: Output, result: Array) -> Array:

@@ -142,8 +142,7 @@ class MachineKernel(Kernel):
         ready = self._stages.results[len(once.scratch)]
         if ready and blocks is not None:
             blocks[:, :ready] = once.results.array[0, self.width :].reshape(ready, self.width)
-        size = 8 * self.width
-        inputs = [(a, stride, size * k, stage) for stage, x in enumerate(arguments) for k, a, stride in x.varying]
+        inputs = [row for x in arguments for row in x.varying]
         return _Job(prod(batch), once, arguments, WordTable.written(inputs), outputs, Counter(), blocks)
 
     def _run_job(self, job: _Job, threads: int) -> None:

@@ -1,4 +1,4 @@
-"""The order of operations: by stages, and depth first."""
+"""The order of operations: by stages, and depth first, what needs most registers before what needs fewer."""
 
 from __future__ import annotations
 
@@ -29,9 +29,30 @@ def sharp(ops: Sequence[Operation], needed: Iterable[int]) -> set[int]:
     return found
 
 
+def registers(ops: Sequence[Operation], results: Iterable[int]) -> dict[int, int]:
+    """How many registers each value that the results need takes while it is computed, as if it was used once: none for
+    what is read from memory (R. Sethi and J. D. Ullman, The generation of optimal code for arithmetic expressions,
+    Journal of the ACM 17, 1970).
+    """
+    stack = list(results)
+    needed, found = set(stack), dict[int, int]()
+    while stack:
+        new = [x for x in operands(ops[stack.pop()]) if x not in needed]
+        needed.update(new)
+        stack += new
+    for i in sorted(needed):
+        of = [found[x] for x in operands(ops[i])]
+        # of two that take the same number the first one waits in a register
+        found[i] = max(1, max(of) + (len(of) > 1 and of[0] == of[1])) if of else 0
+    return found
+
+
 def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
-    """What the results need, every value as late as possible before its first use: few values wait at a time."""
-    order, done = list[int](), bytearray(len(ops))
+    """What the results need, every value as late as possible before its first use, and of two operands first the one
+    that takes more :func:`registers`: few values wait at a time.
+    """
+    results = list(results)
+    order, done, most = list[int](), bytearray(len(ops)), registers(ops, results)
     for result in results:
         stack = [result]
         while stack:
@@ -42,7 +63,7 @@ def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
             elif not done[i]:
                 done[i] = 1
                 stack.append(~i)
-                stack += operands(ops[i])
+                stack += sorted(operands(ops[i]), key=most.__getitem__)
     return order
 
 

@@ -30,7 +30,7 @@ class Stages:
 
     def __init__(self, recipe: Recipe, runtime: VectorRuntime, functions: Mapping[str, int]) -> None:
         self.runtime, self.width = runtime, runtime.width
-        self.inputs = [Inputs(stage.inputs) for stage in recipe.stages]
+        self.inputs = [Inputs(stage.inputs, k, 8 * self.width) for k, stage in enumerate(recipe.stages)]
         self.rows = [self.width * max(stage.size, 1) for stage in recipe.stages]
         self.results = [0, *accumulate(len(stage.results) for stage in recipe.stages)]
         steps = [runtime.steps(stage.steps, k, functions) for k, stage in enumerate(recipe.stages)]

@@ -11,7 +11,7 @@ from machine_code import NEEDS_MACHINE_CODE
 
 from substructures.compile import compile_program
 from substructures.compile.lowering import lower
-from substructures.compile.order import REGIONS
+from substructures.compile.order import REGIONS, depth_first, registers
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Formulas, Program
@@ -95,3 +95,17 @@ def test_operations_stand_in_the_stage_of_their_latest_operand(staged: Program) 
     entries = {e for output in staged.outputs.values() for e in output.entries}
     assert sum(len(stage.results) for stage in stages) == len(entries)
     assert [len(stage.results) for stage in stages] == [4, 3, 3, 3]
+
+
+@pytest.mark.parametrize("first", ["small", "large"])
+def test_what_takes_most_registers_comes_first(first: str) -> None:
+    """Sethi and Ullman's numbers: k for a full tree of 2^k leaves, of which one of each pair is read from memory."""
+    full = [("sym", k) for k in range(8)] + [("mul", k, k + 1) for k in (0, 2, 4, 6)]
+    full += [("add", 8, 9), ("add", 10, 11), ("mul", 12, 13), ("mul", 0, 7)]
+    small, large = 15, 14
+    ops: Any = [*full, ("sub", large, small) if first == "large" else ("sub", small, large)]
+    found = registers(ops, [16])
+    assert [found[k] for k in (0, 8, 12, 14, 15, 16)] == [0, 1, 2, 3, 1, 3]
+    order = depth_first(ops, [16])
+    assert sorted(order) == list(range(17))
+    assert order.index(large) < order.index(small) < order.index(16)
