@@ -29,6 +29,7 @@ from substructures.certificate.linear import (
 )
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.relations import POSITIONS, Related, is_ball, mover, place_of, rates_of, slope_of
+from substructures.expr.syntax import Step
 
 GROUND = -1
 #: (prismatic, axis of the frame before it) of every one degree of freedom joint in a joint type
@@ -214,7 +215,7 @@ class Bodies:
 
 def of_step(given: Any, step: int) -> Any:
     """Of a joint with several coordinates: what is given for one of them, or for all."""
-    return given[step] if isinstance(given, (list, tuple)) else given
+    return given[step] if isinstance(given, (list, tuple)) and not isinstance(given[0], Step) else given
 
 
 def laws_of(definition: Plain) -> list[tuple[Plain, int]]:
@@ -235,9 +236,8 @@ def _before_joint(parent: Frame, joint: Plain, numbers: Numbers) -> Frame:
         A = roll_pitch_yaw(numbers.vector(placement.get("rpy", NONE)))
         return parent.placed(A, numbers.vector(placement.get("position", NONE)))
     psi, sigma, theta, d = (numbers.read(joint.get(name, 0)) for name in ("psi", "sigma", "theta", "d"))
-    zero = arb(0)
-    turned = parent.placed(turn(2, psi), vector(zero, zero, sigma))
-    return turned.placed(turn(0, theta), vector(d, zero, zero))
+    turned = parent.placed(turn(2, psi), vector(arb(0), arb(0), sigma))
+    return turned.placed(turn(0, theta), vector(d, arb(0), arb(0)))
 
 
 def mass_of(body: Plain, numbers: Numbers) -> Moments:

@@ -1,14 +1,12 @@
 """Joints that relations move, q^d = mu q^i + delta: what documents say of them, in the coordinates that are left.
 
-Where a text names such a joint the position of the joint is put in its place, so that nothing else names it. And
+Where an expression names such a joint the position of the joint is put in its place, so that nothing else names it. And
 joints that have no coordinates, but quaternions and rates: what these are called.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from decimal import Decimal
-from itertools import pairwise
 from typing import Any
 
 from flint import arb
@@ -16,7 +14,9 @@ from flint import arb
 from substructures.certificate.linear import Ball, Matrix, turn_of, vector
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.states import draws
-from substructures.expr.pieces import pieces
+from substructures.certificate.texts import Steps, names_of, product
+from substructures.expr.direct import steps_of
+from substructures.expr.syntax import Step
 
 #: fields of loads that are names
 _NAMES = frozenset(("type", "name", "coordinate", "body", "from", "to", "frame", "axes", "along", "title"))
@@ -80,35 +80,37 @@ def is_still(definition: Plain, name: str) -> bool:
     return bool(slope.is_finite() and slope.contains(0))
 
 
-def position_text(definition: Plain, name: str) -> str:
+def position_steps(definition: Plain, name: str) -> Steps:
     """The position of a joint, or with the mark of a rate its velocity, in the coordinate that moves it."""
-    relation, mark = moved(definition).get(name.rstrip("'")), "'" if name.endswith("'") else ""
-    if relation is None:
-        return name
-    factor, before = _text(relation.get("multiplier", 1)), position_text(definition, relation["of"] + mark)
-    return f"(({factor})*{before})" if mark else f"(({factor})*{before}+({_text(relation.get('offset', 0))}))"
-
-
-def multiplier_text(definition: Plain, name: str) -> str:
-    """N_ai of a joint."""
-    relations, result = moved(definition), "1"
+    relations, mark, way = moved(definition), "'" if name.endswith("'") else "", list[Plain]()
+    name = name.removesuffix("'")
     while name in relations:
-        result, name = f"({result})*({_text(relations[name].get('multiplier', 1))})", relations[name]["of"]
+        way.append(relations[name])
+        name = relations[name]["of"]
+    result: Steps = (Step("name", name + mark, 1),)
+    for relation in reversed(way):
+        result = product(steps_of(relation.get("multiplier", 1)), result)
+        if not mark:
+            result = (*result, *steps_of(relation.get("offset", 0)), Step("add", None, 1))
     return result
 
 
-def _text(number: Any) -> str:
-    return format(number, "f") if isinstance(number, Decimal) else str(number)
-
-
-def _with_positions(definition: Plain, text: str) -> str:
-    found, result = [*pieces(text), ("", "")], ""
-    for (kind, piece), (_, after) in pairwise(found):
-        if kind == "name":
-            result += position_text(definition, piece + ("'" if after == "'" else ""))
-        elif piece != "'":  # the mark of a rate went with its name
-            result += piece
+def multiplier_steps(definition: Plain, name: str) -> Steps:
+    """N_ai of a joint."""
+    relations, result = moved(definition), steps_of(1)
+    while name in relations:
+        result = product(result, steps_of(relations[name].get("multiplier", 1)))
+        name = relations[name]["of"]
     return result
+
+
+def _with_positions(definition: Plain, text: str) -> str | Steps:
+    """An expression as it is, or its steps, with the positions of joints that relations move."""
+    relations, steps = moved(definition), steps_of(text)
+    if relations.keys().isdisjoint(name.removesuffix("'") for name in names_of(steps)):
+        return text
+    parts = (position_steps(definition, str(x.value)) if x.op == "name" else (x,) for x in steps)
+    return tuple(step for part in parts for step in part)
 
 
 def written(definition: Plain) -> Plain:
@@ -134,8 +136,8 @@ def written(definition: Plain) -> Plain:
     for load in loads:
         if load["type"] == "joint" and load["coordinate"] in relations:
             # the work of a force on a joint is that of mu times the force on what moves it
-            name, factor = load["coordinate"], multiplier_text(definition, load["coordinate"])
-            load |= {"coordinate": mover(definition, name), "force": f"({factor})*({_text(load['force'])})"}
+            force = product(multiplier_steps(definition, load["coordinate"]), steps_of(load["force"]))
+            load |= {"coordinate": mover(definition, load["coordinate"]), "force": force}
     return {**definition, "bodies": bodies, "loads": loads}
 
 

@@ -24,7 +24,8 @@ def slopes(program: Stored, entry: int, found: Sequence[Ball]) -> dict[str, Ball
     pending = {entry: arb(1)}
     for i in range(entry, -1, -1):
         weight, operation = pending.pop(i, None), program.operations[i]
-        if weight is None:
+        # what counts nothing may have no derivative: 0^y = exp(y log 0)
+        if weight is None or weight.is_zero():
             continue
         if operation[0] == "sym":
             name = program.symbols[operation[1]].name

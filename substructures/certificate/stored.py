@@ -25,10 +25,9 @@ _UNARY: dict[str, Callable[[Ball], Ball]] = {
     "neg": operator.neg,
     "abs": abs,
     "sign": operator.methodcaller("sgn"),
-    **{
-        name: operator.methodcaller(name)
-        for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "log", "sqrt")
-    },
+    **{name: operator.methodcaller(name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "exp", "sqrt")},
+    # as in floating point, where exp(y log 0) = 0 is 0^y
+    "log": lambda x: arb("-inf") if x.is_zero() else x.log(),
 }
 
 

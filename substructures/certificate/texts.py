@@ -115,11 +115,20 @@ def _series(
     steps: Steps, names: Mapping[str, Any], functions: Mapping[str, Callable[..., Any]] = BALL_FUNCTIONS
 ) -> Any:
     """The power series of an expression."""
+    nowhere = arb_series([arb("nan"), arb("nan")])
     try:
-        return carried_out(steps, names, _number, _named, _pi, functions, ball_power)
+        found = carried_out(steps, names, _number, _named, _pi, functions, ball_power)
     except (ZeroDivisionError, ValueError):
         # of python-flint for series whose leading term may be zero
-        return arb_series([arb("nan"), arb("nan")])
+        return nowhere
+    # a series that is zero hides that the other factor has no value
+    is_hidden = functions is BALL_FUNCTIONS and {"call", "power"} & {step.op for step in steps}
+    return nowhere if is_hidden and not _plain_value(steps, names).is_finite() else found
+
+
+def _plain_value(steps: Steps, names: Mapping[str, Any]) -> Ball:
+    values = {name: x[0] if isinstance(x, arb_series) else x for name, x in names.items()}
+    return carried_out(steps, values, lambda x: _number(x)[0], lambda x: x, arb.pi, BALL_FUNCTIONS, ball_power)
 
 
 def _weighted(*operands: Any) -> Any:

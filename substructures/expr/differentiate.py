@@ -14,6 +14,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.powers import power_slope
 from substructures.expr.trigonometry import cos, sin, tan
 from substructures.expr.walk import reachable
 
@@ -62,6 +63,7 @@ def pullback(exprs: Iterable[Expr], weights: Iterable[Expr], names: Sequence[str
     """
     roots = list(exprs)
     nodes = _varied(reachable(roots), set(names))
+    varied = set(nodes)
     bar: dict[Expr, Expr] = {}
     for root, weight in zip(roots, weights, strict=True):
         bar[root] = bar[root] + weight if root in bar else weight
@@ -72,7 +74,12 @@ def pullback(exprs: Iterable[Expr], weights: Iterable[Expr], names: Sequence[str
             continue
         if node.op == "sym":
             found[str(node.value)] = w
-        for x, share in zip(node.args, _shares(node, w), strict=False):
+        power = power_slope(node)
+        if power is not None and varied.isdisjoint(power.exponent):
+            shares: Iterable[tuple[Expr, Expr]] = [(power.base, w * power.slope)]
+        else:
+            shares = zip(node.args, _shares(node, w), strict=False)
+        for x, share in shares:
             bar[x] = bar[x] + share if x in bar else share
     return [found.get(name, roots[0].graph.zero) for name in names]
 
@@ -124,7 +131,11 @@ def _along(nodes: Sequence[Expr], roots: Sequence[Expr], seeds: Mapping[str, Exp
             if str(node.value) in seeds:
                 d[node] = seeds[str(node.value)]
         elif any(a in d for a in node.args):
-            value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
+            power = power_slope(node)
+            if power is not None and d.keys().isdisjoint(power.exponent):
+                value = power.slope * d.get(power.base, node.graph.zero)
+            else:
+                value = step(node.graph, node, [d.get(a, node.graph.zero) for a in node.args])
             if not value.is_zero:
                 d[node] = value
     return [d.get(root, root.graph.zero) for root in roots]

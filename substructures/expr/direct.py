@@ -107,10 +107,14 @@ def _run(
     return carried_out(steps_of(given), names, number, named, pi, functions, power)
 
 
-def steps_of(given: Given) -> tuple[Step, ...]:
-    """The steps of a text; of a number the one that is the number itself. Raises as :func:`value`."""
+def steps_of(given: Given | tuple[Step, ...]) -> tuple[Step, ...]:
+    """The steps of a text; of a number the one that is the number itself; steps as they are. Raises as
+    :func:`value`.
+    """
     if isinstance(given, str):
         return read(given)
+    if isinstance(given, tuple):
+        return given
     return (Step("number", _exact(given), 1),)
 
 

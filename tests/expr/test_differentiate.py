@@ -10,6 +10,7 @@ from substructures.expr import differentiate
 from substructures.expr.differentiate import derivative, gradient, in_directions, pullback
 from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret
+from substructures.expr.parse import parse
 from substructures.expr.trigonometry import cos, sin, tan
 
 
@@ -25,6 +26,19 @@ def test_all_directions_take_one_walk(monkeypatch: pytest.MonkeyPatch) -> None:
     assert gradient([x * y], ["x", "y"]) == [[y, x]]
     assert gradient([], ["x"]) == []
     assert len(walks) == 2
+
+
+@pytest.mark.parametrize("y", ["1.5", "2.5", "1.3", "k", "k/2 + 1", "7/2"])
+def test_powers_have_slopes_where_they_begin(y: str) -> None:
+    """d max(x, 0)^y = y max(x, 0)^(y-1), which is 0 up to x = 0; forwards and backwards."""
+    g = Graph()
+    f = parse(g, f"3*max(x, 0)^({y})", g.symbol)
+    df = derivative(f, "x"), *pullback([f], [g.one], ["x"])
+    x, k = np.array([-1.0, 0.0, 1.0, 4.0]), 2.2
+    power = {"k": k, "k/2 + 1": k / 2 + 1, "7/2": 3.5}.get(y) or float(y)
+    for each in df:
+        found = interpret(collected(g, f=each), {"x": x, "k": k})["f"]
+        assert found == pytest.approx(3 * power * np.maximum(x, 0) ** (power - 1))
 
 
 def test_rules() -> None:

@@ -313,6 +313,28 @@ def test_springs_whose_laws_are_flat_somewhere_depend_on_the_state(law: str) -> 
     assert "no-potential" not in {each["code"] for each in steady["warnings"]}
 
 
+@pytest.mark.parametrize(
+    "load",
+    [
+        {"type": "potential", "potential": "k*max(x - l, 0)^2.5"},
+        {"type": "potential", "potential": "max(x, 0)^(k + 1)"},
+        {"type": "joint", "coordinate": "x", "force": "-k*max(x, 0)^1.3"},
+        {"type": "potential", "potential": "table(x; 2: 0, 3: 1)*sqrt(x - 2)*y"},
+    ],
+)
+def test_laws_of_contact_are_certified_on_both_sides_of_where_it_begins(load: Plain) -> None:
+    """Hertz's among them, also beside a spring whose potential is known by its slopes."""
+    part_with({"loads": [load]})
+    part_with({"loads": [load], "joint": {"stiffness": "1 + x^2"}})
+
+
+def test_what_stands_still_has_an_energy_beside_forces_that_do_nothing() -> None:
+    body = {"name": "b", "parent": "base", "joint": {"type": "fixed", "sigma": 1}, "mass": 2, "com": [0, 0, 1]}
+    mast = {"name": "mast", "bodies": [body], "loads": [{"type": "force", "body": "b", "vector": [1, 0, 0]}]}
+    tree = {"name": "t", "gravity": [0, 0, -9], "instances": [{"name": "m", "substructure": "mast"}]}
+    assert errors_of(couple(tree, {"m": derive(mast)}).certificate)["potential_energy"] is not None
+
+
 def test_a_force_that_waits_for_its_time_is_no_potential_left_out() -> None:
     part = part_with({"loads": [{"type": "joint", "coordinate": "x", "force": "k*step(t, 0, 0.1)"}]})
     assert "potential_left_out" not in part.certificate["direct_form"]

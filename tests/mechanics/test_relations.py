@@ -208,6 +208,17 @@ def test_laws_name_related_joints_as_numbers_and_functions_are_written(name: str
     assert derive({"name": "x", "bodies": bodies, "relations": relations, "loads": loads}).coordinates == ("q",)
 
 
+def test_a_long_chain_of_relations_has_laws() -> None:
+    joint = {"type": "prismatic", "theta": 0.1}
+    bodies: list[Plain] = [
+        {"name": f"b{k}", "parent": "base", "mass": 1, "joint": {**joint, "coordinate": f"q{k}"}} for k in range(66)
+    ]
+    bodies[-1]["joint"]["stiffness"] = "1 + q65^2"
+    relations = [{"coordinate": f"q{k}", "of": f"q{k - 1}", "multiplier": -1.5, "offset": 1} for k in range(1, 66)]
+    loads = [{"type": "joint", "coordinate": "q65", "force": "-q65 - q65'"}]
+    assert derive({"name": "x", "bodies": bodies, "relations": relations, "loads": loads}).coordinates == ("q0",)
+
+
 @pytest.mark.parametrize("multiplier", [0, "0*k", "sin(pi)"])
 def test_limits_and_friction_of_a_joint_that_is_held_bind_nothing(multiplier: Any) -> None:
     bodies = [{**body, "joint": {**body["joint"], "friction": None}} for body in GEARS["bodies"]]

@@ -11,7 +11,7 @@ from substructures.certificate.bodies import limits_of, of_step
 from substructures.certificate.linear import Ball
 from substructures.certificate.loads.forces import Forces, add_to
 from substructures.certificate.numbers import Numbers, Plain
-from substructures.certificate.relations import mover, multiplier_text, position_text
+from substructures.certificate.relations import mover, multiplier_steps, position_steps
 from substructures.certificate.texts import difference, negative, product
 from substructures.expr.direct import steps_of
 
@@ -29,10 +29,10 @@ def joint_law(found: Forces, a: int, joint: Plain, step: int) -> None:
     effort = numbers.names[f"tau.{name}"] if name in found.coordinates else arb(0)
     add_to(found.applied, {a: effort - k * stretch - c * found.rate(a)})
     if found.depends(*given[:2]):
-        place = steps_of(position_text(found.definition, name))
+        place = position_steps(found.definition, name)
         law = product(steps_of(given[0]), difference(place, steps_of(given[1])))
         if name not in found.coordinates:
-            law = product(steps_of(multiplier_text(found.definition, name)), law)
+            law = product(multiplier_steps(found.definition, name), law)
         moved_by = found.coordinates[mover(found.definition, name)]
         found.given.setdefault(moved_by, []).append(negative(law))
     else:

@@ -90,7 +90,7 @@ def _changes(found: Forces, load: Plain, frame: Frame, vector: Matrix) -> dict[i
 def _steady(found: Forces, load: Plain, Q: Mapping[int, Ball], rates: Mapping[tuple[int, int], Ball]) -> None:
     """Notes a load of coordinates and parameters alone whose curl d_b Q_a - d_a Q_b is zero; ``rates``: d_b Q_a."""
     known = found.definition.get("parameters", {}).keys() | found.coordinates.keys()
-    if any(found.bodies.joints[a].group for a in Q):
+    if not Q or any(found.bodies.joints[a].group for a in Q):
         return  # what turns a ball joint is not looked at
     rates = _gathered_twice(found, rates)
     curl = (rate - rates.get((b, a), arb(0)) for (a, b), rate in rates.items())

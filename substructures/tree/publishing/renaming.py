@@ -2,16 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any
 
 from substructures.documents.fields import Quantity, in_si
 from substructures.documents.units import read_unit
 from substructures.errors import InvalidDocument
-from substructures.expr.pieces import pieces
-from substructures.expr.steps import RESERVED
-from substructures.expr.syntax import MAX_LENGTH
+from substructures.expr.steps import CURVES, LAWS, MEASURES, RESERVED
+from substructures.expr.syntax import MAX_LENGTH, tokens
 
 #: longest name
 LONGEST = 64
@@ -39,7 +38,7 @@ class Names:
 
 def names_of(text: str) -> Iterator[str]:
     """The names in an expression, without the marks of rates; of what cannot be read none."""
-    return (token for kind, token in pieces(text) if kind == "name")
+    return (token for kind, token in _pieces(text) if kind == "name")
 
 
 def renamed(value: Value, lookup: Callable[[str], Value], pointer: str, frame: Callable[[str], str] = str) -> Value:
@@ -59,11 +58,11 @@ def renamed(value: Value, lookup: Callable[[str], Value], pointer: str, frame: C
         return value.model_dump()
     if isinstance(value, Mapping) or not isinstance(value, str):
         return value
-    found = list(pieces(value))
-    if len(found) == 1 and found[0][0] == "name":
-        return lookup(found[0][1])
+    pieces = list(_pieces(value))
+    if len(pieces) == 1 and pieces[0][0] == "name":
+        return lookup(pieces[0][1])
     put_in: dict[str, Callable[[str], str]] = {"name": lambda name: _put_in(lookup(name)), "frame": frame, "": str}
-    text = "".join(put_in[kind](piece) for kind, piece in found)
+    text = "".join(put_in[kind](piece) for kind, piece in pieces)
     if len(text) > MAX_LENGTH:
         message = f"with what its names are bound to, '{value[:80]}' has more than {MAX_LENGTH:,} characters"
         raise InvalidDocument.at(pointer, "too-long", message)
@@ -82,3 +81,36 @@ def number_text(value: Value) -> str:
         value = read_unit(value["unit"]).in_si(value["value"])
     value = in_si(value)
     return value if isinstance(value, str) else format(value, "f") if hasattr(value, "as_tuple") else str(value)
+
+
+def _pieces(text: str) -> Iterator[tuple[str, str]]:
+    """An expression in pieces: (``name`` of a value, ``frame`` of a measure or nothing, the piece)."""
+    found, end = tokens(text), 0
+    frames: set[int] = set()
+    for k, (kind, token, column) in enumerate(found[:-1]):
+        start = column - 1
+        yield from _space(text[end:start])
+        end = start + len(token)
+        following = found[k + 1][1]
+        if kind == "name" and token.removesuffix("'") in MEASURES and following == "(":
+            # ( A , B )
+            frames |= {k + 2, k + 4}
+        if k in frames:
+            yield "frame", token
+        elif kind == "name" and not _has_meaning(token, following, found[k - 1][1] if k else ""):
+            name = token.rstrip("'")
+            yield "name", name
+            yield from _space(token[len(name) :])
+        else:
+            yield "", token
+    yield from _space(text[end:])
+
+
+def _space(text: str) -> Iterable[tuple[str, str]]:
+    return [("", text)] if text else []
+
+
+def _has_meaning(word: str, following: str, before: str) -> bool:
+    """Whether a name stands for a function, a constant or a word of the grammar."""
+    is_called = following == "(" and (word in (*LAWS, "table") or word.removesuffix("'") in MEASURES)
+    return word in RESERVED or is_called or (word in CURVES and before == ";")
