@@ -224,6 +224,9 @@ def test_poses_at_the_limits(browser: Any, address: str, filled: TestClient) -> 
     for name, value in (("lower limits", -0.5), ("upper limits", 1.25)):
         tab.page.click(f"[data-pose='{name}']")
         tab.until(f"{HERE} === '{value}'")
+    tab.page.fill("[data-number='0']", "1e200")  # which no address of the page may have
+    tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate(HERE) == "1.25"
     tab.page.click(".jumps a:has-text('about')")
     assert tab.page.evaluate("document.getElementById('about').getBoundingClientRect().top < innerHeight / 2")
     tab.close()

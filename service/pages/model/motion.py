@@ -71,7 +71,11 @@ def _form(shown: Shown) -> Html:
     told = "Numbers or expressions in coordinates, velocities (q'), parameters and t; empty is its own, or 0."
     return tag(
         "form",
-        tag("label", "seconds ", tag("input", type="number", id="span", value="5", min="0.001", step="any")),
+        tag(
+            "label",
+            "seconds ",
+            tag("input", type="number", id="span", value="5", min="0.001", step="any", required="required"),
+        ),
         tag("button", "Run", type="submit", id="run"),
         tag("button", "Cancel", type="button", id="cancel", hidden="hidden"),
         tag(
@@ -114,8 +118,9 @@ def _locus(shown: Shown) -> Html:
         tag("option", name, value=name, data_value=repr(x) if x == x else "", data_unit=unit)
         for name, unit, x in zip(vector.names, vector.units, vector.defaults, strict=True)
     ]
-    numbers = [tag("label", f"{name} ", tag("input", type="number", name=name, step="any")) for name in ("from", "to")]
-    count = tag("input", type="number", name="count", value="21", min="2", max="1000")
+    number = {"type": "number", "required": "required"}
+    numbers = [tag("label", f"{name} ", tag("input", **number, name=name, step="any")) for name in ("from", "to")]
+    count = tag("input", **number, name="count", value="21", min="2", max="1000")
     form = tag(
         "form",
         tag("label", "parameter ", tag("select", options, name="parameter")),
