@@ -118,9 +118,8 @@ def _locus(shown: Shown) -> Html:
         tag("option", name, value=name, data_value=repr(x) if x == x else "", data_unit=unit)
         for name, unit, x in zip(vector.names, vector.units, vector.defaults, strict=True)
     ]
-    number = {"type": "number", "required": "required"}
-    numbers = [tag("label", f"{name} ", tag("input", **number, name=name, step="any")) for name in ("from", "to")]
-    count = tag("input", **number, name="count", value="21", min="2", max="1000")
+    numbers = [tag("label", f"{name} ", tag("input", type="number", name=name, step="any")) for name in ("from", "to")]
+    count = tag("input", type="number", name="count", value="21", min="2", max="1000")
     form = tag(
         "form",
         tag("label", "parameter ", tag("select", options, name="parameter")),

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import orjson
 
-from service.operations.pictures import LARGEST
 from service.pages.html import Html, html, link, tag
 from service.pages.model.grid import tabs
 from service.pages.model.shown import Shown, described
+from service.schemas.scenes import LARGEST
 
 STEPS = 1000  # of a slider
 ENTRY = "Choose an entry to read its formula, its value here, and the bodies that it comes from."
