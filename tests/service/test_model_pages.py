@@ -278,6 +278,42 @@ def test_a_reload_shows_the_same(browser: Any, address: str, filled: TestClient)
 
 @in_browser
 @pytest.mark.deep
+def test_what_was_chosen_last_is_shown_whatever_comes_last(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    held: list[Any] = []
+    for slow in ("**/entry?*", "**/grid?tab=forces*"):
+        tab.page.route(slow, lambda route: held.append(route))
+    tab.page.click("[data-entry='metric,0,0']")
+    tab.page.click("[data-entry='metric,1,1']")
+    tab.page.click(".tabs [data-tab=forces]")
+    tab.page.click(".tabs [data-tab=christoffel]")
+    tab.until("document.querySelector('#grid table').dataset.quantity === 'christoffel'")
+    for each in held:
+        each.continue_()
+        tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate("document.getElementById('entry').dataset.entry") == "metric,1,1"
+    assert tab.page.evaluate("document.querySelector('#grid table').dataset.quantity") == "christoffel"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_does_not_come_is_told(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2?entry=metric,1,1")
+    tab.until(READY)
+    for lost in ("**/entry?*", "**/grid?*"):
+        tab.page.route(lost, lambda route: route.abort())
+    tab.page.click("[data-entry='metric,0,0']")
+    tab.until("document.querySelector('#entry .warn')?.textContent.includes('the connection is lost')")
+    tab.page.click(".tabs [data-tab=forces]")
+    tab.until("document.querySelector('#grid.warn')?.textContent.includes('the connection is lost')")
+    tab.wrong = [each for each in tab.wrong if "ERR_FAILED" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_results_are_removed_when_somebody_is_sure(browser: Any, address: str, filled: TestClient) -> None:
     job = submitted(filled, export("cell", "metric"))
     assert filled.post(f"/v1/jobs/{job}/cancel").status_code == 200
