@@ -6,6 +6,7 @@ A command that is ``kept`` runs in a process of its own, which is started again 
 from __future__ import annotations
 
 import gc
+import io
 import os
 import sys
 from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -203,6 +204,8 @@ def app() -> Any:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command; 0 when it succeeded, 1 when it did not, 2 when it was called wrongly."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    if arguments is None:
+        _encode(sys.stdout)
     if arguments is None and any(each.kept and each.name == _named(words) for each in COMMANDS):
         if not {"-h", "--help"}.isdisjoint(words):
             pass  # nothing is to be kept
@@ -225,6 +228,12 @@ def main(arguments: Sequence[str] | None = None) -> int:
             print(f"{PROGRAM}: {line}", file=sys.stderr)
         return 1
     return 0
+
+
+def _encode(stream: Any) -> None:
+    """Let files and pipes have UTF-8, which all that reads them expects, and terminals what they can show."""
+    if isinstance(stream, io.TextIOWrapper):
+        stream.reconfigure(encoding=None if stream.isatty() else "utf-8", errors="backslashreplace")
 
 
 def _named(words: Sequence[str]) -> str | None:

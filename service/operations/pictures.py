@@ -13,13 +13,13 @@ from service.messages.answers import Answer
 from service.messages.refusals import unprocessable
 from service.operations.modules import Subject, kept, made
 from service.queries.trees import Tree
+from service.schemas.scenes import LARGEST
 from substructures.documents.fields import Quantity, quantity_of
 from substructures.errors import InvalidArgument
 from substructures.mechanics.state_names import state_units
 from substructures.quantities.measured import si_values
 
 PoseValues = tuple[float, ...]
-LARGEST = 1e6
 _NUMBER = re.compile(r"[+-]?(?:[0-9]+\.?[0-9]*|\.[0-9]+)(?:[eE][+-]?[0-9]+)?")
 
 

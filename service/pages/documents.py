@@ -26,6 +26,7 @@ _BESIDE, _INSIDE = Path(__file__).parents[2] / "docs", Path(__file__).with_name(
 FOLDER = _INSIDE if _INSIDE.is_dir() else _BESIDE
 INDEX = "index"
 MOST = 40  # places that a search shows
+BEFORE, SHOWN = 60, 180  # characters of a place, before the word and in all, at most but for a word
 _LINKED = re.compile(r"\]\(([\w/-]+)\.md\)")
 
 DRAWN = {
@@ -92,7 +93,7 @@ def _found(words: str) -> Html:
     ]
     places.sort(key=lambda place: place[0])  # stable: otherwise in the order of the pages
     items = [
-        tag("li", link(f"{_rendered(name)[0]}: {heading}", f"{_address(name)}#{anchor}"), _around(text, wanted[0]))
+        tag("li", link(_entitled(name, heading), f"{_address(name)}#{anchor}"), _around(text, wanted[0]))
         for _, name, heading, anchor, text in places[:MOST]
     ]
     more = tag("p", f"There are {len(places) - MOST} more.", class_="quiet") if len(places) > MOST else None
@@ -104,9 +105,18 @@ def _address(name: str) -> str:
     return "/docs" if name == INDEX else f"/docs/{name}"
 
 
+def _entitled(name: str, heading: str) -> str:
+    title = _rendered(name)[0]
+    return title if title == heading else f"{title}: {heading}"
+
+
 def _around(text: str, word: str) -> Html:
-    place = max(0, text.lower().find(word) - 60)
-    return tag("p", " ".join(text[place : place + 180].split()))
+    """Some whole words before and after the first place of a word."""
+    text = " ".join(text.split())
+    place = text.lower().find(word)
+    start = text.rfind(" ", 0, max(0, place - BEFORE)) + 1 if place > BEFORE else 0
+    end = text.find(" ", start + SHOWN)
+    return tag("p", "... " if start else "", text[start : end if end > 0 else None], " ..." if end > 0 else "")
 
 
 @cache
@@ -156,9 +166,15 @@ def _sections(name: str) -> Iterator[tuple[str, str, str]]:
                 yield current[1], current[2], "\n".join(texts)
             current, texts = next(each), []
         elif token.type in ("inline", "fence", "code_block"):
-            texts.append(token.content)
+            texts.append(_plain(token))
     if current is not None:
         yield current[1], current[2], "\n".join(texts)
+
+
+def _plain(token: Token) -> str:
+    """What a reader sees of a token."""
+    seen = [each.content or " " for each in token.children or () if not each.type.endswith(("_open", "_close"))]
+    return "".join(seen) if token.children else token.content
 
 
 def _anchor(text: str, seen: set[str]) -> str:

@@ -9,6 +9,8 @@ from pydantic import Field
 from service.schemas.shapes import Shape
 
 Vector = list[float]
+#: coordinate that is drawn [rad, m]
+LARGEST = 1e6
 
 
 class FrameOfScene(Shape):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Iterable
 
 from substructures.errors import InvalidDocument
@@ -39,7 +40,9 @@ def decoded(data: bytes) -> str:
     try:
         return data.decode("utf-8").removeprefix("\ufeff")
     except UnicodeDecodeError as error:
-        raise InvalidDocument.at("", "encoding", f"byte {error.start} is not UTF-8: {error.reason}") from None
+        utf_16 = "; this is UTF-16: save it as UTF-8" if data[:2] in (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE) else ""
+        message = f"byte {error.start} is not UTF-8: {error.reason}{utf_16}"
+        raise InvalidDocument.at("", "encoding", message) from None
 
 
 def encodes(text: str) -> bool:

@@ -90,6 +90,7 @@ def test_limits_are_inclusive(read: Any) -> None:
 @READERS
 def test_bytes_must_be_utf8(read: Any) -> None:
     assert fault_of(read, b'"\xff"')[1:] == ("encoding", "byte 1 is not UTF-8: invalid start byte")
+    assert fault_of(read, '"a"'.encode("utf-16"))[2].endswith("this is UTF-16: save it as UTF-8")  # of PowerShell
     assert read(b'\xef\xbb\xbf{"q": 1}') == {"q": 1}
     assert fault_of(read, b'["\\ud800"]')[1] == "encoding"
     assert read('"\u00e9\U0001f600"'.encode()) == "\u00e9\U0001f600"

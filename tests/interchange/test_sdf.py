@@ -252,6 +252,22 @@ def bar(closing: str, more: str = "", flag: str = "") -> str:
     return links + first + "".join(both if flag else both[::-1])
 
 
+def test_first_joints_that_close_a_circle_leave_it_to_others() -> None:
+    """A door on two hinges, of which one has the frame for its child: the order in the file does not matter."""
+    one = joint("one", "revolute", "door", "frame", along("0 0 1"))
+    two = joint("two", "revolute", "frame", "door", along("0 0 1"))
+    root = joint("root", "revolute", "world", "frame", along("1 0 0"))
+    found = [
+        model_of(link("frame", mass=1) + link("door", mass=1) + all_) for all_ in (one + two + root, root + two + one)
+    ]
+    for each, model in found:
+        assert model.coordinates == ("robot.root", "robot.two")
+        said = [remark["message"] for remark in each.report]
+        assert "the link 'frame' is the child of 'root' already: this joint closes a loop" in said
+    with pytest.raises(InvalidDocument, match="is on or behind a cycle of joints"):
+        model_of(link("frame", mass=1) + link("door", mass=1) + one + two)
+
+
 @pytest.mark.parametrize(
     "flag", ["", "<physics><simbody><must_be_loop_joint>1</must_be_loop_joint></simbody></physics>"]
 )

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import math
+import os
 import re
+import subprocess
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -157,3 +160,13 @@ def test_files_that_are_written_are_named(run: Run) -> None:
     Path("request.json").write_text('{"q": [1], "span": [0, 1], "count": 3}')
     assert run("simulate", "cell.json", "request.json", "--out", "motion.csv").startswith("motion.csv: ")
     assert "energy.txt: " in run("analyse", "cell.json", "kinetic_energy", "--out", "energy.txt")
+
+
+def test_what_goes_to_a_file_is_utf_8_whatever_a_terminal_shows(folder: Path) -> None:
+    """As on Windows, where files had code page 1252, which no command reads."""
+    (folder / "arm.urdf").write_text('<robot name="Σ\u00fc"><link name="a"/></robot>', encoding="utf-8")
+    command = [sys.executable, "-m", "service.cli.main", "import", "arm.urdf"]
+    environment = {**os.environ, "PYTHONIOENCODING": "cp1252"}
+    done = subprocess.run(command, env=environment, capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+    assert json.loads(done.stdout.decode("utf-8"))["title"] == "Σ\u00fc"

@@ -48,6 +48,12 @@ def test_a_search_finds_sections(client: TestClient) -> None:
     assert ("value", "<script>alert(1)</script>") in hostile.attributes
 
 
+def test_a_search_shows_whole_words_as_they_are_read(client: TestClient) -> None:
+    found = Page(shown(client, "/docs?q=friction")).text
+    assert "Simulate, linearise, control: Simulate" not in found
+    assert "... (formulas and numbers). Points that touch a floor have impacts, friction and rest by the" in found
+
+
 def test_pages_that_are_not_there(client: TestClient) -> None:
     for path in ("/docs/nothing", "/docs/../README", "/docs/%2e%2e/README", "/docs//etc/passwd"):
         assert client.get(path).status_code == 404, path

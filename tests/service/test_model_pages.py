@@ -224,6 +224,9 @@ def test_poses_at_the_limits(browser: Any, address: str, filled: TestClient) -> 
     for name, value in (("lower limits", -0.5), ("upper limits", 1.25)):
         tab.page.click(f"[data-pose='{name}']")
         tab.until(f"{HERE} === '{value}'")
+    tab.page.fill("[data-number='0']", "1e200")  # which no address of the page may have
+    tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate(HERE) == "1.25"
     tab.page.click(".jumps a:has-text('about')")
     assert tab.page.evaluate("document.getElementById('about').getBoundingClientRect().top < innerHeight / 2")
     tab.close()
@@ -270,6 +273,42 @@ def test_a_reload_shows_the_same(browser: Any, address: str, filled: TestClient)
     tab.until(READY)
     assert tab.page.evaluate(all_of_it) == before
     assert tab.page.input_value("[data-rate='0']") == "2"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_was_chosen_last_is_shown_whatever_comes_last(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    held: list[Any] = []
+    for slow in ("**/entry?*", "**/grid?tab=forces*"):
+        tab.page.route(slow, lambda route: held.append(route))
+    tab.page.click("[data-entry='metric,0,0']")
+    tab.page.click("[data-entry='metric,1,1']")
+    tab.page.click(".tabs [data-tab=forces]")
+    tab.page.click(".tabs [data-tab=christoffel]")
+    tab.until("document.querySelector('#grid table').dataset.quantity === 'christoffel'")
+    for each in held:
+        each.continue_()
+        tab.page.wait_for_timeout(300)
+    assert tab.page.evaluate("document.getElementById('entry').dataset.entry") == "metric,1,1"
+    assert tab.page.evaluate("document.querySelector('#grid table').dataset.quantity") == "christoffel"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_does_not_come_is_told(browser: Any, address: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2?entry=metric,1,1")
+    tab.until(READY)
+    for lost in ("**/entry?*", "**/grid?*"):
+        tab.page.route(lost, lambda route: route.abort())
+    tab.page.click("[data-entry='metric,0,0']")
+    tab.until("document.querySelector('#entry .warn')?.textContent.includes('the connection is lost')")
+    tab.page.click(".tabs [data-tab=forces]")
+    tab.until("document.querySelector('#grid.warn')?.textContent.includes('the connection is lost')")
+    tab.wrong = [each for each in tab.wrong if "ERR_FAILED" not in each]
     tab.close()
 
 

@@ -70,6 +70,17 @@ def test_the_ghost_follows_the_pointer(browser: Any, address: str) -> None:
 
 @in_browser
 @pytest.mark.deep
+@pytest.mark.parametrize("path", ["/trees/cell@2", "/trees/cell@2/edit", "/trees/cell@2/motion"])
+def test_switches_hide_nothing(browser: Any, address: str, path: str) -> None:
+    tab = Tab(browser, address, path, 360)
+    tab.until("document.querySelector('canvas ~ .label')")
+    drawn, bar = (tab.page.query_selector(each).bounding_box() for each in ("#view canvas", ".switches"))
+    assert bar["y"] >= drawn["y"] + drawn["height"]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_what_moves_away_is_followed(browser: Any, address: str) -> None:
     tab = Tab(browser, address, "/trees/cell@2")
     tab.until(READY)

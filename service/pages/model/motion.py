@@ -71,7 +71,11 @@ def _form(shown: Shown) -> Html:
     told = "Numbers or expressions in coordinates, velocities (q'), parameters and t; empty is its own, or 0."
     return tag(
         "form",
-        tag("label", "seconds ", tag("input", type="number", id="span", value="5", min="0.001", step="any")),
+        tag(
+            "label",
+            "seconds ",
+            tag("input", type="number", id="span", value="5", min="0.001", step="any", required="required"),
+        ),
         tag("button", "Run", type="submit", id="run"),
         tag("button", "Cancel", type="button", id="cancel", hidden="hidden"),
         tag(

@@ -7,6 +7,7 @@ import orjson
 from service.pages.html import Html, html, link, tag
 from service.pages.model.grid import tabs
 from service.pages.model.shown import Shown, described
+from service.schemas.scenes import LARGEST
 
 STEPS = 1000  # of a slider
 ENTRY = "Choose an entry to read its formula, its value here, and the bodies that it comes from."
@@ -71,14 +72,15 @@ def _slider(shown: Shown, k: int, name: str, value: float) -> Html:
     """A row of the state: a slider with its number, and its rate."""
     unit, (low, high), at = {"P": "m", "R": "rad"}[shown.joints[k]], shown.ranges[k], repr(value)
     span = {"min": repr(low), "max": repr(high), "step": repr((high - low) / STEPS)}
+    any_ = {"min": repr(-LARGEST), "max": repr(LARGEST), "step": "any"}
     told = name if name in shown.chart.positions else f"rotation vector, with the rate {name}"
     return tag(
         "div",
         tag("label", name, for_=f"q{k}", title=told),
         tag("input", type="range", id=f"q{k}", value=at, data_q=k, **span),
-        tag("input", type="number", name="q", value=at, step="any", data_number=k, aria_label=f"{name} in {unit}"),
+        tag("input", type="number", name="q", value=at, data_number=k, aria_label=f"{name} in {unit}", **any_),
         tag("span", unit, class_="quiet unit"),
-        tag("input", type="number", value="0", step="any", data_rate=k, aria_label=f"rate of {shown.coordinates[k]}"),
+        tag("input", type="number", value="0", data_rate=k, aria_label=f"rate of {shown.coordinates[k]}", **any_),
         tag("span", f"{unit}/s", class_="quiet unit"),
         class_="slider",
     )

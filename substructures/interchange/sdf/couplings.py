@@ -1,8 +1,9 @@
-"""Joints of an SDF file that carry no link: those that close loops, and gearboxes; and the thread of screws."""
+"""Which joints of an SDF file carry no link: those that close loops, and gearboxes; and the thread of screws."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections import deque
+from collections.abc import Iterable, Mapping, Sequence
 from typing import Literal
 
 import numpy as np
@@ -34,6 +35,34 @@ def is_cut(joint: Node) -> bool:
         for simbody in physics.all("simbody")
         for flag in simbody.all("must_be_loop_joint")
     )
+
+
+def carriers_of(ends: Sequence[tuple[str, str | None]]) -> dict[str, int]:
+    """Which joint carries each child, of (child, parent): the first one; where first ones close a circle, one by which
+    its links hang on what is the child of none.
+    """
+    first: dict[str, int] = {}
+    for k, (child, _) in enumerate(ends):
+        first.setdefault(child, k)
+    plain = _hanging(ends, first.values(), first)
+    return plain if len(plain) == len(first) else first | _hanging(ends, range(len(ends)), first)
+
+
+def _hanging(
+    ends: Sequence[tuple[str, str | None]], joints: Iterable[int], children: Mapping[str, int]
+) -> dict[str, int]:
+    """The joints on the ways from what is the child of none."""
+    on: dict[str | None, list[int]] = {}
+    for k in joints:
+        on.setdefault(ends[k][1], []).append(k)
+    found, waiting = dict[str, int](), deque(name for name in on if name not in children)
+    while waiting:
+        for k in on.get(waiting.popleft(), ()):
+            child = ends[k][0]
+            if child not in found:
+                found[child] = k
+                waiting.append(child)
+    return found
 
 
 def loop_of(

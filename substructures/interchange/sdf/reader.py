@@ -5,8 +5,8 @@ of a frame to what it is attached to, or to ``relative_to``. An axis is given in
 ``expressed_in``; it goes through the origin of the joint's frame, which need not be that of the child link. Until SDF
 1.4, and where ``use_parent_model_frame`` says so until 1.6, it is given in the frame of the model.
 
-The first joint of which a link is the child carries it, but for one that ``must_be_loop_joint``; others close loops. A
-screw is a prismatic joint that moves with a revolute one; a gearbox carries nothing, and binds two joints.
+The first joint of which a link is the child carries it, but for one that ``must_be_loop_joint`` or closes a circle;
+others close loops. A screw is a prismatic joint that moves with a revolute one; a gearbox binds two joints.
 """
 
 from __future__ import annotations
@@ -36,7 +36,7 @@ from substructures.interchange.robot import Inertial, Link, Loop, Mimic, Motion,
 from substructures.interchange.rotations import to_rpy, turned_inertia
 from substructures.interchange.sdf.axes import laws_of, limits_of, number, tell_of_laws
 from substructures.interchange.sdf.contents import Contents, text_in
-from substructures.interchange.sdf.couplings import CLOSURES, is_cut, lead_of, loop_of, turn_of
+from substructures.interchange.sdf.couplings import CLOSURES, carriers_of, is_cut, lead_of, loop_of, turn_of
 from substructures.interchange.sdf.frames import (
     HERE,
     WORLD,
@@ -113,17 +113,13 @@ class _Reader:
 
     def _tree(self) -> tuple[dict[str, Link], tuple[Loop, ...]]:
         """Links by their names with the joints that carry them, and the joints that close loops."""
-        carried: dict[str, Link] = {}
-        loops: list[Loop] = []
-        for prefix, node in sorted(self.joints, key=lambda joint: is_cut(joint[1])):
-            if node.text_of("type") == "gearbox":
-                continue
-            child = self._end(prefix + text_in(node, "child"), node)
-            if child in carried:
-                loops.append(self._loop(prefix, node, carried[child]))
-            else:
-                carried[child] = self._carried(prefix, node, child)
-        return carried, tuple(loops)
+        joints = [each for each in self.joints if each[1].text_of("type") != "gearbox"]
+        joints.sort(key=lambda joint: is_cut(joint[1]))
+        ends = [(self._end(p + text_in(node, "child"), node), self._host(p, node, "parent")) for p, node in joints]
+        carriers = carriers_of(ends)
+        carried = {child: self._carried(*joints[k], child) for k, (child, _) in enumerate(ends) if carriers[child] == k}
+        others = ((k, child) for k, (child, _) in enumerate(ends) if carriers[child] != k)
+        return carried, tuple(self._loop(*joints[k], carried[child]) for k, child in others)
 
     def _loop(self, prefix: str, node: Node, child: Link) -> Loop:
         """A joint whose child another one carries."""

@@ -1,6 +1,6 @@
 // The grid of a quantity: numbers and colours by |value|; links choose an entry, a slice, a quantity.
 import { keep } from "./address.js";
-import { fragment } from "./fragments.js";
+import { element, fragment } from "./fragments.js";
 import { short } from "./numbers.js";
 
 const LOGARITHMIC = 6; // decades of the scale of colours
@@ -10,6 +10,7 @@ export class Grid {
     constructor(path, program, choose) {
         this.path = path;
         this.program = program;
+        this.latest = 0;
         this.read();
         document.querySelector(".formulas").addEventListener("click", (event) => {
             const link = event.target.closest("a");
@@ -36,7 +37,10 @@ export class Grid {
     }
 
     async show(quantity, slice) {
-        const found = await fragment(`${this.path}/grid?tab=${quantity}&slice=${slice}`, "grid");
+        const mine = ++this.latest;
+        const failed = (error) => element("p", { class: "warn", id: "grid" }, `This cannot be shown: ${error.message}`);
+        const found = await fragment(`${this.path}/grid?tab=${quantity}&slice=${slice}`, "grid").catch(failed);
+        if (mine !== this.latest) return; // something else was asked for meanwhile
         document.getElementById("grid").replaceWith(found);
         keep("tab", quantity);
         keep("slice", slice ? String(slice) : "");

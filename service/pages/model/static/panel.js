@@ -8,19 +8,18 @@ export class Panel {
     /** state: vectors q, qd, u, p of the page; sliders: their ranges and names, and the chart that makes states of
      * them; lit(bodies) is told whose entry is shown. */
     constructor(path, state, { ranges, names, chart }, lit) {
-        Object.assign(this, { path, state, ranges, names, chart, lit, over: [0, -1] });
+        Object.assign(this, { path, state, ranges, names, chart, lit, over: [0, -1], latest: 0 });
         this.read();
     }
 
     async choose(entry) {
-        const place = document.getElementById("entry");
-        place.setAttribute("aria-busy", "true");
-        try {
-            place.replaceWith(await fragment(`${this.path}/entry?entry=${entry}`, "entry"));
-        } catch (error) {
-            place.removeAttribute("aria-busy");
-            place.replaceChildren(element("p", { class: "warn" }, `This entry cannot be shown: ${error.message}`));
-        }
+        const mine = ++this.latest;
+        this.place.setAttribute("aria-busy", "true");
+        const told = (error) => element("p", { class: "warn" }, `This entry cannot be shown: ${error.message}`);
+        const failed = (error) => element("section", { id: "entry" }, told(error));
+        const found = await fragment(`${this.path}/entry?entry=${entry}`, "entry").catch(failed);
+        if (mine !== this.latest) return; // something else was asked for meanwhile
+        this.place.replaceWith(found);
         for (const cell of document.querySelectorAll("#grid a")) {
             cell.classList.toggle("chosen", cell.dataset.entry === entry);
         }

@@ -6,6 +6,7 @@ import { element } from "./fragments.js";
 import { ghost, sceneOf } from "./ghost.js";
 import { load } from "./program.js";
 import { filled } from "./steps.js";
+import { drawn } from "./viewing.js";
 
 export class Placing {
     /** path: of the tree in the interface; spec: its document; form: of couplings; changed(form) hears of a drag. */
@@ -21,8 +22,7 @@ export class Placing {
             const [program] = await load(this.path);
             const scene = await (await fetch(`${this.path}/scene`)).json();
             this.ahead = new Ahead(this.path, scene.poses.home);
-            const { View } = await import("./view.js");
-            this.view = new View(document.getElementById("view"), scene);
+            this.view = await drawn(scene);
             program.vectors.q?.set(scene.poses.home);
             this.view.pose(program);
             this.view.picks(pick);

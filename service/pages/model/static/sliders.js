@@ -48,7 +48,7 @@ export class Sliders {
     moved(input) {
         const { q, number, rate } = input.dataset;
         const value = input.valueAsNumber;
-        if (!Number.isFinite(value)) return;
+        if (!Number.isFinite(value) || !input.validity.valid) return;
         if (rate !== undefined) this.state.qd[Number(rate)] = value;
         const k = Number(q ?? number);
         if (rate === undefined) {

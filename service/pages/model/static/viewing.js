@@ -1,13 +1,21 @@
 // Loads what draws in three dimensions, after the page can be used.
 
+/** A scene in the place of the picture, with the switches of the view below it, where they hide nothing. */
+export async function drawn(scene) {
+    const { View } = await import("./view.js");
+    const place = document.getElementById("view");
+    const view = new View(place, scene);
+    place.after(place.querySelector(".switches"));
+    return view;
+}
+
 /** The view in three dimensions, null where there is no WebGL: the picture of the server stays. */
 export async function shown(kind, reference, sliders) {
     try {
         const answer = await fetch(`/v1/${kind}/${reference}/scene`);
         if (!answer.ok) return null;
         const scene = await answer.json();
-        const { View } = await import("./view.js");
-        const view = new View(document.getElementById("view"), scene);
+        const view = await drawn(scene);
         sliders.offer({ ...scene.poses, ...limits(scene) });
         if (!new URL(location.href).searchParams.has("pose")) {
             sliders.set(scene.poses.home);

@@ -15,7 +15,8 @@ export async function post(address, body, { told = () => {}, signal = undefined,
 async function right(answer) {
     if (answer.ok) return answer;
     const found = await answer.json();
-    throw new Error(found.errors?.map(({ message }) => message).join("; ") || found.detail);
+    const faults = (found.errors ?? []).map(({ pointer, message }) => [pointer?.slice(1), message].filter(Boolean).join(": "));
+    throw new Error(faults.join("; ") || found.detail);
 }
 
 async function read(answer) {
