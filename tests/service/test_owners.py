@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import json
 from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -254,12 +255,33 @@ def world(tmp_path_factory: pytest.TempPathFactory) -> World:
         return World(path, (acme, reads, bolt), admin, jobs, sweeps)
 
 
-@pytest.fixture
-def served(world: World, tmp_path: Path) -> Iterator[TestClient]:
-    copied(world.path, tmp_path / "store.db")
-    url = f"sqlite:///{tmp_path / 'store.db'}"
+@contextmanager
+def serving(world: World, folder: Path) -> Iterator[TestClient]:
+    """A server of a copy of the world."""
+    copied(world.path, folder / "store.db")
+    url = f"sqlite:///{folder / 'store.db'}"
     with open_store(Settings(database=url, catalogue=False, key_seconds=0)) as store, make_client(store) as client:
         yield client
+
+
+@pytest.fixture
+def served(world: World, tmp_path: Path) -> Iterator[TestClient]:
+    with serving(world, tmp_path) as client:
+        yield client
+
+
+@pytest.fixture(scope="module")
+def read(world: World, tmp_path_factory: pytest.TempPathFactory) -> Iterator[TestClient]:
+    """For what changes nothing."""
+    with serving(world, tmp_path_factory.mktemp("read")) as client:
+        yield client
+
+
+@pytest.fixture
+def asked(endpoint: str, request: pytest.FixtureRequest) -> TestClient:
+    """The server that an endpoint is asked on: one for all that only read, and else one of its own."""
+    found: TestClient = request.getfixturevalue("read" if endpoint.startswith(("get ", "page ")) else "served")
+    return found
 
 
 def ask(client: TestClient, endpoint: str, row: Row, given: dict[str, str], headers: Headers) -> Any:
@@ -288,29 +310,29 @@ def test_every_endpoint_has_a_row() -> None:
 
 @pytest.mark.parametrize("visibility", NAMES)
 @pytest.mark.parametrize("endpoint", TABLE)
-def test_who_may_do_what(endpoint: str, visibility: str, served: TestClient, world: World) -> None:
+def test_who_may_do_what(endpoint: str, visibility: str, asked: TestClient, world: World) -> None:
     row, given = TABLE[endpoint], places(world, visibility)
     expected = row.private if visibility == "private" else row.public
     is_open = endpoint in ("get /livez", "get /readyz")
-    assert ask(served, endpoint, row, given, {}).status_code == (200 if is_open else 401)
+    assert ask(asked, endpoint, row, given, {}).status_code == (200 if is_open else 401)
     for headers, status in reversed(list(zip(world.keys, expected, strict=True))):  # who changes it comes last
-        answer = ask(served, endpoint, row, given, headers)
+        answer = ask(asked, endpoint, row, given, headers)
         if status:
             assert answer.status_code == status, answer.text
         else:
             assert answer.status_code in (200, 201, 422), answer.text
     if not endpoint.startswith("delete") and set(expected) != {404}:  # it is gone, or there was none
-        assert ask(served, endpoint, row, given, world.admin).status_code not in (401, 403, 404)
+        assert ask(asked, endpoint, row, given, world.admin).status_code not in (401, 403, 404)
 
 
 @pytest.mark.parametrize("endpoint", TABLE)
-def test_what_is_private_is_not_there_for_others(endpoint: str, served: TestClient, world: World) -> None:
+def test_what_is_private_is_not_there_for_others(endpoint: str, asked: TestClient, world: World) -> None:
     """The answer about something private is the one about nothing, but for the name in it."""
     row, given, bolt = TABLE[endpoint], places(world, "private"), world.keys[2]
-    answer = ask(served, endpoint, row, given, bolt)
+    answer = ask(asked, endpoint, row, given, bolt)
     size = len(world.jobs["private"])
     nothing = {"part": "mush", "tree": "mush-cell", "job": "0" * size, "sweep": "1" * size}
-    other = ask(served, endpoint, row, nothing, bolt)
+    other = ask(asked, endpoint, row, nothing, bolt)
     if endpoint in ("post /v1/substructures", "post /v1/trees"):  # the name is taken: nothing else is told
         assert (answer.status_code, answer.json()["code"], "acme" in answer.text) == (403, "name-taken", False)
         return
