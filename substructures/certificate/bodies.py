@@ -29,7 +29,7 @@ from substructures.certificate.linear import (
 )
 from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.relations import POSITIONS, Related, is_ball, mover, place_of, rates_of, slope_of
-from substructures.expr.syntax import Step
+from substructures.expr.steps import Step
 
 GROUND = -1
 #: (prismatic, axis of the frame before it) of every one degree of freedom joint in a joint type

@@ -16,7 +16,7 @@ from substructures.certificate.numbers import Numbers, Plain
 from substructures.certificate.states import draws
 from substructures.certificate.texts import Steps, names_of, product
 from substructures.expr.direct import steps_of
-from substructures.expr.syntax import Step
+from substructures.expr.steps import Step
 
 #: fields of loads that are names
 _NAMES = frozenset(("type", "name", "coordinate", "body", "from", "to", "frame", "axes", "along", "title"))
