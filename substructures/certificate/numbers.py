@@ -10,7 +10,7 @@ from flint import arb, ctx, fmpq
 
 from substructures.certificate.linear import Ball, Matrix, vector
 from substructures.expr.direct import ball, steps_of
-from substructures.expr.order import needed_first
+from substructures.expr.steps import needed_first
 
 #: a document as plain data
 Plain = Mapping[str, Any]

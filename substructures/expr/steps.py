@@ -1,8 +1,11 @@
-"""What a read expression consists of: steps in postfix order, tables, and the words that the grammar knows."""
+"""What a read expression consists of: steps in postfix order, tables, the words that the grammar knows; and the order
+in which names are evaluated whose expressions name each other.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
@@ -90,3 +93,23 @@ def measured(name: str) -> tuple[str, str, str] | None:
     """
     found = _MEASURE.fullmatch(name)
     return (found[1], found[2], found[3]) if found else None
+
+
+def needed_first(name: str, named: Callable[[str], Iterable[str]]) -> list[str]:
+    """All that a name needs, itself last, each once and after what it names unless that leads in a circle; however many
+    there are, nothing is nested. ``named``: what the expression of a name names.
+
+    >>> needed_first("a", {"a": "bc", "b": "c", "c": ""}.__getitem__)
+    ['c', 'b', 'a']
+    """
+    order, open_, seen = list[str](), [(name, iter(named(name)))], {name}
+    while open_:
+        last, names = open_[-1]
+        following = next((x for x in names if x not in seen), None)
+        if following is None:
+            order.append(last)
+            open_.pop()
+        else:
+            seen.add(following)
+            open_.append((following, iter(named(following))))
+    return order

@@ -18,8 +18,7 @@ from substructures.array import Array
 from substructures.documents.fields import in_si
 from substructures.expr.direct import ball, steps_of, value
 from substructures.expr.known import Known
-from substructures.expr.order import needed_first
-from substructures.expr.steps import ExpressionError
+from substructures.expr.steps import ExpressionError, needed_first
 from substructures.expr.units.unit_check import Notice
 from substructures.loads.names import names_in
 from substructures.part.definition import Definition

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from substructures.errors import among
 from substructures.expr.graph import Expr
 from substructures.expr.operations import Symbol
-from substructures.expr.order import needed_first
+from substructures.expr.steps import needed_first
 from substructures.loads.friction import TreeFriction, read_friction
 from substructures.loads.names import names_in
 from substructures.loads.scope import Scope
