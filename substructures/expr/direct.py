@@ -16,7 +16,7 @@ from typing import Any
 import flint
 import numpy as np
 
-from substructures.expr import direct_laws
+from substructures.expr.laws import values as law_values
 from substructures.expr.rationals import to_fmpq
 from substructures.expr.steps import ExpressionError, Knots, Step, decimal_number
 from substructures.expr.syntax import read
@@ -37,7 +37,7 @@ BALL_FUNCTIONS: dict[str, Callable[..., Any]] = {
         name: operator.methodcaller(name)
         for name in ("sin", "cos", "tan", "sqrt", "exp", "log", "asin", "acos", "atan")
     },
-    **direct_laws.BALLS,
+    **law_values.BALLS,
 }
 _FLOAT_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "sin": np.sin,
@@ -49,7 +49,7 @@ _FLOAT_FUNCTIONS: dict[str, Callable[..., Any]] = {
     "asin": np.arcsin,
     "acos": np.arccos,
     "atan": np.arctan,
-    **direct_laws.FLOATS,
+    **law_values.FLOATS,
 }
 
 

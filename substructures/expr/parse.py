@@ -7,8 +7,8 @@ from collections.abc import Callable
 from fractions import Fraction
 
 from substructures.errors import TooLarge
-from substructures.expr import laws
 from substructures.expr.graph import Expr, Graph
+from substructures.expr.laws import formulas as laws
 from substructures.expr.steps import LEAVES, ExpressionError, Knots, Step
 from substructures.expr.syntax import read
 from substructures.expr.trigonometry import cos, sin, tan

@@ -14,7 +14,7 @@ from pydantic import Field
 from substructures.documents.fields import DocumentPart, Name, Number
 from substructures.documents.units import Dimension
 from substructures.expr.graph import Expr
-from substructures.expr.laws import tanh
+from substructures.expr.laws.formulas import tanh
 from substructures.expr.units.unit_check import Place
 from substructures.loads.document import CoordinateOfTree, Load, LoadFormulas, OfTree
 from substructures.loads.names import Names

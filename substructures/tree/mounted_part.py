@@ -10,7 +10,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.laws import magnitude, maximum, minimum
+from substructures.expr.laws.formulas import magnitude, maximum, minimum
 from substructures.loads.pairs import Place
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.composite_form import Inertia, JointMomentum

@@ -35,7 +35,7 @@ from substructures.documents.fields import in_si
 from substructures.errors import among
 from substructures.expr.calculus.corners import corners, rates
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.laws import SLOPES
+from substructures.expr.laws.formulas import SLOPES
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Formulas, array
 from substructures.expr.steps import Knots

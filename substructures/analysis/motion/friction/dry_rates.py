@@ -24,7 +24,7 @@ from substructures.compile.kernel import Kernel
 from substructures.compile.machine import BoundCall
 from substructures.compile.motion import CompiledRates, SaddlePoint
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.laws import tanh
+from substructures.expr.laws.formulas import tanh
 from substructures.expr.operations import Symbol
 from substructures.expr.program import Program, array, program
 from substructures.tree.model import Model

@@ -1,0 +1,1 @@
+"""Functions of force laws (abs, min, tanh, step, tables, powers): as formulas, and as values straight from the text."""
