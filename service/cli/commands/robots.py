@@ -100,7 +100,13 @@ def read(
     fixed: Annotated[Fixed, typer.Option(help="What links on fixed joints become.")] = "ports",
     base: Annotated[Base, typer.Option(help="Whether the root moves.")] = "fixed",
     rotations: Annotated[Rotations, typer.Option(help="With what ball and free joints turn.")] = "angles",
-    cut: Annotated[str, typer.Option(metavar="LINK,...", help="Links that begin parts of their own, in a tree.")] = "",
+    cut: Annotated[
+        str,
+        typer.Option(
+            metavar="LINK,...",
+            help="Links that begin parts of their own, in a tree, which waits until they are stored.",
+        ),
+    ] = "",
     license: Annotated[str, typer.Option(help="Licence of the file.")] = "",  # noqa: A002 -- name of the option
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the definition (or tree) to this JSON file.")
