@@ -30,6 +30,12 @@ if TYPE_CHECKING:
 #: an included file or mesh is read when it is in the folder of the file, or below it
 _MOST_BYTES = 64 * 2**20
 _MOST_FILES = 20_000
+Cut = Annotated[
+    str,
+    typer.Option(
+        metavar="LINK,...", help="Links that begin parts of their own, in a tree, which waits until they are stored."
+    ),
+]
 
 
 def read_robot_file(
@@ -100,7 +106,7 @@ def read(
     fixed: Annotated[Fixed, typer.Option(help="What links on fixed joints become.")] = "ports",
     base: Annotated[Base, typer.Option(help="Whether the root moves.")] = "fixed",
     rotations: Annotated[Rotations, typer.Option(help="With what ball and free joints turn.")] = "angles",
-    cut: Annotated[str, typer.Option(metavar="LINK,...", help="Links that begin parts of their own, in a tree.")] = "",
+    cut: Cut = "",
     license: Annotated[str, typer.Option(help="Licence of the file.")] = "",  # noqa: A002 -- name of the option
     out: Annotated[
         Path | None, typer.Option(metavar="FILE", help="Write the definition (or tree) to this JSON file.")
