@@ -286,6 +286,14 @@ def test_velocities_that_were_given_and_fail_on_the_way_are_named() -> None:
     assert motion.message.startswith("the velocities s.x', s.h' describe the motion badly where -cos(h) is near zero")
 
 
+def test_where_they_fail_is_printed_when_it_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    """For people: to lay out the determinant took longer than the equations of a bicycle."""
+    equations = quasi_velocity_equations(sleigh(), [BLADE], independent=["s.x", "s.f"])
+    assert equations.singular == "-cos(f)"
+    monkeypatch.setattr("substructures.printers.render.readable", None)
+    assert turning_sleigh(qd=[1, 0, 0]).is_right
+
+
 @pytest.mark.parametrize("form", ["voronets", "boltzmann-hamel"])
 def test_a_ball_on_a_table_that_turns(form: str) -> None:
     """Its centre goes round at 2/7 of the table's rate, for a homogeneous ball on any circle (R. H. Romer, Motion of a

@@ -34,7 +34,7 @@ def members_of(found: QuasiVelocities) -> dict[str, Any]:
     """What the axes of formulas in quasi-velocities are, with a warning where these do not describe the motion."""
     names = {"velocities": found.velocities, "constraints": found.constraints, "gaps": found.gaps}
     members: dict[str, Any] = {name: list(value) for name, value in (names | {"dependent": found.dependent}).items()}
-    if found.singular:
+    if found.determinant is not None:
         called = ", ".join(found.velocities)
         message = f"the velocities {called} do not describe the motion where {found.singular} is zero, nor do formulas"
         advice = "give 'velocities' that always do, or 'independent' ones for where the motion is"

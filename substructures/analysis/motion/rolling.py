@@ -96,7 +96,7 @@ def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | Non
     given = problem.kind.velocities is not None or problem.kind.independent is not None
     is_moving = "t" in equations.program.needs(["constraints"])  # rows of frames that are driven
     cornered = has_corners(equations.program) or has_corners(conditions.expressions)
-    if given or is_moving or cornered or not equations.singular:
+    if given or is_moving or cornered or equations.determinant is None:
         return VelocityChoices(rolling, None)
 
     def make(chosen: Sequence[str]) -> ReducedMotion:
@@ -199,7 +199,7 @@ def _places(equations: QuasiVelocities) -> NDArray[np.int64]:
 def _message(choices: VelocityChoices, motion: IntegratedMotion, t: Array, q: Array) -> str:
     """That of the motion; or that velocities that were kept do not describe it somewhere on the way."""
     equations = choices.first.equations
-    if motion.message or choices.make is not None or not equations.singular or not len(q):
+    if motion.message or choices.make is not None or equations.determinant is None or not len(q):
         return motion.message
     values = choices.first.conditions.values | dict(zip(equations.model.coordinates, q.T, strict=True)) | {"t": t}
     size = np.abs(interpret_in_blocks(equations.program, values, ["T"], len(q))["T"]).max(axis=(1, 2), initial=0)

@@ -16,8 +16,7 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
 )
 from substructures.errors import InvalidArgument, among
 from substructures.expr.interpret import interpret
-from substructures.expr.program import Symbol, array, program
-from substructures.printers.render import write
+from substructures.expr.program import Program, Symbol, array, program
 from substructures.quantities.numbers.workspace import Workspace
 
 #: positions in which a determinant is looked at
@@ -66,23 +65,19 @@ def quasi_velocity_rows(
     return names, own
 
 
-def vanishing(f: Workspace, rows: MatrixRows) -> str:
-    """Of quasi-velocities and constraints (n, n) the determinant as text, where it has both signs: between them it is
-    zero, and the quasi-velocities do not describe the motion there. Empty where it has one.
+def vanishing(f: Workspace, rows: MatrixRows) -> Program | None:
+    """Of quasi-velocities and constraints (n, n) the ``determinant``, where it has both signs: between them it is
+    zero, and the quasi-velocities do not describe the motion there. None where it has one.
     """
     if not rows:
-        return ""
+        return None
     det = determinant(rows)
     source = program(f.graph, {"determinant": array((), lambda: det)}, f.symbols)
     rng = np.random.default_rng(3)
     values = {s.name: rng.uniform(0.3, 1.1, PLACES) for s in source.symbols}
     values |= {name: rng.uniform(-np.pi, np.pi, PLACES) for name in f.model.coordinates if name in values}
     found = interpret(source, values)["determinant"]
-    if not (found.min() < 0 < found.max()):
-        return ""
-    return (
-        write(source, "text", "readable").partition("determinant = ")[2].strip() or "the determinant of the velocities"
-    )
+    return source if found.min() < 0 < found.max() else None
 
 
 def _chosen(f: Workspace, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:

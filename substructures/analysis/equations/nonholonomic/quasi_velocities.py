@@ -36,6 +36,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.nonholonomic.expected import quasi_expected
@@ -52,6 +53,7 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.graph import Expr
 from substructures.expr.program import Program, array, program
+from substructures.printers.render import write
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.workspace import Workspace
@@ -62,8 +64,8 @@ from substructures.tree.model import KINEMATICS, Model
 @dataclass(frozen=True)
 class QuasiVelocities:
     """The equations (the table above) with names: quasi-velocities v, constraint rows, gaps; rows left out because
-    they follow from others (``dependent``). ``singular``: where this formula is zero they do not describe the motion;
-    empty where none is known.
+    they follow from others (``dependent``). Where the ``determinant`` is zero they do not describe the motion; None
+    where no such place is known.
     """
 
     model: Model
@@ -72,7 +74,15 @@ class QuasiVelocities:
     constraints: tuple[str, ...]
     gaps: tuple[str, ...]
     dependent: tuple[str, ...]
-    singular: str = ""
+    determinant: Program | None = None
+
+    @cached_property
+    def singular(self) -> str:
+        """The determinant as text, printed when it is told; empty where there is none."""
+        if self.determinant is None:
+            return ""
+        text = write(self.determinant, "text", "readable").partition("determinant = ")[2].strip()
+        return text or "the determinant of the velocities"
 
     def __repr__(self) -> str:
         return (
