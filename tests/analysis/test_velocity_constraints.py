@@ -58,6 +58,14 @@ def test_formulas_print_in_every_format() -> None:
         assert len(render(equations.program, language, interface=interface)) > 500
 
 
+def test_equations_are_formed_once_however_their_constraints_are_written() -> None:
+    first, again = (
+        quasi_velocity_equations(disc(), [Rolling("floor", "s.disc", "s.r", normal=normal)])  # type: ignore[arg-type]
+        for normal in ((0, 0, 1), [0, 0, 1])
+    )
+    assert again.program is first.program
+
+
 def test_rolling_disc() -> None:
     """Euler's equations about the line of nodes, with w3 = ph' + psi' cos th (O. M. O'Reilly, Nonlinear Dynamics 10,
     1996; Neimark and Fufaev 1972):

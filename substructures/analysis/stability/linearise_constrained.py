@@ -22,9 +22,9 @@ from numpy.typing import NDArray
 
 from substructures.analysis.equations.formulas import inputs_of
 from substructures.analysis.equations.meetings import with_sides
-from substructures.analysis.equations.nonholonomic.linearised import Choice, linearised
+from substructures.analysis.equations.nonholonomic.linearised import linearised
 from substructures.analysis.equations.nonholonomic.positions import start_velocities
-from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities
+from substructures.analysis.equations.nonholonomic.quasi_velocities import Choice, QuasiVelocities
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, require_constrained
 from substructures.analysis.stability.linearisation_result import ConstrainedLinearisation
 from substructures.analysis.stability.operating_point import OperatingPoint, fault_of

@@ -11,7 +11,11 @@ from __future__ import annotations
 from functools import lru_cache
 
 from substructures.analysis.equations.formulas import inputs_of
-from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
+from substructures.analysis.equations.nonholonomic.quasi_velocities import (
+    Choice,
+    QuasiVelocities,
+    quasi_velocity_equations,
+)
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.certificate.derived.perturbed import constrained
@@ -26,9 +30,6 @@ from substructures.tree.document import require_undriven
 from substructures.tree.model import Model
 
 EQUATIONS = ("metric", "bias", "forces", "rates", "T")
-
-#: velocities and coordinates as they are given, and a place, by name
-Choice = tuple[tuple[tuple[str, str], ...] | None, tuple[str, ...] | None, tuple[tuple[str, float], ...] | None]
 
 
 def linearised(model: Model, constraints: tuple[Constraint, ...], choice: Choice) -> tuple[QuasiVelocities, Program]:

@@ -35,8 +35,8 @@ gaps                  k      constant [m, 1]: distances of rolling bodies from p
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 
 from substructures.analysis.equations.cofactors import inverse
 from substructures.analysis.equations.nonholonomic.expected import quasi_expected
@@ -52,13 +52,18 @@ from substructures.analysis.equations.nonholonomic.velocity_constraints import (
 )
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.graph import Expr
+from substructures.expr.known import Known
 from substructures.expr.program import Program, array, program
 from substructures.printers.render import write
 from substructures.quantities.certificate import DYNAMICS as CERTIFIED
 from substructures.quantities.certificate import certified
+from substructures.quantities.numbers.memo import known_model
 from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.document import require_undriven, require_unignored
 from substructures.tree.model import KINEMATICS, Model
+
+#: of quasi-velocities by name, or of independent coordinates, near values of coordinates and parameters
+Choice = tuple[tuple[tuple[str, str], ...] | None, tuple[str, ...] | None, tuple[tuple[str, float], ...] | None]
 
 
 @dataclass(frozen=True)
@@ -117,6 +122,17 @@ def quasi_velocity_equations(
     is_free = velocities is None and independent is None and near is None
     if is_free and all(isinstance(each, Closed) for each in constraints):
         independent = model.reduction.independent or None
+    named = None if velocities is None else tuple(velocities.items())
+    chosen = None if independent is None else tuple(independent)
+    found = _equations(known_model(model), constraints, (named, chosen, None if near is None else tuple(near.items())))
+    return replace(found, model=model)
+
+
+@lru_cache(maxsize=32)
+def _equations(known: Known, constraints: tuple[Constraint, ...], choice: Choice) -> QuasiVelocities:
+    model: Model = known.source
+    named, independent, place = choice
+    velocities, near = None if named is None else dict(named), None if place is None else dict(place)
     f = Workspace(model)
     rows, dependent = independent_rows(f, constraints)
     names, own = quasi_velocity_rows(f, rows, velocities, independent, near)

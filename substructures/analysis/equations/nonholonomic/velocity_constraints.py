@@ -78,6 +78,7 @@ class Rolling:
 
     def __post_init__(self) -> None:
         one_of(self.shape, "shape", SHAPES)
+        object.__setattr__(self, "normal", tuple(self.normal))
 
 
 @dataclass(frozen=True)
