@@ -37,6 +37,13 @@ OPEN = """async (root) => {
         return view.camera.pixel(view.middle);
     };
     window.seen = () => view.camera.seen.position.toArray();
+    window.corners = () => {
+        const { min, max } = view.box();
+        const all = [0, 1, 2, 3, 4, 5, 6, 7].map((k) =>
+            min.clone().set(...["x", "y", "z"].map((axis, i) => (k & (1 << i) ? max : min)[axis])),
+        );
+        return all.map((corner) => view.camera.pixel(corner));
+    };
 }"""
 
 
@@ -65,6 +72,21 @@ def test_the_ghost_follows_the_pointer(browser: Any, address: str) -> None:
     mouse.up()
     assert tab.page.evaluate("told") == told, "beside the shade nothing is dragged"
     assert tab.page.evaluate("seen()") != seen
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+@pytest.mark.parametrize("style", ["", "width: 90px; aspect-ratio: 0.3", "aspect-ratio: 4"])
+def test_all_is_within_the_picture(browser: Any, address: str, style: str) -> None:
+    tab = Tab(browser, address, "/trees/cell@2")
+    tab.until(READY)
+    script = tab.page.get_attribute("script[type=module]", "src")
+    tab.page.evaluate("style => document.getElementById('view').style = style", style)
+    tab.page.evaluate(OPEN, script.rpartition("/")[0] + "/")
+    width, height = tab.page.evaluate("['clientWidth', 'clientHeight'].map((x) => document.querySelector('#view')[x])")
+    corners = tab.page.evaluate("corners()")
+    assert all(0 <= x <= width and 0 <= y <= height for x, y in corners), (corners, width, height)
     tab.close()
 
 

@@ -12,6 +12,8 @@ from substructures.array import Array
 
 #: from this many coordinates on cells are too small for numbers
 SMALL = 12
+#: up to this many columns their names have room
+FEW = 4
 #: where the pose goes in addresses of entries; no text holds it, since it would be taken out
 POSE = "\0"
 ZERO = "zero in every pose; choose it to read why"
@@ -59,7 +61,7 @@ def grid(shown: Shown, quantity: str, slice_: int, numbers: Array | None) -> Htm
             value = None if numbers is None else float(numbers[index])
             cells.append(write(index, index in there, at, value))
         body.append(tag("tr", tag("th", _short(row, is_small, i), scope="row", title=row), Html("".join(cells))))
-    kind = "grid small" if is_small else "grid"
+    kind = "grid small" if is_small else "grid few" if len(columns) <= FEW else "grid"
     drawn = tag("table", tag("thead", head), tag("tbody", body), class_=kind, data_quantity=quantity)
     return tag(
         "div", chooser, tag("div", drawn, class_="scroll", tabindex="0", role="group", aria_label=quantity), id="grid"

@@ -15,9 +15,12 @@ export class Camera {
         canvas.addEventListener("keydown", (event) => this.turn(event));
     }
 
+    /** The sphere about a box touches the edges of the picture, be it wide or tall. */
     fit(box, size) {
         const middle = box.getCenter(new THREE.Vector3());
-        const distance = (0.5 * size) / Math.tan((this.seen.fov * Math.PI) / 360);
+        const { clientWidth: width, clientHeight: height } = this.canvas;
+        const half = Math.atan(Math.tan((this.seen.fov * Math.PI) / 360) * Math.min(1, width / height || 1));
+        const distance = (0.5 * size) / Math.sin(half);
         this.seen.position.copy(middle).addScaledVector(new THREE.Vector3(1, -1.4, 0.8).normalize(), distance);
         this.seen.near = distance / 100;
         this.seen.far = distance * 100;
