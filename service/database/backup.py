@@ -8,7 +8,7 @@ from contextlib import closing
 from pathlib import Path
 
 from service.database.connections import Database, DatabaseError, normalised
-from service.database.file import PRIVATE, Claim
+from service.database.file import PRIVATE, Claim, reading, require_store
 
 HEADER = b"SQLite format 3\x00"
 
@@ -25,9 +25,10 @@ def backup(address: str, target: Path) -> int:
         raise DatabaseError(f"{target} exists; choose another name")
     if not source.exists():
         raise DatabaseError(f"there is no database {source}")
+    require_store(source)
     part = _new(target)
     try:
-        with closing(_reader(source)) as connection, closing(sqlite3.connect(part)) as copy:
+        with closing(reading(source)) as connection, closing(sqlite3.connect(part)) as copy:
             connection.backup(copy)  # one step: one state, whatever is written meanwhile
             copy.execute("PRAGMA journal_mode=DELETE")
             _check(copy, part)
@@ -58,7 +59,7 @@ def restore(source: Path, address: str, overwrite: bool = False) -> None:
         target = claim.path  # not a link to it
         part = _new(target)
         try:
-            with closing(_reader(source)) as connection, closing(sqlite3.connect(part)) as copy:
+            with closing(reading(source)) as connection, closing(sqlite3.connect(part)) as copy:
                 connection.backup(copy)
             _sync(part)
             for leftover in ("-wal", "-shm"):  # of the store that is replaced
@@ -75,7 +76,7 @@ def _check_backup(source: Path) -> None:
     if not _is_sqlite(source):
         raise DatabaseError(f"{source} is no backup")
     try:
-        with closing(_reader(source)) as connection:
+        with closing(reading(source)) as connection:
             _check(connection, source)
     except sqlite3.Error as error:
         raise DatabaseError(f"{source} is no usable backup: {error}") from None
@@ -95,10 +96,6 @@ def _is_sqlite(path: Path) -> bool:
         return file.read(len(HEADER)) == HEADER
 
 
-def _reader(path: Path) -> sqlite3.Connection:
-    return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=60)
-
-
 def _check(connection: sqlite3.Connection, path: Path) -> None:
     found = [row[0] for row in connection.execute("PRAGMA integrity_check(3)")]
     dangling = connection.execute("PRAGMA foreign_key_check").fetchall()
@@ -108,10 +105,17 @@ def _check(connection: sqlite3.Connection, path: Path) -> None:
 
 
 def _new(target: Path) -> Path:
-    """A new file beside the target that only its owner can read; what takes its name has been complete."""
+    """A new file beside the target that only its owner can read; what takes its name has been complete.
+
+    Raises DatabaseError where there can be none.
+    """
     part = target.with_name(target.name + ".part")
-    part.unlink(missing_ok=True)
-    os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, PRIVATE))
+    try:
+        part.unlink(missing_ok=True)
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, PRIVATE))
+    except OSError as error:
+        how = f"a folder {target.absolute().parent} is needed in which this user may write"
+        raise DatabaseError(f"cannot write {target}: {error.strerror}; {how}") from None
     return part
 
 

@@ -15,7 +15,7 @@ from sqlalchemy.engine import URL, make_url
 from sqlalchemy.exc import ArgumentError, DBAPIError
 
 from service.database.clock import set_by
-from service.database.file import Claim, DatabaseError, Watch
+from service.database.file import Claim, DatabaseError, Watch, require_store
 from service.database.schema import is_newest
 from service.database.seals import KEY, key_beside, key_in
 
@@ -41,13 +41,15 @@ class Database:
         descriptor of a claim that another of its processes has made, known as ``self.claim`` here. ``seal_key``: the
         file of the key of its seals, if not that beside an SQLite file. Raises DatabaseError when there is no database
         or key, when another server holds it, when it is damaged, when it does not answer and for an unknown kind of
-        URL, MigrationError for one of a newer version.
+        URL or file, MigrationError for a store of a newer version.
         """
         self.url = normalised(address)
         self.claim: int | None = None
         self._watch: Watch | None = None
         with ExitStack() as opened:
-            if not exclusive and self.is_sqlite and not self.file.exists():
+            if self.is_sqlite and self.file.exists():
+                require_store(self.file)
+            elif self.is_sqlite and not exclusive:
                 raise DatabaseError(f"there is no database {self.file}; 'substructures serve' makes one")
             if exclusive and self.is_sqlite:
                 claimed = opened.enter_context(closing(Claim(self.file, claim)))

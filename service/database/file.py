@@ -24,6 +24,32 @@ class DatabaseError(Exception):
     """A database that cannot be used; the message says which and why."""
 
 
+def reading(path: Path) -> sqlite3.Connection:
+    """A connection that changes nothing."""
+    return sqlite3.connect(f"{path.absolute().as_uri()}?mode=ro", uri=True, timeout=60)
+
+
+def require_store(path: Path) -> None:
+    """Before anything is made beside a file: that it is a store, or empty, to become one. Raises DatabaseError.
+
+    What is damaged is told by :class:`Watch`.
+    """
+    if path.is_dir():
+        raise DatabaseError(f"{path} is a folder; name the file of a store")
+    try:
+        with closing(reading(path)) as connection:
+            tables = {row[0] for row in connection.execute("SELECT name FROM sqlite_schema WHERE type = 'table'")}
+    except sqlite3.Error as error:
+        if _is_corrupt(error):
+            return
+        how = "name the file of a store"
+        if error.sqlite_errorcode != sqlite3.SQLITE_NOTADB:
+            how = "its user has to be allowed to read the file, and to write to its folder"
+        raise DatabaseError(f"cannot use {path}: {error}; {how}") from None
+    if tables and "alembic_version" not in tables:
+        raise DatabaseError(f"{path} is a database of something else; name the file of a store")
+
+
 class Claim:
     """The right to write to a file, by its inode: other names of it, and links to it, are the same file.
 

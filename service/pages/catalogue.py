@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 import orjson
 
@@ -42,7 +42,7 @@ def page(found: Found, address: str, with_key: bool, may_write: bool, refused: i
             EQUATION,
             " of the whole, as formulas or as numbers, with any parameters left open.",
         ),
-        _search(found),
+        search_form(found.query),
         results(found),
         *(_bring(address, may_write) if is_first else ()),
         *(_example(found.parts.items, address, with_key) if is_first else ()),
@@ -59,19 +59,20 @@ def _refused(count: int) -> Html:
     return tag("p", told, ": ", link("which, and why", "/v1/folder"), class_="warn")
 
 
-def _search(found: Found) -> Html:
+def search_form(query: Mapping[str, str]) -> Html:
+    """Words and order of a search, as the address has them."""
     label = "Name, title, tag or words of the description"
     box = tag(
         "input",
         id="filter",
         type="search",
         name="q",
-        value=found.query.get("q", ""),
+        value=query.get("q", ""),
         placeholder=label,
         aria_label=label,
         autocomplete="off",
     )
-    now = found.query.get("sort", "")
+    now = query.get("sort", "")
     options = [
         tag("option", told, value=sort, selected="selected" if sort == now else None) for sort, told in SORTS.items()
     ]

@@ -8,6 +8,7 @@ from typing import Any
 
 import orjson
 
+from service.pages.catalogue import search_form
 from service.pages.html import Html, html, link, tag
 from service.pages.layout import HEADERS, document
 
@@ -24,6 +25,7 @@ def error_page(problem: Mapping[str, Any]) -> tuple[bytes, Mapping[str, str]]:
         f"{problem['status']} - substructures",
         tag("h1", f"{problem['title']}"),
         tag("p", _linked(told, where, shelf.group(1)) if shelf else told),
+        search_form({}) if where == "/" else Html(),
         tag("p", link("All parts", "/"), " · ", link("All trees", "/trees"), " · ", link("Jobs", "/jobs")),
         tag(
             "details",
@@ -31,6 +33,7 @@ def error_page(problem: Mapping[str, Any]) -> tuple[bytes, Mapping[str, str]]:
             tag("pre", tag("code", orjson.dumps(dict(problem), option=orjson.OPT_INDENT_2).decode()), tabindex="0"),
         ),
         tag("p", f"Request {problem.get('request_id', '')}", class_="quiet small"),
+        search=where != "/",
     )
     return page, HEADERS
 

@@ -38,9 +38,12 @@ from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
 from service.queries.trees import Tree
 from service.views.jobs import job_path
+from substructures.documents.faults import PATTERNS
 
 Filter = Annotated[str, Query(max_length=500)]
 To = Annotated[str, Query(min_length=1, max_length=160)]
+DOF = "^[0-9]{0,6}$"
+PATTERNS[DOF] = lambda _: "a whole number of degrees of freedom is needed, as in 6"
 ADVICE = "compare smaller ones"
 CARDS, TREES, JOBS, BAD = 60, 100, 100, 50
 NONE: searches.Page[Tree] = searches.Page([], None)
@@ -54,7 +57,7 @@ def first_page(
     store: StoreOf,
     viewer: ViewerOf,
     q: Annotated[str, Query(max_length=200)] = "",
-    dof: Annotated[str, Query(pattern="^[0-9]{0,6}$")] = "",
+    dof: Annotated[str, Query(pattern=DOF)] = "",
     joints: Annotated[str, Query(pattern="^[RPrp]*$", max_length=1000)] = "",
     tag: Annotated[str, Query(max_length=64)] = "",
     owner: Annotated[str, Query(max_length=64)] = "",

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import os
+import pwd
 import sqlite3
 import threading
-from contextlib import closing
+from collections.abc import Iterator
+from contextlib import closing, contextmanager
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import pytest
 from fastapi.testclient import TestClient
@@ -13,7 +17,7 @@ from fastapi.testclient import TestClient
 from service.app import open_store
 from service.cli.main import main
 from service.database.backup import backup, restore
-from service.database.connections import DatabaseError
+from service.database.connections import Database, DatabaseError
 from service.settings import Settings
 
 from .conftest import PENDULUM, TREE, make_client
@@ -78,6 +82,36 @@ def test_nothing_is_overwritten_unasked(tmp_path: Path) -> None:
         with pytest.raises(DatabaseError, match=words):
             restore(tmp_path / name, other)
     assert not list(tmp_path.glob("b.db*"))
+
+
+@contextmanager
+def _as_anybody() -> Iterator[Path]:
+    """A folder that all may read and write, for a user without rights where this one has all of them."""
+    with TemporaryDirectory() as folder:
+        Path(folder).chmod(0o777)
+        was = os.geteuid()
+        if not was:
+            os.seteuid(pwd.getpwnam("nobody").pw_uid)
+        try:
+            yield Path(folder)
+        finally:
+            os.seteuid(was)
+
+
+def test_what_may_not_be_read_or_written_is_named() -> None:
+    with _as_anybody() as folder:
+        path, shut = folder / "a.db", folder / "shut"
+        Database(f"sqlite:///{path}").close()
+        shut.mkdir(0o500)
+        for target in (shut / "copy", folder / "none" / "copy"):
+            with pytest.raises(DatabaseError, match=rf"cannot write {target}: .*a folder {target.parent} is needed"):
+                backup(f"sqlite:///{path}", target)
+        path.chmod(0)
+        with pytest.raises(DatabaseError, match=rf"cannot use {path}: .*allowed to read the file, and to write"):
+            backup(f"sqlite:///{path}", folder / "copy")
+        with pytest.raises(DatabaseError, match=rf"{shut} is a folder"):
+            backup(f"sqlite:///{shut}", folder / "copy")
+        assert not (folder / "copy").exists()
 
 
 def test_commands(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

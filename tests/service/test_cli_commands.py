@@ -5,7 +5,9 @@ from __future__ import annotations
 import json
 import re
 import socket
+import sqlite3
 from collections.abc import Iterator
+from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -352,6 +354,22 @@ def test_what_reads_a_store_makes_none(run: Runner, words: tuple[str, ...], tmp_
     assert "there is no database" in told
     assert "substructures serve" in told
     assert not list(tmp_path.glob("typo*"))
+
+
+@pytest.mark.parametrize("words", ["key list", "key create", "verify", "upgrade", "doctor", "list", "backup COPY"])
+def test_what_is_no_store_stays_as_it_is(run: Runner, words: str, tmp_path: Path) -> None:
+    notes, other = tmp_path / "notes.txt", tmp_path / "other.db"
+    notes.write_text("of somebody")
+    with closing(sqlite3.connect(other)) as connection:
+        connection.execute("CREATE TABLE bookmarks (url)")
+    before = {path: (path.read_bytes(), path.stat().st_mode) for path in (notes, other)}
+    given = words.replace("COPY", str(tmp_path / "copy")).split()
+    for path, fault in ((notes, "file is not a database"), (other, "is a database of something else")):
+        assert main([*given, "--database", f"sqlite:///{path}"]) == 1
+        told = " ".join("".join(run.capsys.readouterr()).split())
+        assert fault in told
+        assert "name the file of a store" in told
+    assert {path: (path.read_bytes(), path.stat().st_mode) for path in tmp_path.iterdir() if path.is_file()} == before
 
 
 def test_a_store_that_is_begun_with_a_key_is_private(run: Runner, tmp_path: Path) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import tomllib
 from pathlib import Path
 from typing import get_args
 
@@ -35,6 +36,16 @@ def test_help_imports_nothing_heavy(capfd: pytest.CaptureFixture[str]) -> None:
     assert all(command.name in out for command in COMMANDS)
     assert "typer" in err.split()
     assert not HEAVY & set(err.split())
+
+
+def test_an_interrupt_while_it_starts_is_no_traceback(tmp_path: Path) -> None:
+    (tmp_path / "typer.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGINT)\n")
+    project = tomllib.loads((Path(__file__).parents[2] / "pyproject.toml").read_text())["project"]
+    module, name = project["scripts"]["substructures"].split(":")
+    path = os.pathsep.join([str(tmp_path), *sys.path])
+    command = [sys.executable, "-c", f"import sys\nfrom {module} import {name}\nsys.exit({name}())", "list"]
+    done = subprocess.run(command, env={**os.environ, "PYTHONPATH": path}, capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "")
 
 
 def test_a_server_starts_without_what_few_requests_need() -> None:

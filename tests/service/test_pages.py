@@ -348,6 +348,8 @@ def test_browsers_are_told_what_is_wrong_as_a_page(filled: TestClient) -> None:
         ("/nowhere", 404, "nothing at this path"),
         ("/trees/cell@9", 404, "cell@9"),
         ("/?colour=red", 422, "unknown query parameter"),
+        ("/?dof=abc", 422, '/query/dof: a whole number of degrees of freedom is needed, as in 6, found "abc"'),
+        ("/?joints=x", 422, "joints are R (revolute) and P (prismatic) in order"),
     ):
         answer = filled.get(path, headers=browser)
         assert (answer.status_code, answer.headers["content-type"]) == (status, "text/html; charset=utf-8"), path
@@ -355,6 +357,7 @@ def test_browsers_are_told_what_is_wrong_as_a_page(filled: TestClient) -> None:
         assert "content-security-policy" in answer.headers
         assert filled.get(path, headers={"Accept": "application/json"}).json()["status"] == status
     assert "/substructures/pendulum" in Page(filled.get("/substructures/pendulom", headers=browser).text).links
+    assert 'action="/" class="bar" id="search"' in filled.get("/?dof=abc", headers=browser).text
     hostile = Page(filled.get("/substructures/<script>alert(1)", headers=browser).text)
     assert "alert(1)" in hostile.text
     assert filled.get("/v1/trees/none", headers=browser).json()["code"] == "unknown-tree"
