@@ -12,6 +12,7 @@ from closed_trees import at, bricard, four_bar, governor, slider_crank, stewart,
 from random_trees import Plain
 
 from substructures import InvalidDocument, InvalidInput, Model, TreeSpec, catalogue
+from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
@@ -51,6 +52,30 @@ def test_accelerations_are_those_of_the_loops(make: Callable[[], Model]) -> None
     np.testing.assert_allclose(answer[FD], expected, rtol=0, atol=1e-8 * scale)
     one = accelerations(model, q[1], qd[1], inputs=inputs)[FD]
     np.testing.assert_allclose(one, expected[1], rtol=0, atol=1e-8 * scale)
+
+
+def test_forces_are_not_judged_beside_moments(monkeypatch: pytest.MonkeyPatch) -> None:
+    """1 mN on a rail beside 1 GN m on a loop: a wrong acceleration on the rail is found."""
+    mass = {"name": "mass", "parent": "base", "joint": {"type": "prismatic", "coordinate": "x"}, "mass": 1}
+    instances = [{"name": "loop", "substructure": "four-bar"}, {"name": "light", "substructure": "rail"}]
+    closures = [{"name": "c", "type": "pin", "from": "loop.coupler_end", "to": "loop.rocker_end"}]
+    definitions = {"four-bar": catalogue.load("four-bar"), "rail": {"name": "rail", "bodies": [mass]}}
+    model = tree_model({"instances": instances, "closures": closures}, definitions)
+    forces = {"tau.loop.crank": 1e9, "tau.light.x": 1e-3}
+    request: Any = {"q": [0.7, 0.2, 1.2, 0.0], "inputs": forces}
+    assert loop_state(model, **request).is_right
+    right = Constrained.accelerations
+    wrong = {"light.x": 2.0}
+
+    def accelerations(s: Constrained, rows: Any) -> Any:
+        qdd, multipliers = right(s, rows)
+        return qdd * [wrong.get(name, 1.0) for name in model.coordinates], multipliers
+
+    monkeypatch.setattr(Constrained, "accelerations", accelerations)
+    found = loop_state(model, **request)
+    assert found.is_right is False
+    (check,) = (check for check in found.checks if not check.holds)
+    assert (check.name, check.unit, check.worst) == ("equations of motion", "N", pytest.approx(1e-3))
 
 
 def test_open_and_singular_states_have_no_accelerations() -> None:

@@ -101,6 +101,29 @@ def test_m_before_anything_is_stored(
 
 @in_browser
 @pytest.mark.deep
+def test_what_was_not_answered_is_asked_for_again(browser: Any, address: str, filled: TestClient) -> None:
+    socket = [{**PENDULUM["ports"][0], "interface": "wide"}]
+    for each in ({"name": "socket", "ports": socket}, {"name": "plug", "mount": {"interface": "narrow"}}):
+        assert filled.post("/v1/substructures", json={**PENDULUM, **each}).status_code == 201
+    tree = {"name": "lost", "instances": [{"name": "arm", "substructure": "socket"}]}
+    assert filled.post("/v1/trees", json=tree).status_code == 201
+    tab = Tab(browser, address, "/trees/lost/edit")
+    tab.until(READY)
+    lost = "**/v1/substructures/plug/{}"
+    for what in ("program.wasm?quantities=*", "definition"):
+        tab.page.route(lost.format(what), lambda route: route.fulfill(status=503, body="{}"), times=1)
+    for name, text in (("substructure", "plug"), ("name", "hand"), ("at", "arm.tip")):
+        tab.page.fill(f"[data-action=couplings] [name={name}]", text)
+    tab.until("document.getElementById('told').textContent.includes('503')")
+    tab.page.fill("[data-action=couplings] [name=x]", "0.1")
+    tab.until("document.querySelectorAll('#ahead tbody tr').length === 2")
+    assert "plug is made for a 'narrow'" in tab.page.inner_text("#ahead")
+    tab.wrong = [each for each in tab.wrong if "503" not in each]  # the browser notes answers that are no success
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_m_follows_while_a_part_is_dragged(browser: Any, address: str, filled: TestClient, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit?substructure=pendulum")
     tab.until(READY)

@@ -103,6 +103,38 @@ def test_a_motion_with_inputs_events_and_reactions(browser: Any, address: str, t
 
 
 @in_browser
+@pytest.mark.deep
+def test_a_motion_begins_in_the_state_of_the_page_before(browser: Any, address: str, trees: TestClient) -> None:
+    tab = Tab(browser, address, "/trees/swing@1")
+    tab.until(PLACE.format("view"))
+    tab.page.fill("[data-number='0']", "0.4")
+    tab.page.fill("[data-rate='0']", "0.5")
+    tab.page.click(".parameters summary")
+    tab.page.fill("[aria-label='arm.l']", "2")
+    tab.page.press("[aria-label='arm.l']", "Enter")
+    tab.until("location.search.includes('0.4') && location.search.includes('0.5') && location.search.includes('arm.l')")
+    tab.page.click("text=Simulate")
+    tab.until(PLACE.format("ready"))
+    tab.page.click("#run")
+    request = ran(tab)
+    assert (request["q"], request["qd"], request["parameters"]) == ([0.4], [0.5], {"arm.l": 2})
+    told = computed(trees, "swing@1", request)
+    assert told["checks"] != computed(trees, "swing@1", {**request, "parameters": {}})["checks"]
+    tab.page.click("#linearise")
+    tab.until("document.getElementById('modes').textContent.includes('does not rest')")
+    tab.page.click("#modes button")
+    tab.until("document.querySelector('#modes table')")
+    upright = {"q": [np.pi / 2], "parameters": request["parameters"]}
+    modes = trees.post("/v1/trees/swing@1/linearisations", json=upright).json()["modes"]
+    assert all(f"{abs(mode['eigenvalue'][0]):.2f}" in tab.page.inner_text("#modes") for mode in modes)
+    tab.page.click(".crumbs a >> nth=1")
+    tab.until(PLACE.format("view"))
+    assert tab.page.input_value("[aria-label='arm.l']") == "2"
+    assert tab.page.input_value("[data-rate='0']") == "0.5"
+    tab.close()
+
+
+@in_browser
 def test_the_cursor_of_plots_is_the_pose(browser: Any, address: str, trees: TestClient) -> None:
     tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=0")
     request = ran(tab)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from service.pages.html import Html, tag
 from service.pages.layout import document
-from service.pages.model.place import model_data, sliders, view
+from service.pages.model.place import model_data, parameters, sliders, view
 from service.pages.model.shown import Shown
 
 NO_SCRIPT = "Motions are played by a script; without one the interface computes them: "
@@ -19,7 +19,7 @@ def motion_page(shown: Shown, picture: str) -> bytes:
     api = f"/v1/trees/{shown.reference}/simulations"
     few = len(shown.coordinates) <= MANY
     start = tag("details", tag("summary", "Start"), sliders(shown), open="open" if few else None, id="start")
-    left = tag("div", view(shown, picture), _player(), start, class_="left")
+    left = tag("div", view(shown, picture), _player(), start, parameters(shown), class_="left")
     saves = [tag("button", name, type="button", class_="copy", data_media=media) for name, media in SAVES.items()]
     right = tag(
         "div",

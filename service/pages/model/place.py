@@ -19,7 +19,7 @@ def formulas(shown: Shown, quantity: str, drawn: Html) -> Html:
     parameters.
     """
     entries = tag("div", tabs(shown, quantity), drawn, class_="formulas")
-    return tag("div", entries, NONE_CHOSEN, _parameters(shown), class_="right", id="formulas")
+    return tag("div", entries, NONE_CHOSEN, parameters(shown), class_="right", id="formulas")
 
 
 def state(shown: Shown, picture: str) -> Html:
@@ -86,7 +86,8 @@ def _slider(shown: Shown, k: int, name: str, value: float) -> Html:
     )
 
 
-def _parameters(shown: Shown) -> Html:
+def parameters(shown: Shown) -> Html:
+    """A table of parameters to be changed; nothing where there are none."""
     vector = shown.interface.vectors["p"]
     rows = [
         tag(

@@ -56,6 +56,8 @@ from substructures.part.part import Part
 from substructures.tree.model import Model
 
 Time = Annotated[str, Query(alias="t", max_length=40)]
+Rates = Annotated[str, Query(alias="qd", max_length=50_000)]
+Changed = Annotated[str, Query(alias="set", max_length=50_000)]
 Fields = Annotated[str, Query(alias="run", max_length=50_000)]
 #: revisions that a newer one is like after undo, and as far as can be done again; read by scripts
 Like = Annotated[int, Query(alias="of", ge=0)]
@@ -120,10 +122,12 @@ def motion(
     store: StoreOf,
     viewer: ViewerOf,
     pose: Poses = None,
+    _qd: Rates = "",
+    _set: Changed = "",
     _t: Time = "",
     _run: Fields = "",
 ) -> Response:
-    """Motions of a tree; what is run and the time that is shown are read by scripts."""
+    """Motions of a tree; rates, parameters, what is run and the time that is shown are read by scripts."""
     with store.database.read() as connection:
         found = trees.find(connection, viewer, ref)
         model = store.model(connection, found)

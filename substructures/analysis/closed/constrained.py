@@ -107,7 +107,7 @@ class Constrained:
     def _arrays(self) -> None:
         n, m = self.n, len(self.labels)
         self.t, self.q, self.qd = np.nan, np.zeros(n), np.zeros(n)
-        self._turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
+        self.turns = np.array([joint == "R" for joint in self.model.joints], dtype=bool)
         self.f, self.phi, self.c, self.phi_t = np.zeros(n), np.zeros(m), np.zeros(m), np.zeros(m)
         self.G = np.zeros((m, n))
         self._jacobian: Jacobian | None = None
@@ -272,7 +272,7 @@ class Constrained:
     @property
     def effort(self) -> float:
         """|Q_a| |q^a|, angles no less than 1: what forces do on the way to here, by which rounding is known [J]."""
-        way = np.where(self._turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
+        way = np.where(self.turns, np.maximum(np.abs(self.q), 1.0), np.abs(self.q))
         return float(np.abs(self._out["forces"][0]) @ way)
 
     @property

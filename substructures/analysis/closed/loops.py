@@ -28,6 +28,8 @@ NEARBY = 1e-3
 #: residuals of a right state: of positions and velocities over the width of their rows and their largest number or 1,
 #: and of equations over terms
 MET, SOLVED = 1e-9, 1e-8
+#: rows of closures that transmit forces; the others transmit moments
+ALONG = ("x", "y", "z", "length")
 
 
 @dataclass(frozen=True)
@@ -160,17 +162,37 @@ def _checks(s: Constrained, state: Consistent, qdd: Array, multipliers: Array) -
     yield Check.at(moved, s.opening_rate, s.t, speed, MET)
     # what forces cause where nothing holds: accelerations that the closures cancel are rounding beside it
     free = float(np.abs(s.f).max(initial=0)) / (float(np.abs(s.g).max(initial=0)) or 1.0)
-    largest = float((np.abs(s.G) @ (np.abs(qdd) + free)).max(initial=0))
-    dynamics: About = ("equations of motion", "zero", "g q'' + Gamma q'q' = Q + G^T lambda", "N m, N")
-    yield _solved(dynamics, s, (s.g @ qdd, -s.f, -s.G.T @ multipliers), 0.0)
-    second: About = ("acceleration residual", "zero", "G q'' + c = 0", "m/s^2, 1/s^2")
-    yield _solved(second, s, (s.G @ qdd, s.c), largest)
+    largest = np.abs(s.G) @ (np.abs(qdd) + free)
+    dynamics = "equations of motion", "g q'' + Gamma q'q' = Q + G^T lambda", ("N m", "N")
+    yield _solved(dynamics, s, (s.g @ qdd, -s.f, -s.G.T @ multipliers), s.turns)
+    second = "acceleration residual", "G q'' + c = 0", ("1/s^2", "m/s^2")
+    yield _solved(second, s, (s.G @ qdd, s.c), _turning(s), largest)
 
 
-def _solved(about: About, s: Constrained, terms: tuple[Array, ...], least: float) -> Check:
-    """The sum of the terms is zero beside the largest of them, or ``least``."""
-    scale = max(least, *(float(np.abs(x).max(initial=0)) for x in terms))
-    return Check.at(about, float(np.abs(np.sum(terms, axis=0)).max(initial=0)), s.t, scale, SOLVED)
+def _solved(
+    what: tuple[str, str, tuple[str, str]],
+    s: Constrained,
+    terms: tuple[Array, ...],
+    turns: NDArray[np.bool_],
+    least: Array | float = 0.0,
+) -> Check:
+    """The sum of the terms is zero beside the largest of them, or ``least``: of rows about rotations, and of those
+    about translations, which have another unit; the worse of the two.
+    """
+    name, reason, units = what
+    error, scale = np.abs(np.sum(terms, axis=0)), np.maximum(np.abs(terms).max(axis=0), least)
+    checks = []
+    for unit, of in zip(units, (turns, ~turns), strict=True):
+        worst, most = (float(x[of].max(initial=0)) for x in (error, scale))
+        checks.append(Check.at((name, "zero", reason, unit), worst, s.t, most, SOLVED))
+    return max(checks, key=lambda check: (not check.holds, check.worst / (check.scale or 1.0)))
+
+
+def _turning(s: Constrained) -> NDArray[np.bool_]:
+    """Whether a row is about a rotation, by closures and prescribed coordinates."""
+    of = dict(zip((f"motion.{name}" for name in s.model.coordinates), s.turns, strict=True))
+    closed = [label.rpartition(".")[2] not in ALONG for label in s.labels[: s.closed]]
+    return np.array([*closed, *(of[label] for label in s.labels[s.closed :])], dtype=np.bool_)
 
 
 def mobility(s: Constrained, t: float, q: Array) -> Mobility:
@@ -237,7 +259,7 @@ def reactions(s: Constrained, multipliers: Array, place: Mobility) -> tuple[Reac
         load = np.zeros((2, 3))
         for row in rows.rows:
             # force or moment of a row: lambda_k times its direction
-            load[int(row not in ("x", "y", "z", "length"))] += multipliers[k] * direction[k]
+            load[int(row not in ALONG)] += multipliers[k] * direction[k]
             k += 1
         result.append(Reaction(rows.name, load[0], load[1], place.entangled.get(rows.name, ())))
     return tuple(result)

@@ -12,3 +12,10 @@ export function keep(name, value) {
     else address.searchParams.set(name, value);
     history.replaceState(null, "", address);
 }
+
+/** Lets links to another page of the model take along the state that the address holds. */
+export function lead(path) {
+    const here = new URL(location.href).searchParams;
+    const state = ["pose", "qd", "set"].filter((name) => here.has(name)).map((name) => [name, here.get(name)]);
+    for (const each of document.links) if (each.pathname === path) each.search = new URLSearchParams(state);
+}

@@ -2,6 +2,7 @@
 import { joinable, metric } from "./coupled.js";
 import { element } from "./fragments.js";
 import { short } from "./numbers.js";
+import { once } from "./once.js";
 
 const SMALL = 12; // from this many coordinates on cells are too small for numbers
 const LOGARITHMIC = 6; // decades of the scale of colours
@@ -10,19 +11,16 @@ export class Ahead {
     /** path: of the tree in the interface; home: its pose. */
     constructor(path, home) {
         this.place = document.getElementById("ahead");
-        this.host = joined(path, home);
-        this.parts = new Map();
-        this.latest = 0;
+        Object.assign(this, { path, home, programs: new Map(), latest: 0 });
     }
 
     /** M with a part on a frame, and what does not fit; nothing without a part. */
     async show({ substructure, name, at, placement }, home, differs) {
         const mine = ++this.latest;
         if (!home) return this.place.replaceChildren();
-        if (!this.parts.has(substructure)) {
-            this.parts.set(substructure, joined(`/v1/substructures/${encodeURIComponent(substructure)}`, home));
-        }
-        const [host, part] = await Promise.all([this.host, this.parts.get(substructure)]);
+        const carried = `/v1/substructures/${encodeURIComponent(substructure)}`;
+        const both = [[this.path, this.home], [carried, home]];
+        const [host, part] = await Promise.all(both.map((each) => once(this.programs, each[0], () => joined(...each))));
         if (mine !== this.latest) return undefined; // something else was asked for meanwhile
         if (at !== "world" && !host.frames.includes(at)) return this.place.replaceChildren();
         const start = performance.now();

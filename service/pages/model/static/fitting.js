@@ -1,13 +1,15 @@
 // Whether a part is made for the port that it is to be mounted on.
+import { once } from "./once.js";
+
 const kept = new Map();
 
-/** The definition of a stored part. */
+/** The definition of a stored part; empty where it cannot be had. */
 function definition(reference) {
-    if (!kept.has(reference)) {
-        const address = `/v1/substructures/${encodeURIComponent(reference)}/definition`;
-        kept.set(reference, fetch(address).then((answer) => (answer.ok ? answer.json() : {})));
-    }
-    return kept.get(reference);
+    return once(kept, reference, async () => {
+        const answer = await fetch(`/v1/substructures/${encodeURIComponent(reference)}/definition`);
+        if (!answer.ok) throw new Error(answer.statusText);
+        return answer.json();
+    }).catch(() => ({}));
 }
 
 /** What differs between the interface of a port, "arm.flange", of the tree with these instances and that of the part;

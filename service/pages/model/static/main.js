@@ -1,6 +1,6 @@
 // The page of a part or a tree: one state, which sliders and parameters change, and what is drawn of it.
 import "./keys.js";
-import { keep, kept } from "./address.js";
+import { keep, kept, lead } from "./address.js";
 import { Chart } from "./chart.js";
 import { Grid } from "./grid.js";
 import { eigenvalues, short } from "./numbers.js";
@@ -35,15 +35,13 @@ async function start({ kind, reference, ranges, names, turns }) {
     };
     const changed = () => (asked ||= requestAnimationFrame(draw));
     const rested = () => {
+        lead(`${path}/motion`);
         if (!program.has("metric")) return;
         const found = eigenvalues(program.array("metric"), dof);
         const shown = found.length > 8 ? [...found.slice(0, 4), NaN, ...found.slice(-3)] : found;
         document.getElementById("eigenvalues").textContent = shown.map((x) => (x === x ? short(x) : "…")).join(", ");
     };
-    const sliders = new Sliders(state, ranges, chart, changed, () => {
-        keep("qd", state.qd.some((x) => x) ? state.qd.join(",") : "");
-        rested();
-    });
+    const sliders = new Sliders(state, ranges, chart, changed, rested);
     sliders.move(kept("qd").split(",").map(Number));
     parameters(state, () => {
         changed();

@@ -73,12 +73,13 @@ export class Sliders {
     tell() {
         this.changed();
         clearTimeout(this.waiting);
-        const pose = [...this.state.q].join(",");
+        const [pose, qd] = [this.state.q, this.state.qd].map((values) => values.join(","));
         this.waiting = setTimeout(() => {
             const address = new URL(location.href);
             address.searchParams.delete("q");
             address.searchParams.set("pose", pose);
             history.replaceState(null, "", address);
+            keep("qd", /[1-9]/.test(qd) ? qd : "");
             this.rested();
         }, 150);
     }
@@ -119,4 +120,10 @@ export function parameters(state, changed) {
         inputs.forEach(reset);
         update();
     });
+}
+
+/** The parameters that differ from their defaults, by name. */
+export function changedParameters() {
+    const inputs = [...document.querySelectorAll("[data-p]")].filter((input) => input.value !== input.defaultValue);
+    return Object.fromEntries(inputs.map((input) => [input.ariaLabel, input.valueAsNumber]));
 }

@@ -27,7 +27,7 @@ export function locus(path, given) {
         const values = Array.from({ length: n }, (_, k) => low + ((high - low) * k) / Math.max(1, n - 1));
         tell("computing ...");
         const unit = parameter.selectedOptions[0].dataset.unit;
-        post(`${path}/root-loci`, { parameter: parameter.value, values, q: given(), inputs: constants() })
+        post(`${path}/root-loci`, { parameter: parameter.value, values, q: given(), ...constants() })
             .then((found) => drawn(found, parameter.value, unit))
             .catch((error) => tell(element("p", { class: "warn" }, error.message)));
     });

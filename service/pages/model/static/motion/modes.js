@@ -22,7 +22,7 @@ export class Modes {
     }
 
     async about(q) {
-        const found = await post(`${this.path}/linearisations`, { q, inputs: constants() });
+        const found = await post(`${this.path}/linearisations`, { q, ...constants() });
         if (!found.is_equilibrium) return this.elsewhere(q, found);
         this.q = found.q ?? q;
         const { verdict, reason } = found.stability;
@@ -55,7 +55,7 @@ export class Modes {
     }
 
     async rest(q) {
-        const { found } = await post(`${this.path}/equilibria`, { starts: [q], inputs: constants() });
+        const { found } = await post(`${this.path}/equilibria`, { starts: [q], ...constants() });
         if (!found.length) throw new Error("no equilibrium was found from here: start nearer to one");
         const away = (other) => Math.max(...other.q.map((x, k) => Math.abs(x - q[k])));
         const nearest = found.reduce((best, each) => (away(each) < away(best) ? each : best));

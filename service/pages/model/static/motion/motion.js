@@ -1,9 +1,10 @@
 // The page of motions: runs from the state of the sliders, plays it, plots it; modes and roots about a state.
 import "../keys.js";
+import { kept, lead } from "../address.js";
 import { element } from "../fragments.js";
 import { Chart } from "../chart.js";
 import { load } from "../program.js";
-import { Sliders } from "../sliders.js";
+import { Sliders, parameters } from "../sliders.js";
 import { shown } from "../viewing.js";
 import { post } from "./asked.js";
 import { table, verdict } from "./checks.js";
@@ -24,6 +25,7 @@ tried(start(JSON.parse(place.dataset.model)));
 
 async function start({ kind, reference, ranges, joints, turns }) {
     const path = `/v1/${kind}/${reference}`;
+    const back = () => lead(`/${kind}/${reference}`);
     const [program, layout] = await load(path);
     const [state, chart] = [program.vectors, new Chart(turns)];
     let [motion, found, view, running, asked] = [null, null, null, null, null];
@@ -37,7 +39,8 @@ async function start({ kind, reference, ranges, joints, turns }) {
         player.stop(); // what is moved is seen
         for (const [k, values] of sliders.given().entries()) [state.q, state.qd][k].set(values);
         requestAnimationFrame(draw);
-    }, () => {});
+    }, back);
+    sliders.move(kept("qd").split(",").map(Number));
     const player = new Player((t) => {
         const before = performance.now();
         motion(t);
@@ -46,6 +49,11 @@ async function start({ kind, reference, ranges, joints, turns }) {
         place.dataset.milliseconds = (performance.now() - before).toFixed(3);
     }, (t) => found && keep(t));
 
+    parameters(state, () => {
+        player.stop();
+        draw();
+        back();
+    });
     const run = async () => {
         player.stop();
         running = new AbortController();
@@ -68,6 +76,7 @@ async function start({ kind, reference, ranges, joints, turns }) {
         if (view) within(until);
         player.load(until, time() ?? 0, named);
         keep(player.t, body);
+        back();
     };
     /** All of the motion is seen, unless it goes far away. */
     const within = (until) => {
@@ -106,6 +115,7 @@ async function start({ kind, reference, ranges, joints, turns }) {
     });
     locus(path, () => sliders.given()[0]);
     restore();
+    back();
     view = await shown(kind, reference, sliders);
     draw();
     place.dataset.view = view ? "3d" : "picture";

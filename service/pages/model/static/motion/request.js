@@ -1,4 +1,6 @@
 // What is asked for on the page of motions: the fields of its form, and the same in the address.
+import { changedParameters } from "../sliders.js";
+
 const COUNT = 600; // times of a motion
 const get = (id) => document.getElementById(id);
 const fields = () => [...document.querySelectorAll("[data-input]")];
@@ -11,10 +13,11 @@ export function inputs() {
         .map(({ dataset, value }) => [dataset.input, value]));
 }
 
-/** Those of them that are numbers: about which is linearised. */
+/** Parameters, and the inputs that are numbers: about which is linearised. */
 export function constants() {
     const numbers = Object.entries(inputs()).map(([name, value]) => [name, Number(value)]);
-    return Object.fromEntries(numbers.filter(([, value]) => Number.isFinite(value)));
+    const constant = Object.fromEntries(numbers.filter(([, value]) => Number.isFinite(value)));
+    return { inputs: constant, parameters: changedParameters() };
 }
 
 /** The body of a request for the motion from a start. */
@@ -23,7 +26,8 @@ export function request([q, qd]) {
     const action = get("stop").checked ? "stop" : "record";
     const events = quantities.map((quantity, k) => ({ name: `event${k + 1}`, quantity, action }));
     const reactions = get("reactions").value ? [get("reactions").value] : false;
-    return { q, qd, span: [0, get("span").valueAsNumber], count: COUNT, inputs: inputs(), events, reactions };
+    const span = [0, get("span").valueAsNumber];
+    return { q, qd, span, count: COUNT, inputs: inputs(), parameters: changedParameters(), events, reactions };
 }
 
 /** The address holds all of a motion, and the time that is shown. */
@@ -31,9 +35,10 @@ export function keep(t, body = null) {
     const address = new URL(location.href);
     address.searchParams.set("t", String(Number(t.toFixed(4))));
     if (body) {
-        const { span, events, count: _, q, qd, ...rest } = body;
-        const kept = { ...rest, span: span[1], qd, events: get("events").value, stop: get("stop").checked };
+        const { q, qd, span, inputs, reactions } = body; // parameters stand there already
+        const kept = { inputs, reactions, span: span[1], events: get("events").value, stop: get("stop").checked };
         address.searchParams.set("pose", q.join(","));
+        address.searchParams.set("qd", qd.join(","));
         address.searchParams.set("run", JSON.stringify(kept));
     }
     history.replaceState(null, "", address);
