@@ -217,6 +217,7 @@ def test_no_wrong_program_is_served(name: str, kinds: int, monkeypatch: pytest.M
 def clear() -> None:
     """What was made before is made anew."""
     perturbation._perturbation.cache_clear()
+    quasi_velocities._equations.cache_clear()
     linearised._linearised.cache_clear()
     first_integrals._found.cache_clear()
     variation._variational.cache_clear()
