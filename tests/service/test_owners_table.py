@@ -14,38 +14,12 @@ from service.app import bare_app
 from service.http import openapi
 
 from .conftest import PENDULUM
+from .test_client_covers import ANALYSES as ANALYSED
 from .two_owners import CAMERA, FORM, MARK, NAMES, PART, TREE, Headers, World, served, serving, world
 
 __all__ = ["served", "world"]  # fixtures
 
-ANALYSES = (
-    *(
-        "abbreviations",
-        "cost-gradients",
-        "curvatures",
-        "ensembles",
-        "equilibria",
-        "excitations",
-        "identifications",
-        "linearisations",
-        "loop-states",
-        "lyapunov-exponents",
-        "frequency-responses",
-        "regulators",
-        "periodic-orbits",
-        "poincare-sections",
-    ),
-    *(
-        "optimal-controls",
-        "optimal-parameters",
-        "reduced-equations",
-        "root-loci",
-        "sensitivities",
-        "simulations",
-        "steady-motions",
-        "velocity-equations",
-    ),
-)
+ANALYSES = (*ANALYSED, "velocity-equations")
 
 
 @dataclass(frozen=True)

@@ -54,6 +54,7 @@ def expression_of(given: Any) -> Any:
     """
     if not isinstance(given, (sympy.Basic, sympy.MatrixBase, Number)):
         raise _refused(given, "is no expression of SymPy")
+    # a number or a matrix of expressions: strict, no text is parsed, and nothing of the service comes here
     return sympy.sympify(given, strict=True)
 
 
