@@ -7,7 +7,7 @@ from typing import Any
 
 import typer
 
-from service.cli.options import Server
+from service.cli.address import at
 from substructures.client.steps import step
 
 SECONDS = 1.0  # that somebody waits for a server at a prompt
@@ -104,7 +104,7 @@ def _told(ctx: typer.Context, kind: str, name: str | None = None, **wanted: Any)
     if ctx.params.get("database"):
         return {}
     try:
-        with Server(ctx.params.get("server"), ctx.params.get("key")).client() as client:
+        with at(ctx.params.get("server"), ctx.params.get("key")) as client:
             path = f"/v1/{kind}" if name is None else f"/v1/{kind}/{step(name)}"
             answer = client.request("GET", path, params=wanted, retries=0, timeout=SECONDS)
             return dict(answer.json())

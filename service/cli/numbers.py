@@ -3,23 +3,25 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping
-from contextlib import nullcontext
+from collections.abc import Callable, Mapping
+from contextlib import AbstractContextManager, nullcontext
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import orjson
 import typer
 
 from service.cli import completion
 from service.cli.documents import is_document, named, read_document, require_place
-from service.cli.options import Server
 from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
 from service.models.numbers import OFFERED, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, written
 from substructures.formats.logs import log_of
+
+if TYPE_CHECKING:
+    from substructures.client import Client
 
 #: what is said of results that are not known to be right
 VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN to be right: it was not checked"}
@@ -27,9 +29,9 @@ VERDICTS = {False: "WRONG: a necessary condition is violated", None: "NOT KNOWN 
 
 @dataclass(frozen=True)
 class Wanted:
-    """A tree that is a document or on a server, and where the result goes."""
+    """A tree that is a document or on a server, which ``connect`` gives a client of, and where the result goes."""
 
-    server: Server
+    connect: Callable[[], AbstractContextManager[Client]]
     tree: str
     out: Path | None
     as_json: bool = False
@@ -66,7 +68,7 @@ def numbers(wanted: Wanted, name: str, given: Path | None, log: Path | None = No
             result = analysis_of(name, source.model).compute(source, request, lambda _: None)
             told, data = orjson.loads(written(result, JSON, source.model)), written(result, media, source.model)
         else:
-            with wanted.server.client() as client:
+            with wanted.connect() as client:
                 data, told = client.analysis(wanted.tree, name, request, media)
             told = orjson.loads(data) if media == JSON else told
     return _tell(told, data, wanted.out, wanted.as_json)

@@ -51,7 +51,7 @@ def analyse(
     **options: Any,
 ) -> int:
     """Formulas and numbers that follow from the equations of motion."""
-    wanted = Wanted(server, tree, out, json)
+    wanted = Wanted(server.client, tree, out, json)
     if what in ANALYSES:
         return numbers(wanted, what, request, log)
     if request is not None or log is not None:
@@ -72,7 +72,7 @@ def _formula(wanted: Wanted, what: str, style: dict[str, str], chosen: dict[str,
         found: bytes = import_module(FORMULAS).of_tree(Path(wanted.tree), what, style, chosen)
         return found
     asked = {**style, **{name: list(texts) for name, texts in chosen.items()}}
-    with wanted.server.client() as client:
+    with wanted.connect() as client:
         answer = client.request("GET", f"/v1/trees/{step(wanted.tree)}/{step(what)}", params=asked)
     return answer.content
 

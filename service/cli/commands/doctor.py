@@ -14,7 +14,8 @@ import httpx2
 from sqlalchemy.exc import DBAPIError
 
 from service import __version__
-from service.cli.options import SERVER, Json, Server, kept, kept_in, settings, with_server
+from service.cli.address import SERVER, kept, kept_in
+from service.cli.options import Json, Server, settings, with_server
 from service.cli.output import console, print_json
 from service.database.connections import Database, DatabaseError, told
 from service.queries.keys import list_keys

@@ -30,46 +30,55 @@ from substructures.part.part import Part
 
 FORCE = "--force"
 
+Tree = Annotated[
+    str,
+    typer.Argument(
+        help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.",
+        autocompletion=completion.trees,
+    ),
+]
+Target = Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")]
+Quantities = Annotated[
+    str, typer.Option(help="name,... (metric, christoffel, forces).", autocompletion=completion.exported)
+]
+Prefix = Annotated[str, typer.Option(help="Prefix of functions (the name of the tree).")]
+Bind = Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")]
+Together = Annotated[bool, typer.Option("--together", help="Also a function with all quantities, NAME_all.")]
+Packed = Annotated[bool, typer.Option("--packed", help="Of metric and christoffel the independent elements.")]
+Fmi = Annotated[str, one_of(FMI, help="Of fmu: version of the interface.")]
+Precision = Annotated[str, one_of(PRECISIONS, help="Of c: of the numbers.")]
+Ranges = Annotated[
+    str, typer.Option(help="Of single precision: name:lowest:highest,... that the bound of rounding is for.")
+]
+Stages = Annotated[bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")]
+Standard = Annotated[str, one_of(STANDARDS, help="Of c.")]
+Independent = Annotated[str, typer.Option(help="Coordinates in whose velocities constrained motions are: name,...")]
+OfPart = Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")]
+Out = Annotated[
+    Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
+]
+Force = Annotated[bool, typer.Option(FORCE, help="Write over another file of that name.")]
+
 
 @with_server
 def export(
     server: Server,
-    tree: Annotated[
-        str,
-        typer.Argument(
-            help="Tree or definition (JSON, YAML), robot file, or the name of a tree on a server.",
-            autocompletion=completion.trees,
-        ),
-    ],
-    target: Annotated[str, one_of(ALL_TARGETS, help=f"{', '.join(ALL_TARGETS)}.")],
-    quantities: Annotated[
-        str, typer.Option(help="name,... (metric, christoffel, forces).", autocompletion=completion.exported)
-    ] = "",
-    name: Annotated[str, typer.Option(help="Prefix of functions (the name of the tree).")] = "",
-    bind: Annotated[str, typer.Option(help="Numbers in formulas: name:value,... or defaults.")] = "",
-    together: Annotated[
-        bool, typer.Option("--together", help="Also a function with all quantities, NAME_all.")
-    ] = False,
-    packed: Annotated[
-        bool, typer.Option("--packed", help="Of metric and christoffel the independent elements.")
-    ] = False,
-    fmi: Annotated[str, one_of(FMI, help="Of fmu: version of the interface.")] = FMI[0],
-    precision: Annotated[str, one_of(PRECISIONS, help="Of c: of the numbers.")] = PRECISIONS[0],
-    ranges: Annotated[
-        str, typer.Option(help="Of single precision: name:lowest:highest,... that the bound of rounding is for.")
-    ] = "",
-    stages: Annotated[
-        bool, typer.Option("--stages", help="Of c: NAME_prepare(p, w), once per set of parameters.")
-    ] = False,
-    standard: Annotated[str, one_of(STANDARDS, help="Of c.")] = STANDARDS[0],
-    independent: Annotated[
-        str, typer.Option(help="Coordinates in whose velocities constrained motions are: name,...")
-    ] = "",
-    part: Annotated[bool, typer.Option("--part", help="The name is that of a part on a server.")] = False,
-    out: Annotated[
-        Path | None, typer.Option(metavar="FILE", help="To be written; default its own name, in this directory.")
-    ] = None,
-    force: Annotated[bool, typer.Option(FORCE, help="Write over another file of that name.")] = False,
+    tree: Tree,
+    target: Target,
+    quantities: Quantities = "",
+    name: Prefix = "",
+    bind: Bind = "",
+    together: Together = False,
+    packed: Packed = False,
+    fmi: Fmi = FMI[0],
+    precision: Precision = PRECISIONS[0],
+    ranges: Ranges = "",
+    stages: Stages = False,
+    standard: Standard = STANDARDS[0],
+    independent: Independent = "",
+    part: OfPart = False,
+    out: Out = None,
+    force: Force = False,
     json: Json = False,
 ) -> int:
     """Functions of a tree for other tools: C, MATLAB, Fortran, computer algebra, FMU, ..."""

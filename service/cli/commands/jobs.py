@@ -13,11 +13,11 @@ import typer
 
 from service.cli import completion
 from service.cli.choices import one_of
-from service.cli.commands.sweeps import rows
 from service.cli.documents import named, read_document, read_from
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, table
 from service.cli.progress import follow
+from service.cli.rows import ROWS, Columns, Count, Front, Out, Sort, Where, print_rows, require_suffix
 from substructures.client import Client
 from substructures.client.jobs import FORMATS, PATIENCE
 from substructures.client.progress import counted
@@ -251,6 +251,25 @@ def result(
     return 0
 
 
+@with_server
+def sweep_table(
+    server: Server,
+    id: Id,  # noqa: A002 -- an argument
+    sort: Sort = "",
+    where: Where = "",
+    columns: Columns = "",
+    pareto: Front = False,
+    out: Out = None,
+    count: Count = ROWS,
+    json: Json = False,
+) -> int:
+    """Print the table of a sweep, also while it runs, or save it."""
+    require_suffix(out)
+    with server.client() as client:
+        print_rows(client, id, {"sort": sort, "where": where, "columns": columns}, pareto, out, count, json)
+    return 0
+
+
 COMMANDS = {
     "jobs": {
         "submit": submit,
@@ -262,6 +281,6 @@ COMMANDS = {
         "cancel": cancel,
         "watch": watch,
         "result": result,
-        "table": rows,
+        "table": sweep_table,
     }
 }

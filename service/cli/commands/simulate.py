@@ -20,7 +20,7 @@ def simulate(
     json: Json = False,
 ) -> int:
     """Simulate a tree and judge the motion by its first integrals."""
-    return numbers(Wanted(server, tree, out, json), "simulations", request)
+    return numbers(Wanted(server.client, tree, out, json), "simulations", request)
 
 
 COMMANDS = {"simulate": simulate}
