@@ -20,6 +20,7 @@ from service.messages.spool import Spool
 from service.messages.viewer import Viewer
 from service.schemas import forms
 from service.store import keys
+from service.store.authorisations import Credentials
 from service.store.store import Store
 from substructures.documents import pointer_step, read_json
 from substructures.errors import meant
@@ -79,7 +80,7 @@ def _query_names(dependant: Any) -> Iterator[str]:
         yield from _query_names(each)
 
 
-def credentials(method: str, headers: Headers) -> keys.Credentials:
+def credentials(method: str, headers: Headers) -> Credentials:
     """What a request shows. The cookie of a session has the scopes of its key, for scripts of our own pages only.
 
     Raises Refused 403 for a request that another site makes with it, or that a form can send.
@@ -87,7 +88,7 @@ def credentials(method: str, headers: Headers) -> keys.Credentials:
     authorization = headers.get("authorization", "")
     session = cookie_parser(headers.get("cookie", "")).get(SESSION, "")
     if authorization or not session:
-        return keys.Credentials(authorization)
+        return Credentials(authorization)
     site = headers.get("sec-fetch-site", "none")
     if method in ("GET", "HEAD"):
         is_ours = site in ("none", "same-origin")
@@ -96,16 +97,16 @@ def credentials(method: str, headers: Headers) -> keys.Credentials:
         is_ours = site == "same-origin" and urlsplit(origin).netloc == headers.get("host") and kind not in FORM_TYPES
     if not is_ours:
         raise Refused(403, "cross-site", "another site, or a form, asks with the session of a page here")
-    return keys.Credentials(session=session)
+    return Credentials(session=session)
 
 
-async def authenticated(store: Store, given: keys.Credentials) -> Viewer:
+async def authenticated(store: Store, given: Credentials) -> Viewer:
     """Who asks. Raises Refused 401."""
     known = store.runtime.authorisations.get(given)
     return await run_in_threadpool(_authenticated, store, given) if known is None else known
 
 
-def _authenticated(store: Store, given: keys.Credentials) -> Viewer:
+def _authenticated(store: Store, given: Credentials) -> Viewer:
     with store.database.read() as connection:
         viewer = keys.authenticate(connection, given, store.settings.is_loopback)
     store.runtime.authorisations.put(given, viewer)

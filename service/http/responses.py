@@ -10,8 +10,8 @@ from fastapi import Request, Response
 from fastapi.concurrency import run_in_threadpool
 from fastapi.responses import StreamingResponse
 
-from service.http.requests import store_of
 from service.messages.answers import FOR_EVER, REVALIDATE, Answer, Stream, names, some_of
+from service.store.store import Store
 
 AT_ONCE = 2**22  # bytes that are handed to the connection at a time
 
@@ -48,10 +48,9 @@ def conditional(request: Request, tag: str, immutable: bool, make: Callable[[], 
     return Response(answer.body, answer.status, {**answer.headers, **headers})
 
 
-def remembered(request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
+def remembered(store: Store, request: Request, tag: str, immutable: bool, make: Callable[[], Answer]) -> Response:
     """:func:`conditional` for what takes long to make: the answer of this tag is kept."""
-    printed = store_of(request).caches.printed
-    return conditional(request, tag, immutable, lambda: printed.once(tag, make))
+    return conditional(request, tag, immutable, lambda: store.caches.printed.once(tag, make))
 
 
 def next_link(request: Request, token: str | None) -> str | None:

@@ -22,6 +22,7 @@ from service.messages.viewer import ANYBODY, Viewer
 from service.pages.html import Html, facts, tag
 from service.pages.layout import HEADERS, document
 from service.store import keys
+from service.store.authorisations import Credentials
 
 FORM = "application/x-www-form-urlencoded"
 ICON = Path(__file__).with_name("icon.svg").read_bytes()
@@ -94,7 +95,7 @@ async def sign_out(request: Request, store: StoreOf) -> Response:
     _require_own_page(request)
     value = cookie_parser(request.headers.get("cookie", "")).get(SESSION, "")
     await run_in_threadpool(_end, store, value)
-    store.runtime.authorisations.forget(keys.Credentials(session=value))
+    store.runtime.authorisations.forget(Credentials(session=value))
     headers = {"Location": "/account", "Cache-Control": "no-store", "Set-Cookie": _cookie(request, "", 0)}
     return Response(status_code=303, headers=headers)
 

@@ -6,13 +6,14 @@ import re
 from collections.abc import Iterator
 from functools import cache
 from importlib import import_module
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Annotated
 
 from fastapi import APIRouter, Query, Request, Response
 from starlette.responses import FileResponse
 
 from service.messages.refusals import not_found
+from service.pages.documents_folder import FOLDER
 from service.pages.html import Html, html, link, tag
 from service.pages.layout import answer, document
 from substructures.errors import among
@@ -21,9 +22,6 @@ if TYPE_CHECKING:
     from markdown_it import MarkdownIt
     from markdown_it.token import Token
 
-#: beside the package in a clone, in it where it was installed
-_BESIDE, _INSIDE = Path(__file__).parents[2] / "docs", Path(__file__).with_name("docs")
-FOLDER = _INSIDE if _INSIDE.is_dir() else _BESIDE
 INDEX = "index"
 MOST = 40  # places that a search shows
 BEFORE, SHOWN = 60, 180  # characters of a place, before the word and in all, at most but for a word

@@ -10,7 +10,7 @@ from typing import Any
 
 import orjson
 
-from service.pages.documents import FOLDER
+from service.pages.documents_folder import FOLDER
 from service.pages.html import Content, Html, html, joined, link, tag
 from service.pages.layout import document
 from service.queries.trees import Tree

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 
 import orjson
 
-from service.operations.jobs.jobs import Progress
+from service.operations.jobs.progress import Progress
 from service.pages.html import Content, Html, facts, html, link, table, tag
 from service.pages.layout import LIVE, document
 from service.queries.jobs.jobs import Job, JobItem

@@ -14,6 +14,7 @@ from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
 from service.operations import differences, searches
 from service.operations.jobs import jobs, tables
+from service.operations.jobs.progress import progress as progress_of
 from service.pages.account import PageRoute
 from service.pages.catalogue import page
 from service.pages.found import Found
@@ -146,7 +147,7 @@ def all_jobs(
     wanted = {name: text or None for name, text in query.items()}
     with store.database.read() as connection:
         found = job_rows.page_jobs(connection, viewer, wanted, None, JOBS + 1)
-        progress = [jobs.progress(connection, job) for job in found[:JOBS]]
+        progress = [progress_of(connection, job) for job in found[:JOBS]]
     return answer(request, jobs_page(found[:JOBS], progress, len(found) > JOBS, query))
 
 
@@ -166,7 +167,7 @@ def one_job(
     with store.database.read() as connection:
         found = jobs.find(connection, viewer, job)
         bad = job_rows.page_items(connection, job, "failed", -1, BAD + 1)
-        progress = jobs.progress(connection, found)
+        progress = progress_of(connection, found)
         whole = tables.table_of(connection, found) if found.kind == tables.KIND and found.done else None
         good = [] if whole is not None else job_rows.page_items(connection, job, "succeeded", -1, PREVIEWED + 1)
         files = results.list_files(connection, [item.key for item in good])

@@ -12,6 +12,8 @@ from service.http.acting import Act, Commit
 from service.messages.answers import Answer, json_answer
 from service.messages.viewer import Viewer
 from service.operations.jobs import jobs
+from service.operations.jobs.progress import progress
+from service.operations.jobs.submission import JobSubmission, Skipped
 from service.queries.jobs import results
 from service.queries.jobs.jobs import Job
 from service.schemas.jobs import JobView
@@ -29,16 +31,16 @@ def made(model: type[BaseModel]) -> dict[int | str, dict[str, Any]]:
     return {200: {"description": "It is there already", "model": model}, **ACCEPTED}
 
 
-def answer(connection: Connection, job: Job, status: int = 200, skipped: Sequence[jobs.Skipped] = ()) -> Answer:
+def answer(connection: Connection, job: Job, status: int = 200, skipped: Sequence[Skipped] = ()) -> Answer:
     """A job with its progress; ``skipped``: items of the submission that were left out."""
-    view = job_view(job, jobs.progress(connection, job))
+    view = job_view(job, progress(connection, job))
     if skipped:
         view["skipped"] = [skipped_view(each) for each in skipped]
     headers = {**FRESH, "Location": job_path(job.id)} if status == 202 else FRESH
     return json_answer(dump(view), status, headers)
 
 
-def committed(store: Store, viewer: Viewer, submission: jobs.JobSubmission, is_asked: bool = False) -> Commit:
+def committed(store: Store, viewer: Viewer, submission: JobSubmission, is_asked: bool = False) -> Commit:
     """What queues a submission and answers 202; ``is_asked``: by a GET, which becomes no other job than it has become
     already."""
 

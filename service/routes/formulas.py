@@ -134,4 +134,4 @@ def _formula(
         text = worker("print-part", item, {**store.blobs(digests), found.digest: content}).files[BODY]
         return Answer(200, text, {"Content-Type": MEDIA_TYPES[style.format]})
 
-    return remembered(request, tag, is_pinned(ref) and version.is_public, make)
+    return remembered(store, request, tag, is_pinned(ref) and version.is_public, make)

@@ -137,7 +137,7 @@ def _export(
         tree.digest, *_programs(store, tree, wanted.quantities), f"{tree.name}@{tree.revision}", *wanted.identity
     )
     lasting = is_pinned(ref) and tree.is_public
-    return remembered(request, tag, lasting, lambda: analyses.tree_files(store, worker, tree, wanted))
+    return remembered(store, request, tag, lasting, lambda: analyses.tree_files(store, worker, tree, wanted))
 
 
 def _programs(store: Store, tree: Tree, quantities: Iterable[str]) -> list[str]:
@@ -190,5 +190,5 @@ def _quantity(
     tag = etag(tree.digest, *programs, quantity, *chosen, *style.identity)
     lasting = is_pinned(ref) and tree.is_public
     return remembered(
-        request, tag, lasting, lambda: analyses.printed(store, worker, tree, quantity, style, options, group)
+        store, request, tag, lasting, lambda: analyses.printed(store, worker, tree, quantity, style, options, group)
     )

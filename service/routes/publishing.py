@@ -12,9 +12,9 @@ from service.messages.answers import Answer, json_answer
 from service.operations import catalogue, publishing
 from service.routes.bodies import APIRouter, body_of
 from service.routes.deferred import deferred, made
-from service.routes.substructures import whole_view
 from service.schemas.publishing import PublishedView, PublishRequest
 from service.views.resources import dump
+from service.views.whole_version import whole_view
 from substructures.documents import read_model
 
 router = APIRouter(prefix="/v1/trees", tags=["trees"])

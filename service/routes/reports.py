@@ -72,6 +72,7 @@ async def get_substructure_report(
         tag = etag(version.digest, version.program, named, "report", wanted.format, str(wanted.document))
         # what a report says changes with the software: it is asked for again, by its ETag
         return remembered(
+            store,
             request,
             tag,
             False,
@@ -93,6 +94,7 @@ async def get_tree_report(ref: str, request: Request, store: StoreOf, viewer: Vi
         programs = tree.program, *part_programs(store, tree)
         tag = etag(tree.digest, *programs, named, "report", wanted.format, str(wanted.document))
         return remembered(
+            store,
             request,
             tag,
             False,

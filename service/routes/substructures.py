@@ -17,7 +17,6 @@ from service.messages.addresses import version_path
 from service.messages.answers import Answer, etag, json_answer
 from service.messages.paging import limited
 from service.messages.references import is_pinned
-from service.messages.viewer import Viewer
 from service.operations import catalogue, searches
 from service.queries import aliases, content, uses
 from service.queries.catalogue import Version
@@ -30,23 +29,13 @@ from service.routes.filters import NarrowOf, PortName
 from service.schemas.entries import PartEntry
 from service.schemas.resources import VersionPage, VersionView, WithdrawalRequest
 from service.views.resources import dump, page_view, version_view
+from service.views.whole_version import names_of, whole_view
 from substructures.documents import read_model
 from substructures.part.definition import Definition
 
 router = APIRouter(prefix="/v1/substructures", tags=["catalogue"])
 READ, WRITE = [needs("read")], [needs("write")]
 DEFINITION: dict[str, Any] = body_of("SubmittedDefinition")
-
-
-def names_of(connection: Connection, version: Version) -> list[str]:
-    """The aliases that point to a version."""
-    return aliases.aliases_of(connection, (version.name, version.version))[0]
-
-
-def whole_view(connection: Connection, viewer: Viewer, version: Version) -> dict[str, Any]:
-    """A version with all that is told of it alone."""
-    withdrawn = uses.withdrawn_in_part(connection, viewer, version.digest)
-    return version_view(version, names_of(connection, version), withdrawn)
 
 
 @router.post(

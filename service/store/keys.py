@@ -6,38 +6,25 @@ last one is; expired ones do, so that no server opens by itself.
 
 from __future__ import annotations
 
-import hashlib
 import hmac
 import re
 import secrets
-from collections import OrderedDict
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from datetime import timedelta
-from math import ceil
-from time import monotonic
 
 from service.database.connections import Connection
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY, CONSOLE, OPEN, SCOPES, Viewer
 from service.queries import audit, keys, sessions
 from service.queries.common import now
+from service.store.authorisations import Credentials, hashed
 
 PREFIX = "sub"
 OWNER = r"[a-z0-9][a-z0-9-]{0,63}"
 DAYS = 36_500  # that a key may last
-REMEMBERED = 1000  # authorisations in memory
 SESSION = timedelta(hours=12)
-TRIES, TRIES_SECONDS = 10, 60.0  # wrong keys of an address at sign-in
 HEADER = "the header 'Authorization: Bearer sub_...'"
-
-
-@dataclass(frozen=True, slots=True)
-class Credentials:
-    """What a request shows: the header Authorization, or the cookie of a session of pages."""
-
-    authorization: str = ""
-    session: str = ""
 
 
 def create(
@@ -78,7 +65,7 @@ def rotate(connection: Connection, identifier: str, hours: float = 0.0, viewer: 
 
 def _add(connection: Connection, key: keys.ApiKey, action: str, viewer: Viewer | None, **detail: str) -> str:
     identifier, secret = secrets.token_hex(6), secrets.token_urlsafe(32)
-    keys.add_key(connection, replace(key, id=identifier, secret_hash=_hash(secret)))
+    keys.add_key(connection, replace(key, id=identifier, secret_hash=hashed(secret)))
     told = {"owner": key.owner, "scopes": key.scopes.split(), "expires": key.expires, **detail}
     audit.note(connection, viewer or _console(key.owner), action, f"key {identifier}", **told)
     return f"{PREFIX}_{identifier}_{secret}"
@@ -114,65 +101,6 @@ def _console(owner: str) -> Viewer:
     return Viewer(CONSOLE, owner, SCOPES)
 
 
-class Authorisations:
-    """Who was authenticated a moment ago, so that most requests need no transaction for it.
-
-    A key that is revoked, expires or is the first one of a server takes effect at most ``seconds`` later.
-    """
-
-    def __init__(self, seconds: float) -> None:
-        self.seconds = seconds
-        self._known: dict[tuple[str, str], tuple[float, Viewer]] = {}
-
-    def get(self, given: Credentials) -> Viewer | None:
-        """Who asks, or None when that has to be looked up."""
-        until, viewer = self._known.get(_kept(given), (0.0, ANYBODY))
-        return viewer if monotonic() < until else None
-
-    def put(self, given: Credentials, viewer: Viewer) -> None:
-        """Remember who was authenticated."""
-        if len(self._known) >= REMEMBERED:
-            self._known.clear()
-        self._known[_kept(given)] = monotonic() + self.seconds, viewer
-
-    def forget(self, given: Credentials) -> None:
-        """Look it up the next time."""
-        self._known.pop(_kept(given), None)
-
-
-class WrongKeys:
-    """A brake on guessing: after TRIES wrong keys of an address in a time no more of it are looked at until that is
-    over. ``addresses``: as many are remembered.
-    """
-
-    def __init__(self, addresses: int = REMEMBERED) -> None:
-        self._most = addresses
-        self._seen: OrderedDict[str, list[float]] = OrderedDict()
-
-    def require_few(self, address: str) -> None:
-        """Raise Refused 429 where there were too many of late."""
-        seen = self._of_late(address)
-        if len(seen) >= TRIES:
-            wait = max(1, ceil(seen[0] + TRIES_SECONDS - monotonic()))
-            detail = f"{TRIES} wrong keys came from this address in {TRIES_SECONDS:g} s; wait {wait} s"
-            raise Refused(429, "too-many-attempts", detail, headers={"Retry-After": str(wait)})
-
-    def note(self, address: str) -> None:
-        """One more."""
-        self._seen[address] = [*self._of_late(address), monotonic()]
-        self._seen.move_to_end(address)
-        if len(self._seen) > self._most:
-            self._seen.popitem(last=False)
-
-    def _of_late(self, address: str) -> list[float]:
-        since = monotonic() - TRIES_SECONDS
-        return [each for each in self._seen.get(address, []) if each > since]
-
-
-def _kept(given: Credentials) -> tuple[str, str]:
-    return _hash(given.authorization), _hash(given.session)
-
-
 def authenticate(connection: Connection, given: Credentials, is_loopback: bool) -> Viewer:
     """Who asks. Raises Refused 401: no key, one that is none, an expired or a revoked one, or no session any more.
 
@@ -193,14 +121,14 @@ def sign_in(connection: Connection, token: str) -> tuple[str, Viewer]:
     """Begin a session with the text of a key: the value of its cookie, and who it is. Raises Refused 401."""
     key = _of_header(connection, f"Bearer {token}")
     value, expires = secrets.token_urlsafe(32), now(SESSION)
-    sessions.add_session(connection, _hash(value), key.id, min(expires, key.expires or expires))
+    sessions.add_session(connection, hashed(value), key.id, min(expires, key.expires or expires))
     audit.note(connection, _viewer(key), "session.begin", f"key {key.id}")
     return value, _viewer(key)
 
 
 def sign_out(connection: Connection, session: str) -> None:
     """End a session."""
-    sessions.end(connection, _hash(session))
+    sessions.end(connection, hashed(session))
 
 
 def _of_header(connection: Connection, authorization: str) -> keys.ApiKey:
@@ -209,13 +137,13 @@ def _of_header(connection: Connection, authorization: str) -> keys.ApiKey:
     if kind.lower() != "bearer" or len(fields) != 3 or fields[0] != PREFIX:
         raise _denied("key-unknown", f"this is no API key: what is needed is {HEADER}")
     key = keys.get_key(connection, fields[1])
-    if key is None or not hmac.compare_digest(key.secret_hash, _hash(fields[2])):
+    if key is None or not hmac.compare_digest(key.secret_hash, hashed(fields[2])):
         raise _denied("key-unknown", "the API key in the header Authorization is not one of this server")
     return _in_force(key)
 
 
 def _of_session(connection: Connection, session: str) -> keys.ApiKey:
-    found = sessions.find(connection, _hash(session))
+    found = sessions.find(connection, hashed(session))
     key = None if found is None or found.expires <= now() else keys.get_key(connection, found.key)
     if key is None:
         raise _denied("session-expired", "you are signed out; sign in with an API key")
@@ -236,8 +164,3 @@ def _viewer(key: keys.ApiKey) -> Viewer:
 
 def _denied(code: str, detail: str) -> Refused:
     return Refused(401, code, detail, headers={"WWW-Authenticate": "Bearer"})
-
-
-def _hash(secret: str) -> str:
-    # The secret has 256 random bits, so one round of a fast hash is enough.
-    return hashlib.sha256(secret.encode()).hexdigest()

@@ -6,7 +6,7 @@ from threading import Event, Lock
 from typing import Literal
 
 from service.processes.threads import SharedThreads
-from service.store.keys import Authorisations, WrongKeys
+from service.store.authorisations import Authorisations, WrongKeys
 
 #: what has threads of its own, and how many; those of other tasks than to evaluate do nothing but wait for workers, and
 #: are so many that nobody's works wait for a thread behind those of others

@@ -9,7 +9,8 @@ from typing import Any
 import orjson
 
 from service.messages.addresses import BASE
-from service.operations.jobs.jobs import Progress, Skipped
+from service.operations.jobs.progress import Progress
+from service.operations.jobs.submission import Skipped
 from service.queries.jobs.job_events import JobEvent
 from service.queries.jobs.jobs import Job, JobItem
 from service.queries.jobs.results import File

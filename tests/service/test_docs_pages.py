@@ -6,7 +6,8 @@ import re
 
 from fastapi.testclient import TestClient
 
-from service.pages.documents import FOLDER, names
+from service.pages.documents import names
+from service.pages.documents_folder import FOLDER
 
 from .drawings import DRAWINGS
 from .reading import Page

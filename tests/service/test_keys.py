@@ -16,7 +16,7 @@ from service.queries.keys import list_keys, revoke_key
 from service.server import check_exposure
 from service.settings import SettingsError
 from service.store import keys
-from service.store.keys import REMEMBERED, Authorisations, Credentials
+from service.store.authorisations import REMEMBERED, Authorisations, Credentials
 from service.store.store import Store
 
 from .conftest import PENDULUM, make_client
@@ -112,7 +112,7 @@ def test_refuses_to_be_open_to_others(store: Store, monkeypatch: pytest.MonkeyPa
 def test_an_authorisation_is_remembered_for_its_time_only(store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     """A revoked key works on for at most ``key_seconds``; refusals are never remembered."""
     clock = [100.0]
-    monkeypatch.setattr("service.store.keys.monotonic", lambda: clock[0])
+    monkeypatch.setattr("service.store.authorisations.monotonic", lambda: clock[0])
     monkeypatch.setattr(store.runtime, "authorisations", Authorisations(seconds=1.0))
     client = make_client(store)
     key = new_key(store, "read")

@@ -14,6 +14,7 @@ from service.http.requests import SESSION
 from service.messages.refusals import Refused
 from service.queries.common import now
 from service.store import keys
+from service.store.authorisations import TRIES, WrongKeys
 from service.store.store import Store
 
 from .conftest import PENDULUM
@@ -186,9 +187,9 @@ def test_trees_beyond_the_first_page(filled: TestClient) -> None:
 def test_wrong_keys_meet_a_brake(client: TestClient, store: Store, monkeypatch: pytest.MonkeyPatch) -> None:
     """After ten in a minute no more of the address are looked at, right or wrong, until the minute is over."""
     clock = [1000.0]
-    monkeypatch.setattr("service.store.keys.monotonic", lambda: clock[0])
+    monkeypatch.setattr("service.store.authorisations.monotonic", lambda: clock[0])
     right = token(store, "read")
-    for k in range(keys.TRIES):
+    for k in range(TRIES):
         clock[0] += 1
         assert sign_in(client, f"sub_{k:012x}_wrong").status_code == 401
     for key in ("sub_000000000000_wrong", right):
@@ -202,8 +203,8 @@ def test_wrong_keys_meet_a_brake(client: TestClient, store: Store, monkeypatch: 
 
 
 def test_the_brake_remembers_some_addresses() -> None:
-    wrong = keys.WrongKeys(addresses=2)
-    for _ in range(keys.TRIES):
+    wrong = WrongKeys(addresses=2)
+    for _ in range(TRIES):
         wrong.note("first")
     with pytest.raises(Refused, match="wrong keys"):
         wrong.require_few("first")

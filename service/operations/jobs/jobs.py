@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import secrets
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from time import sleep
 from typing import Any
 
@@ -15,6 +15,7 @@ from service.jobs import kinds
 from service.jobs.files import document_of
 from service.messages.refusals import SHOWN, Refused, not_found
 from service.messages.viewer import Viewer
+from service.operations.jobs.submission import JobSubmission, Skipped
 from service.operations.library import Reader, StoreLibrary
 from service.operations.owners import require
 from service.queries import audit
@@ -31,37 +32,6 @@ NAMING = ("assemble", "derive", "upgrade")  # kinds whose results are trees and 
 STORING = (*NAMING, "mirror")  # kinds that need the right to write
 AFRESH = ("assemble", "upgrade", "verify", "mirror")  # kinds whose results are about a store that goes on changing
 YIELD = 8  # items that are resolved at a stretch
-RECENT = 30.0  # seconds over which the rate is measured
-
-
-@dataclass(frozen=True, slots=True)
-class Skipped:
-    """An item that cannot be computed and is left out: its number among those given, and why."""
-
-    item: int
-    faults: Sequence[Fault]
-
-
-@dataclass(frozen=True, slots=True)
-class JobSubmission:
-    """A job ready to be queued."""
-
-    kind: str
-    items: Sequence[NewItem]
-    uploads: Sequence[str] = ()  # digests of the states that the items refer to
-    shared: bool = False  # whether every key may see it
-    skipped: Sequence[Skipped] = ()
-    label: str = ""
-    retry_of: str | None = None
-
-
-@dataclass(frozen=True, slots=True)
-class Progress:
-    """How far a job is: items done per second, of late, and the time left at this rate."""
-
-    fraction: float
-    rate: float | None
-    eta_seconds: float | None
 
 
 def prepare(store: Store, viewer: Viewer, body: Any, members: Mapping[str, Any] | None = None) -> JobSubmission:
@@ -277,17 +247,3 @@ def _own(connection: Connection, viewer: Viewer, identifier: str, what: str) -> 
     if viewer.key != job.principal:
         require(viewer, job.owner, f"job {job.id}", what)
     return job
-
-
-def progress(connection: Connection, job: Job) -> Progress:
-    """The progress of a job; the rate is that of the last half minute, or of the whole run when nothing ended since."""
-    partial = 0.0 if job.is_final else jobs.partial_work(connection, job.id)
-    fraction = min(1.0, (job.done + partial) / job.total)
-    if job.is_final or job.started is None:
-        return Progress(fraction, None, None)
-    age = max(jobs.seconds_since(job.started), 1e-3)
-    window = min(age, RECENT)
-    recent = jobs.finished_since(connection, job.id, window)
-    rate = recent / window if recent else (job.done + partial) / age
-    left = job.total - job.done - partial
-    return Progress(fraction, rate, left / rate if rate > 0 else None)

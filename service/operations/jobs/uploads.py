@@ -16,6 +16,7 @@ import numpy as np
 from service.jobs.kinds.states import states_per_item
 from service.messages.viewer import Viewer
 from service.operations.jobs import jobs
+from service.operations.jobs.submission import JobSubmission
 from service.queries.jobs.uploads import put_uploads
 from service.queries.trees import Tree
 from service.schemas.numbers import EvaluationRequest
@@ -44,7 +45,7 @@ class _Chunk:
 
 def prepare(
     store: Store, viewer: Viewer, tree: Tree, sources: Sources, requests: Iterable[EvaluationRequest], form: str
-) -> jobs.JobSubmission:
+) -> JobSubmission:
     """Store the states of requests (one, or one for each record batch) and resolve the items that evaluate them.
 
     ``form``: npz or arrow, the format of the results. Raises InvalidDocument with the place of the array among all

@@ -15,6 +15,7 @@ from service.messages.answers import Answer, json_answer
 from service.messages.paging import limited, read_token, write_token
 from service.messages.refusals import not_found
 from service.operations.jobs import jobs
+from service.operations.jobs.progress import progress
 from service.queries.jobs import jobs as rows
 from service.queries.jobs import results
 from service.routes.bodies import APIRouter, binary, body_of
@@ -66,7 +67,7 @@ def list_jobs(
     before = read_token(search, page_token, str)
     with store.database.read() as connection:
         found = rows.page_jobs(connection, viewer, wanted, before[0] if before else None, size + 1)
-        items = [job_view(each, jobs.progress(connection, each)) for each in found[:size]]
+        items = [job_view(each, progress(connection, each)) for each in found[:size]]
     token = write_token(search, found[size - 1].id) if len(found) > size else None
     link = next_link(request, token)
     view = {"items": items, "next_page_token": token, "links": {"next": link}}

@@ -102,4 +102,4 @@ def _export(
         version = catalogue.find(connection, viewer, ref)
     lasting, reference = is_pinned(ref) and version.is_public, f"{version.name}@{version.version}"
     tag = etag(version.digest, version.program, reference, *wanted.identity)
-    return remembered(request, tag, lasting, lambda: analyses.part_files(store, worker, version, wanted))
+    return remembered(store, request, tag, lasting, lambda: analyses.part_files(store, worker, version, wanted))
