@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import scipy
 from simulated import simulated
 
 from substructures import Definition, Model, TreeSpec, couple, derive
@@ -19,7 +20,7 @@ def cart(force: str) -> Model:
     """A mass of 1 kg on a line, x, with a force on it."""
     definition = {
         "name": "cart",
-        "parameters": {"m": {"value": 1, "unit": "kg"}},
+        "parameters": {"m": {"value": 1, "unit": "kg"}, "n": {"value": 1.5}},
         "inputs": {"u": {"unit": "N"}},
         "bodies": [{"name": "b", "parent": "base", "joint": {"type": "prismatic", "coordinate": "x"}, "mass": "m"}],
         "loads": [{"type": "joint", "coordinate": "x", "force": force}],
@@ -50,6 +51,22 @@ def test_a_force_that_jumps() -> None:
     np.testing.assert_allclose(found.q[:, 0], expected, atol=1e-11)
     assert all(check.holds for check in found.checks)
     assert found.steps < 200
+
+
+@pytest.mark.parametrize("law", ["max(0, -x)^1.5", "max(0, -x)^n", "(abs(x) - x)^1.5/2^1.5"])
+def test_a_collision_by_the_law_of_hertz(law: str) -> None:
+    """From rest at x = -h the force k (-x)^(3/2) acts for 2/5 B(2/5, 1/2) h/v and gives v^2 = 4/5 k h^(5/2)/m; at the
+    wall it takes twice as long.
+    """
+    k, h, wall = 1000.0, 0.02, 0.05
+    v = np.sqrt(0.8 * k * h**2.5)
+    half = 0.4 * scipy.special.beta(0.4, 0.5) * h / v
+    model = cart(f"{k}*{law} - {k}*max(0, x - {wall})^1.5")
+    times = [half + wall / v / 2, 3 * half + 3 * wall / v / 2, 4 * half + 2 * wall / v]
+    found = moved(model, times[-1], -h, times=[0, *times])
+    assert found.is_right
+    np.testing.assert_allclose(found.q[1:, 0], [wall / 2, wall / 2, -h], atol=1e-8)
+    np.testing.assert_allclose(found.qd[1:, 0], [v, -v, 0], atol=1e-6)
 
 
 def test_a_spring_with_play_and_an_event() -> None:

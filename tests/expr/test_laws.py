@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
+from substructures.certificate.stored import operations_in_balls
 from substructures.certificate.texts import slope
 from substructures.expr.differentiate import derivative
 from substructures.expr.direct import ball, value
@@ -81,6 +82,17 @@ def test_far_away() -> None:
             found = interpret(program(graph, some, {"x": Symbol("x", "parameter")}), {"x": x})
             assert float(found["f"]) == pytest.approx(expected, abs=1e-14)
             assert float(found["d"]) == pytest.approx(0, abs=1e-14)
+
+
+@pytest.mark.parametrize("text", ["max(0, x - 0.05)^1.5", "asin(max(-1, min(1, x)))", "sqrt(4 - min(2, -x)^2)"])
+def test_what_is_held_at_a_number_is_that_number_in_balls(text: str) -> None:
+    """Beside it by nothing, where a root of what is below zero has no value."""
+    graph = Graph()
+    node = parse(graph, text, graph.symbol)
+    made = program(graph, {"f": array((), lambda: node)}, {"x": Symbol("x", "parameter")})
+    found = operations_in_balls(made, {"x": flint.arb("-10/3")})[-1]
+    assert found.is_finite()
+    assert found.overlaps(ball(text, {"x": -10 / 3}))
 
 
 def test_powers_of_nothing_and_of_negative_numbers() -> None:

@@ -67,7 +67,8 @@ def sided(source: Program, moving: Collection[str]) -> Sided | None:
     names = tuple(f"side {k}" for k in range(len(found)))
     symbol = {x: graph.symbol(name) for x, name in zip(found, names, strict=True)}
     every = [*entries, *found]
-    new = dict(zip(every, on_side(every, {node: symbol[inner(node)] for node in nodes}), strict=True))
+    sides = {node: symbol[inner(node)] for node in nodes}
+    new = dict(zip(every, on_side(every, sides, goes_on=True), strict=True))
     outputs = {
         name: Formulas(o.shape, {i: new[e] if isinstance(e, Expr) else e for i, e in o.entries.items()}, o.symmetry)
         for name, o in made.items()

@@ -32,7 +32,7 @@ def _differentiated(layout: Layout) -> tuple[list[Function], tuple[tuple[str, ..
     if layout.is_tree:
         return [*([layout.changes] if layout.changes else []), motion], (OF_STATE, ())
     kept = motion.program.select(["rates", "acceleration", "second"])
-    return [Function(motion.quantity, kept, motion.interface)], (("q", "u"), layout.velocities.names)
+    return [Function(motion.quantity, kept, motion.interface)], (("t", "q", "u", "p"), layout.velocities.names)
 
 
 def fmu(exported: Exported, version: str, limit: int) -> bytes:

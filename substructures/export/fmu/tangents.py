@@ -18,7 +18,7 @@ from substructures.expr.replay import replay
 
 _MARK = "direction of "
 #: what accelerations and outputs are differentiated by
-OF_STATE, OF_ALL = ("q", "qd", "u"), ("q", "qd", "qdd", "u")
+OF_STATE, OF_ALL = ("t", "q", "qd", "u", "p"), ("t", "q", "qd", "qdd", "u", "p")
 
 
 def tangent(

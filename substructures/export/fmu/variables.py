@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import product
 from math import isfinite, prod
@@ -27,6 +27,7 @@ _NAME = re.compile(r"(der\()?[A-Za-z_]\w*(\.\w+)*\)?", re.ASCII)
 #: most numbers of an instance
 MOST = 100_000
 TOLERANCE = 1e-8
+TIME, SOLVER = "time", ("solver_step", "solver_tolerance")
 #: what gives accelerations: of a tree, and with velocity constraints
 MOTIONS, PRIME = (FORWARD, VELOCITY_DYNAMICS), "'"
 #: what gives der(q) of ball joints
@@ -140,7 +141,7 @@ class Layout:
     @cached_property
     def places(self) -> Mapping[str, int]:
         """Where the number of each name of a vector stands."""
-        vectors = {symbol: self.interface.vectors[symbol] for symbol in ("q", "qd", "qdd", "u", "p")}
+        vectors = {symbol: self.interface.vectors[symbol] for symbol in ("t", "q", "qd", "qdd", "u", "p")}
         vectors |= {} if self.is_tree else {"v": self.velocities}
         return {name: self.begins[s] + i for s, vector in vectors.items() for i, name in enumerate(vector.names)}
 
@@ -153,20 +154,22 @@ class Layout:
     def variables(self) -> list[Variable]:
         """All of them. Raises MissingValue for parameters without value, InvalidArgument for bad names, TooLarge."""
         u, p, begins = self.interface.vectors["u"], self.interface.vectors["p"], self.begins
-        found = [Variable("time", 0, "independent", "s"), *self._states()]
+        taken = {TIME, *SOLVER}
+        found = [Variable(TIME, 0, "independent", "s"), *self._states(taken)]
         starts = u.defaults or (0.0,) * len(u)
-        inputs = [name.replace("''", "_dd").replace("'", "_d") for name in u.names]
+        inputs = [_free(name.replace("''", "_dd").replace("'", "_d"), "input", taken) for name in u.names]
         found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(inputs, u.units)]
         for i, (name, unit) in _named(p.names, p.units):
             if not isfinite(p.defaults[i]):
                 raise MissingValue(f"'{name}' has no value: give one, or a default in its definition")
-            found.append(Variable(name, begins["p"] + i, "parameter", unit, start=p.defaults[i]))
+            called = _free(name, "parameter", taken)
+            found.append(Variable(called, begins["p"] + i, "parameter", unit, start=p.defaults[i]))
         told = "step of classical Runge-Kutta steps in co-simulation; 0: steps of Dormand and Prince as tolerance asks"
-        found.append(Variable("solver_step", begins["s"], "parameter", "s", start=0.0, description=told))
+        found.append(Variable(SOLVER[0], begins["s"], "parameter", "s", start=0.0, description=told))
         told = "relative tolerance of adaptive steps in co-simulation, where the importer gives none"
-        found.append(Variable("solver_tolerance", begins["s"] + 1, "parameter", start=TOLERANCE, description=told))
-        found += self._contacts(begins["c"])
-        found += self._outputs({each.name for each in found})
+        found.append(Variable(SOLVER[1], begins["s"] + 1, "parameter", start=TOLERANCE, description=told))
+        found += [replace(each, name=_free(each.name, "output", taken)) for each in self._contacts(begins["c"])]
+        found += self._outputs(taken)
         for each in found:
             if not _NAME.fullmatch(each.name):
                 message = f"{each.name[:40]!r} is no name of a variable: identifiers with dots between them"
@@ -175,13 +178,14 @@ class Layout:
             raise TooLarge("the outputs of an FMU (in numbers)", found[-1].at + found[-1].size, MOST)
         return found
 
-    def _states(self) -> Iterator[Variable]:
-        """q, v, their derivatives and, where it is not among these, q''."""
+    def _states(self, taken: set[str]) -> Iterator[Variable]:
+        """q, v, their derivatives and, where it is not among these, q''; names are added to those that are taken."""
         vectors, begins = self.interface.vectors, self.begins
         q, v = vectors["q"], self.velocities
         plain = [name.removeprefix("v.").removesuffix(PRIME) for name in v.names]
+        taken.update(q.names)
         # rates of ball joints are no derivatives
-        rates = [f"{name}_d" if name in q.place else name for name in plain]
+        rates = [_free(f"{name}_d" if name in q.place else name, "velocity", taken) for name in plain]
         starts = q.defaults or (0.0,) * len(q)
         for i, (name, unit) in _named(q.names, q.units):
             yield Variable(name, begins["q"] + i, "output", unit, start=starts[i])
@@ -193,7 +197,8 @@ class Layout:
             for i, (name, unit) in _named(names, units):
                 yield Variable(f"der({name})", begins[symbol] + i, "local", unit, of=begins[of] + i)
         if not self.is_tree:
-            for i, (name, unit) in _named([f"{name}_dd" for name in q.names], vectors["qdd"].units):
+            second_names = [_free(f"{name}_dd", "acceleration", taken) for name in q.names]
+            for i, (name, unit) in _named(second_names, vectors["qdd"].units):
                 yield Variable(name, begins["qdd"] + i, "output", unit)
 
     def _contacts(self, begin: int = 0) -> list[Variable]:
@@ -214,9 +219,7 @@ class Layout:
             for name, array in function.program.outputs.items():
                 told = OUTPUTS.get(name, Array(name))
                 for called, shape in self._apart(told, array.shape):
-                    unique = called if called not in taken else f"output.{called}"
-                    taken.add(unique)
-                    yield Variable(unique, at, "output", told.unit, shape)
+                    yield Variable(_free(called, "output", taken), at, "output", told.unit, shape)
                     at += prod(shape)
 
     def _apart(self, told: Array, shape: tuple[int, ...]) -> Iterator[tuple[str, tuple[int, ...]]]:
@@ -225,6 +228,14 @@ class Layout:
             yield from ((f"{frame}.{told.name}", shape[1:]) for frame in self.interface.frames)
         else:
             yield told.name, shape
+
+
+def _free(name: str, kind: str, taken: set[str]) -> str:
+    """The name, behind what the variable is where another one has it, added to those that are taken."""
+    while name in taken:
+        name = f"{kind}.{name}"
+    taken.add(name)
+    return name
 
 
 def _named(names: Sequence[str], units: Sequence[str]) -> Iterator[tuple[int, tuple[str, str]]]:

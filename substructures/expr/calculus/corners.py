@@ -26,6 +26,8 @@ from substructures.expr.walk import build, reachable, transfer
 
 #: sides that are looked at, at most
 MAX_SIDES = 512
+#: what has no value of a negative number; powers are made of these
+ROOTS = ("sqrt", "log")
 
 
 def corners(exprs: Iterable[Expr]) -> list[Expr]:
@@ -60,19 +62,27 @@ def _factor(node: Expr) -> Fraction | None:
     return r if r * r == c else None
 
 
-def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr]) -> list[Expr]:
+def on_side(exprs: Sequence[Expr], sides: Mapping[Expr, int | Expr], goes_on: bool = False) -> list[Expr]:
     """The formulas where x > 0 (1) or x < 0 (-1) for each corner: |x| is x or -x. Raises ZeroDivisionError.
 
-    A side may be a symbol that is 1 or -1.
+    A side may be a symbol that is 1 or -1. ``goes_on``: roots and logarithms have values beyond their corners, too,
+    those of the formulas as they are where |x|^(3/2) would be (-x)^(3/2).
     """
     new: dict[Expr, Expr] = {}
     for node in reachable(exprs):
         side = sides.get(node)
         if side is not None:
             new[node] = node.graph.lift(side) if node.op == "sign" else new[inner(node)] * side * (_factor(node) or 1)
+        elif goes_on and node.op in ROOTS and new[node.args[0]] is not node.args[0]:
+            new[node] = build(node.graph, node.op, [_where_positive(new[node.args[0]], node.args[0])])
         else:
             new[node] = build(node.graph, node.op, [new[a] for a in node.args]) if node.args else node
     return [new[x] for x in exprs]
+
+
+def _where_positive(x: Expr, other: Expr) -> Expr:
+    """x where it is positive, else another."""
+    return other + (x - other) * (x.graph.function("sign", x) + 1) / 2
 
 
 def rates(expr: Expr, name: str) -> tuple[Expr, Expr]:

@@ -3,7 +3,7 @@
 With pos(x) = x (1 + sign x)/2, which is exact in floating point, and as a product is not taken apart in sums:
 
 =============  =======================================================================================================
-max(a, b)      b + pos(a - b)                 rounding of the larger operand
+max(a, b)      b + pos(a - b)                 rounding of the larger operand; b a number, if one is
 min(a, b)      b - pos(b - a)                 the same
 tanh(x)        1 - 2/(1 + exp(c))             c = 2x, held within +-577/7, where tanh is +-1 but for 4e-36
 step(x, x0, w) u^3 (10 - 15 u + 6 u^2)        u = (x - x0)/w + 1/2, held within 0 and 1: 0 before x0 - w/2, 1 after
@@ -57,12 +57,20 @@ def sign(x: Expr) -> Expr:
 
 
 def maximum(a: Expr, b: Expr) -> Expr:
-    """max(a, b)."""
+    """max(a, b), a number being b: where it is the larger one nothing is added, also in balls.
+
+    >>> from substructures.expr.graph import Graph
+    >>> x = Graph().symbol("x")
+    >>> maximum(x.graph.number(0), x) is maximum(x, x.graph.number(0))
+    True
+    """
+    a, b = (b, a) if a.is_number else (a, b)
     return b + pos(a - b)
 
 
 def minimum(a: Expr, b: Expr) -> Expr:
-    """min(a, b)."""
+    """min(a, b), a number being b."""
+    a, b = (b, a) if a.is_number else (a, b)
     return b - pos(b - a)
 
 

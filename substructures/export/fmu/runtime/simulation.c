@@ -154,14 +154,13 @@ int state_tangent(State *s, const unsigned *unknowns, size_t n_unknowns, const u
     if (FMU_CONTACTS || state_rates(s)) return 1;
     for (size_t i = 0; i < n_knowns; ++i) {
         unsigned at = knowns[i];
-        int may = (at >= AT_Q && at < AT_DQ) || (at >= AT_U && at < AT_STEP);
-        if (!may) return 1;
+        if (!(at < AT_DQ || (at >= AT_U && at < AT_STEP))) return 1;
         d[at] = seed[i];
     }
     fmu_dynamics_tangent(v[AT_T], v + AT_Q, v + AT_V, v + AT_QDD, v + AT_U, v + AT_P, d, d + AT_DQ);
     int needs_outputs = 0;
     for (size_t i = 0; i < n_unknowns; ++i) {
-        if (unknowns[i] >= VALUES || unknowns[i] < AT_DQ || (unknowns[i] >= AT_U && unknowns[i] < AT_Y)) return 1;
+        if (unknowns[i] >= VALUES || unknowns[i] < AT_Q || (unknowns[i] >= AT_U && unknowns[i] < AT_Y)) return 1;
         needs_outputs |= unknowns[i] >= AT_Y;
     }
     if (needs_outputs)
