@@ -269,3 +269,21 @@ def test_pressed_twice_is_one_step_and_a_lost_connection_says_what_to_do(
     assert filled.get(f"/v1/trees/{bench}").json()["revision"] == 2
     tab.wrong = [each for each in tab.wrong if "ERR_INTERNET_DISCONNECTED" not in each]
     tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+@pytest.mark.parametrize("page", ["edit", "motion"])
+def test_the_longest_names_and_deep_trees_fit_a_phone(
+    browser: Any, address: str, filled: TestClient, page: str
+) -> None:
+    name, places = "n" * 64, [chr(ord("a") + k) * 64 for k in range(16)]
+    ats = ["world", *(f"{place}.tip" for place in places)]
+    instances = [{"name": each, "substructure": "pendulum", "at": at} for each, at in zip(places, ats, strict=False)]
+    assert filled.post("/v1/trees", json={"name": name, "instances": instances}).status_code in (200, 201)
+    tab = Tab(browser, address, f"/trees/{name}/{page}", 390)
+    tab.until(READY)
+    if page == "motion":
+        tab.page.click("#start summary")
+        assert tab.page.is_visible("[data-rate='0']")
+    tab.close()
