@@ -15,6 +15,7 @@ from service.cli.options import Server, with_server
 from service.cli.output import print_json, table
 from service.cli.progress import follow
 from substructures.client import Client
+from substructures.client.files import save
 from substructures.client.jobs import PATIENCE
 from substructures.client.sweeps import MEDIA
 
@@ -93,7 +94,7 @@ def _print(
 ) -> None:
     page = loads(client.table_file(job, "application/json", {**query, "page_size": str(count)}, pareto))
     if out is not None:
-        out.write_bytes(client.table_file(job, MEDIA[out.suffix], query, pareto))
+        save(out, client.table_file(job, MEDIA[out.suffix], query, pareto))
         print(f"{out}: {page['count']:,} rows")
         return
     if as_json:
