@@ -18,6 +18,7 @@ from service.cli.output import tell_warnings, waiting
 from service.cli.tree_files import local_source
 from service.models.numbers import OFFERED, analysis_of
 from service.models.results import JSON, MEDIA_TYPES, written
+from substructures.client.files import save
 from substructures.formats.logs import log_of
 
 if TYPE_CHECKING:
@@ -86,7 +87,7 @@ def _tell(told: Mapping[str, Any], data: bytes, out: Path | None, as_json: bool)
     """Write the result; of a motion say what came of it. 1 when it failed or is wrong."""
     is_motion = "checks" in told and "t" in told
     if out is not None:
-        out.write_bytes(data)
+        save(out, data)
         print(f"{out}: {len(data)} bytes", file=sys.stderr if as_json else sys.stdout)
     if as_json:
         print(data.decode() if out is None else orjson.dumps(told).decode())

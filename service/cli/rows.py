@@ -12,6 +12,7 @@ import typer
 from service.cli.documents import require_place
 from service.cli.output import print_json, table
 from substructures.client import Client
+from substructures.client.files import save
 from substructures.client.sweeps import MEDIA
 
 ROWS = 20  # that are printed
@@ -36,7 +37,7 @@ def print_rows(
     """Print rows of the table of a job, or save them all."""
     page = loads(client.table_file(job, "application/json", {**query, "page_size": str(count)}, pareto))
     if out is not None:
-        out.write_bytes(client.table_file(job, MEDIA[out.suffix], query, pareto))
+        save(out, client.table_file(job, MEDIA[out.suffix], query, pareto))
         print(f"{out}: {page['count']:,} rows")
         return
     if as_json:

@@ -13,7 +13,7 @@ from substructures.tree.document import Closure
 
 LOOPS = get_args(Closure.model_fields["type"].annotation)
 PLACEMENT = (("x", "m"), ("y", "m"), ("z", "m"), ("roll", "rad"), ("pitch", "rad"), ("yaw", "rad"))
-INSTANCE = "[A-Za-z][A-Za-z0-9_]*"
+INSTANCE = {"pattern": "[A-Za-z][A-Za-z0-9_]*", "title": "a letter, then letters, digits and _"}
 ENDS = ("from", "to")
 FIRST = (*ENDS, "coordinate", "along")
 UNIT = re.compile(r"(N|J|m|rad)\b")
@@ -25,7 +25,7 @@ def couple(part: str, at: str) -> Html:
     form = tag(
         "form",
         field("substructure", list="parts", required="required", placeholder="search as you type", value=part),
-        field("name", required="required", pattern=INSTANCE, value=part.replace("-", "_")),
+        field("name", required="required", value=_instance(part), **INSTANCE),
         frame_field("at", at),
         tag("fieldset", tag("legend", "placement: numbers or expressions, or drag the part"), numbers),
         tag("button", "Couple", type="submit"),
@@ -33,6 +33,12 @@ def couple(part: str, at: str) -> Html:
         class_="step",
     )
     return tag("details", tag("summary", "Couple a part"), form, tag("datalist", id="parts"), open="open")
+
+
+def _instance(part: str) -> str:
+    """A name for an instance of a part, as the part is called."""
+    name = part.partition("@")[0].replace("-", "_")
+    return f"part_{name}" if name[:1].isdigit() else name
 
 
 def change(instances: Sequence[str]) -> Html:
@@ -58,14 +64,14 @@ def load(coordinates: Sequence[str]) -> Html:
         )
         for k, (name, fields) in enumerate(_loads().items())
     ]
-    return _form("Add a load", "loads", field("name", required="required", pattern=INSTANCE), types, sets)
+    return _form("Add a load", "loads", field("name", required="required", **INSTANCE), types, sets)
 
 
 def loop() -> Html:
     """A closure."""
     ends = frame_field("from", data_kind="text"), frame_field("to", "world", data_kind="text")
     length = field("length", "m", placeholder="of a rod", data_kind="number")
-    name = field("name", required="required", pattern=INSTANCE)
+    name = field("name", required="required", **INSTANCE)
     return _form("Close a loop", "closures", name, _choice("type", LOOPS, "type"), ends, length)
 
 

@@ -10,6 +10,8 @@ from service.pages.html import Html, link, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
 
+NAME = {"pattern": r"[a-z0-9][a-z0-9\-]*", "title": "lower-case letters, digits and -"}
+
 
 def trees_page(page: Page[Tree], q: str, part: str, may_write: bool) -> bytes:
     """The bytes of the page of what was found for ``q``; ``part``: to be coupled onto one of them or a new one."""
@@ -35,7 +37,7 @@ def trees_page(page: Page[Tree], q: str, part: str, may_write: bool) -> bytes:
 def _new(part: str) -> Html:
     """A form that begins a tree, with a part on the world; a script sends it, and lets it be sent."""
     fields = [
-        tag("label", "name ", tag("input", name="name", required="required", pattern=r"[a-z0-9][a-z0-9\-]*")),
+        tag("label", "name ", tag("input", name="name", required="required", **NAME)),
         tag("label", "first part ", tag("input", name="substructure", required="required", value=part)),
         tag("label", "gravity in m/s^2 ", tag("input", name="gravity", value="0, 0, -9.81")),
     ]

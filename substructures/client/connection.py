@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 
 from substructures.client.answers import Answer, Page, plain
 from substructures.client.bulk import Bulk, read_all
+from substructures.client.files import whole
 from substructures.client.problems import check, problem_of
 from substructures.client.retries import Retries
 from substructures.documents import write_json
@@ -135,17 +136,8 @@ class Caller:
 
     def download(self, path: str, target: Path) -> int:
         """Save what is at a path, however large, or nothing; its size in bytes."""
-        if target.exists() and not target.is_file():
-            # a pipe or a device, which nothing may take the place of
-            return self._retries.ask(lambda: self._download(path, target), True)
-        target = target.resolve()
-        beside = target.with_name(f".{target.name}.{token_hex(4)}")
-        try:
-            size = self._retries.ask(lambda: self._download(path, beside), True)
-            beside.replace(target)
-        finally:
-            beside.unlink(missing_ok=True)
-        return size
+        with whole(target) as file:
+            return self._retries.ask(lambda: self._download(path, file), True)
 
     def _download(self, path: str, target: Path) -> int:
         with self._http.stream("GET", path) as answer:

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import os
+from errno import ENOSPC
 from pathlib import Path
 
 import numpy as np
@@ -65,6 +67,31 @@ def test_a_place_that_cannot_be_written_is_told_before_anything_is_computed(
     assert f"there is no folder {folder / 'nowhere'}" in capsys.readouterr().err
     assert main([*command, str(folder / "taken.npz")]) == 1
     assert "is a folder; the name of a file is needed" in capsys.readouterr().err
+
+
+def test_a_full_disk_leaves_the_file_that_was_there_and_is_told_with_its_name(
+    folder: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The file may be the only one of a motion of minutes."""
+    out = folder / "kept.json"
+    command = ["simulate", str(folder / "cell.yaml"), str(folder / "swing.yaml"), "--out", str(out)]
+    assert main(command) == 0
+    out.chmod(0o600)
+    before, names = out.read_bytes(), sorted(folder.iterdir())
+    write = Path.write_bytes
+
+    def half(path: Path, data: bytes) -> int:
+        write(path, data[:100])
+        raise OSError(ENOSPC, os.strerror(ENOSPC))
+
+    monkeypatch.setattr(Path, "write_bytes", half)
+    capsys.readouterr()
+    assert main(command) == 1
+    assert f"{out}: {os.strerror(ENOSPC)}" in capsys.readouterr().err
+    assert (out.read_bytes(), sorted(folder.iterdir())) == (before, names)
+    monkeypatch.undo()
+    assert main(command) == 0
+    assert out.stat().st_mode & 0o777 == 0o600
 
 
 def test_a_wrong_motion_is_a_failure(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

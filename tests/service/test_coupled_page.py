@@ -124,6 +124,23 @@ def test_what_was_not_answered_is_asked_for_again(browser: Any, address: str, fi
 
 @in_browser
 @pytest.mark.deep
+@pytest.mark.parametrize("what", ["program.wasm", "program.json", "scene"])
+def test_a_tree_that_did_not_come_at_first_shows_m_all_the_same(
+    browser: Any, address: str, bench: str, what: str
+) -> None:
+    tab = Tab(browser, address, "/docs")
+    tab.page.route(f"**/v1/trees/{bench}@1/{what}", lambda route: route.fulfill(status=503, body="{}"), times=1)
+    tab.page.goto(f"{address}/trees/{bench}/edit")
+    assert tab.until(READY) == "picture"
+    for name, text in (("substructure", "pendulum"), ("name", "hand"), ("at", "arm.tip")):
+        tab.page.fill(f"[data-action=couplings] [name={name}]", text)
+    tab.until(f"{ROWS}.length === 2")
+    tab.wrong = [each for each in tab.wrong if "503" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_m_follows_while_a_part_is_dragged(browser: Any, address: str, filled: TestClient, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit?substructure=pendulum")
     tab.until(READY)

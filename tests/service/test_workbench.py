@@ -224,3 +224,66 @@ def test_without_scripts_the_outline_is_there(browser: Any, address: str, bench:
     assert "Steps are taken by a script" in tab.page.inner_text("main")
     assert "arm" in tab.page.inner_text("#outline")
     tab.page.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_part_of_the_catalogue_comes_named_and_is_coupled_in_other_units(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    tab = Tab(browser, address, f"/trees?part=pendulum@1&q={bench}")
+    tab.page.click(f"a:has-text('{bench}')")
+    tab.until(READY)
+    form = "[data-action=couplings]"
+    assert tab.page.input_value(f"{form} [name=name]") == "pendulum"
+    assert tab.page.evaluate(f"document.querySelector('{form} [name=name]').validity.valid")
+    tab.page.fill(f"{form} [name=at]", "arm.tip")
+    tab.until("document.getElementById('view').dataset.ghost === 'arm.tip'")
+    for name, text in (("x", "100 mm"), ("roll", "-30deg"), ("yaw", "pi/2"), ("y", "1e-3")):
+        tab.page.fill(f"{form} [name={name}]", text)
+    tab.until("document.getElementById('ahead').textContent.includes('numbers with units count as 0')")
+    tab.page.click(f"{form} button")
+    arrived(tab, f"/trees/{bench}@2/edit")
+    told = filled.get(f"/v1/trees/{bench}").json()["instances"][1]["placement"]
+    position, rpy = [{"unit": "mm", "value": "100"}, 0.001, 0], [{"unit": "deg", "value": "-30"}, 0, "pi/2"]
+    assert (told["position"], told["rpy"]) == (position, rpy)
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_pressed_twice_is_one_step_and_a_lost_connection_says_what_to_do(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    for name, text in (("substructure", "pendulum"), ("name", "hand"), ("at", "arm.tip")):
+        tab.page.fill(f"[data-action=couplings] [name={name}]", text)
+    tab.until("document.getElementById('view').dataset.ghost === 'arm.tip'")
+    tab.page.context.set_offline(True)
+    tab.page.click("[data-action=couplings] button")
+    tab.until("document.getElementById('told').textContent.includes('see whether the server runs')")
+    tab.page.context.set_offline(False)
+    tab.page.evaluate("for (let k = 0; k < 2; k++) document.querySelector('[data-action=couplings]').requestSubmit()")
+    arrived(tab, f"/trees/{bench}@2/edit")
+    assert filled.get(f"/v1/trees/{bench}").json()["revision"] == 2
+    tab.wrong = [each for each in tab.wrong if "ERR_INTERNET_DISCONNECTED" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+@pytest.mark.parametrize("page", ["edit", "motion"])
+def test_the_longest_names_and_deep_trees_fit_a_phone(
+    browser: Any, address: str, filled: TestClient, page: str
+) -> None:
+    name, places = "n" * 64, [chr(ord("a") + k) * 64 for k in range(16)]
+    ats = ["world", *(f"{place}.tip" for place in places)]
+    instances = [{"name": each, "substructure": "pendulum", "at": at} for each, at in zip(places, ats, strict=False)]
+    assert filled.post("/v1/trees", json={"name": name, "instances": instances}).status_code in (200, 201)
+    tab = Tab(browser, address, f"/trees/{name}/{page}", 390)
+    tab.until(READY)
+    if page == "motion":
+        tab.page.click("#start summary")
+        assert tab.page.is_visible("[data-rate='0']")
+    tab.close()

@@ -16,6 +16,7 @@ from service.cli.numbers import Out, Tree, Wanted, numbers
 from service.cli.options import Json, Server, with_more, with_server
 from service.models.formulas import OPTIONS, QUANTITIES
 from service.models.numbers import ANALYSES
+from substructures.client.files import save
 from substructures.client.steps import step
 from substructures.errors import meant
 
@@ -60,7 +61,7 @@ def analyse(
     style = {"format": "json" if json else format, "form": form, "bind": bind, "name": name}
     text = _formula(wanted, what, style, chosen)
     if out is not None:
-        out.write_bytes(text)
+        save(out, text)
         print(f"{out}: {len(text)} bytes", file=sys.stderr)
     else:
         print(text.decode().rstrip("\n"))

@@ -16,6 +16,7 @@ from service.cli.output import print_json
 from service.messages.viewer import PRIVATE
 from service.schemas.entries import PartEntry
 from substructures.client import Client, ProblemError
+from substructures.client.files import save
 from substructures.client.steps import step
 from substructures.documents import DOCUMENTS, read_json, write_yaml
 from substructures.errors import InvalidInput
@@ -43,7 +44,7 @@ def export(server: Server, folder: Folder, owner: Owner = "", json: Json = False
             told = "new" if before is None else "same" if before == text else "changed"
             counts[told] += 1
             if told != "same":
-                path.write_bytes(text)
+                save(path, text)
                 if not json:
                     print(f"{told}: {path}")
     if hidden and not json:

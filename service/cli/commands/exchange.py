@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -15,6 +14,7 @@ from service.cli.output import print_json, waiting
 from service.cli.progress import follow
 from service.messages.viewer import PRIVATE
 from substructures.client import Client
+from substructures.client.files import save as save_file
 from substructures.errors import listed
 
 ZIP = "application/zip"
@@ -78,10 +78,7 @@ def save(
     if hidden:
         advice = "whoever loads the file makes them public, unless by 'bundle load --private'"
         print(f"warning: private: {listed(hidden, NAMED)}; {advice}", file=sys.stderr)
-    # never a part of a file under the name
-    beside = file.with_name(f".{file.name}.{os.getpid()}")
-    beside.write_bytes(content)
-    beside.replace(file)
+    save_file(file, content)
     if json:
         print_json({"file": str(file), "bytes": len(content)})
     else:

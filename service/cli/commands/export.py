@@ -25,6 +25,7 @@ from service.models.exporting import (
 )
 from service.models.formulas import makers
 from service.settings import Limits
+from substructures.client.files import save
 from substructures.client.steps import step
 from substructures.part.part import Part
 
@@ -89,7 +90,7 @@ def export(
     with waiting("writing"):
         package = _local(Path(tree), request) if _is_file(tree) else _remote(server, tree, part, request)
     path = _place(out, target, package, force)
-    path.write_bytes(package.data)
+    save(path, package.data)
     if json:
         print_json({"file": str(path), "bytes": len(package.data)})
     else:

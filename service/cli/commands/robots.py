@@ -16,6 +16,7 @@ from service.cli.documents import named
 from service.cli.options import Json, Server, Wait, with_server
 from service.cli.output import print_json, waiting
 from service.cli.tree_files import part_or_tree
+from substructures.client.files import save
 from substructures.documents import write_json
 from substructures.errors import InvalidDocument
 from substructures.interchange.equivalence import Equivalence, equivalence
@@ -123,7 +124,7 @@ def read(
     for line in _told(found):
         print(line, file=sys.stderr)
     if out:
-        size = out.write_bytes(write_json(document) + b"\n")
+        size = save(out, write_json(document) + b"\n")
         print(f"{out}: {size} bytes", file=sys.stderr)
     if not submit:
         if json:

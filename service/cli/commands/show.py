@@ -15,6 +15,7 @@ from service.cli.choices import FORMS, Form, Format
 from service.cli.options import Json, Server, with_server
 from service.cli.output import console, further, print_json, table, tell_warnings
 from substructures.client import Client, ProblemError
+from substructures.client.files import save
 from substructures.client.steps import step
 
 #: formulas of trees whose first index is that of a frame
@@ -50,8 +51,8 @@ def show(
             _tell_formula(client, path, found, quantity, style)
             return 0
         if svg is not None:
-            svg.write_bytes(client.request("GET", f"{path}/picture").content)
-            print(f"{svg}: {svg.stat().st_size} bytes")
+            size = save(svg, client.request("GET", f"{path}/picture").content)
+            print(f"{svg}: {size} bytes")
             return 0
         if json:
             print_json(found)

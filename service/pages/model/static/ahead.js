@@ -8,7 +8,7 @@ const SMALL = 12; // from this many coordinates on cells are too small for numbe
 const LOGARITHMIC = 6; // decades of the scale of colours
 
 export class Ahead {
-    /** path: of the tree in the interface; home: its pose. */
+    /** path: of the tree in the interface; home(): a promise of its pose. */
     constructor(path, home) {
         this.place = document.getElementById("ahead");
         Object.assign(this, { path, home, programs: new Map(), latest: 0 });
@@ -19,7 +19,7 @@ export class Ahead {
         const mine = ++this.latest;
         if (!home) return this.place.replaceChildren();
         const carried = `/v1/substructures/${encodeURIComponent(substructure)}`;
-        const both = [[this.path, this.home], [carried, home]];
+        const both = [[this.path, this.home], [carried, () => home]];
         const [host, part] = await Promise.all(both.map((each) => once(this.programs, each[0], () => joined(...each))));
         if (mine !== this.latest) return undefined; // something else was asked for meanwhile
         if (at !== "world" && !host.frames.includes(at)) return this.place.replaceChildren();
@@ -27,15 +27,17 @@ export class Ahead {
         const { size, all } = metric(host, part, at, placement);
         const took = (performance.now() - start).toFixed(2);
         const names = [...host.names, ...part.names.map((each) => `${name || "?"}.${each}`)];
-        const words = `Not stored yet: ${size} degrees of freedom, M at home, computed here in ${took} ms`;
+        const isPlain = [...placement.position, ...placement.rpy].every((x) => typeof x === "number");
+        const zero = isPlain ? "" : "; in it, expressions and numbers with units count as 0";
+        const words = `Not stored yet: ${size} degrees of freedom, M at home, computed here in ${took} ms${zero}`;
         const warning = differs ? [element("p", { class: "warn small" }, differs)] : [];
         return this.place.replaceChildren(...warning, element("p", { class: "small" }, words), table(names, size, all));
     }
 }
 
 async function joined(address, home) {
-    const found = await joinable(address);
-    found.program.vectors.q?.set(home);
+    const [found, pose] = await Promise.all([joinable(address), home()]);
+    found.program.vectors.q?.set(pose);
     return found;
 }
 

@@ -1,12 +1,13 @@
 // Whether a part is made for the port that it is to be mounted on.
 import { once } from "./once.js";
+import { reached } from "./reached.js";
 
 const kept = new Map();
 
 /** The definition of a stored part; empty where it cannot be had. */
 function definition(reference) {
     return once(kept, reference, async () => {
-        const answer = await fetch(`/v1/substructures/${encodeURIComponent(reference)}/definition`);
+        const answer = await reached(`/v1/substructures/${encodeURIComponent(reference)}/definition`);
         if (!answer.ok) throw new Error(answer.statusText);
         return answer.json();
     }).catch(() => ({}));

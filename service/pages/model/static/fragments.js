@@ -1,4 +1,5 @@
 // Parts of pages from the server, which escapes them by the code that writes the pages.
+import { LOST } from "./reached.js";
 
 /** The element with this id out of a page at an address, to be put into this one. */
 export function fragment(address, id) {
@@ -11,7 +12,7 @@ export function fragment(address, id) {
             if (found) resolve(document.importNode(found, true));
             else reject(new Error(`${request.status || "no answer"}`));
         });
-        request.addEventListener("error", () => reject(new Error("the connection is lost")));
+        request.addEventListener("error", () => reject(new Error(LOST)));
         request.send();
     });
 }

@@ -1,6 +1,7 @@
 // A part where it would be: its scene, with the frames at home moved by a placement.
 import { plain, turned } from "./coupled.js";
 import { load } from "./program.js";
+import { reached } from "./reached.js";
 
 const kept = new Map();
 
@@ -8,7 +9,7 @@ const kept = new Map();
 export async function sceneOf(reference) {
     if (!kept.has(reference)) {
         const address = `/v1/substructures/${encodeURIComponent(reference)}`;
-        const answer = await fetch(`${address}/scene`);
+        const answer = await reached(`${address}/scene`);
         if (!answer.ok) return null;
         const scene = await answer.json();
         const [program] = await load(address);

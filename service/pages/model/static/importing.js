@@ -1,5 +1,6 @@
 // A robot file: read, derived and drawn before anything of it is stored.
 import { element } from "./fragments.js";
+import { LOST, reached } from "./reached.js";
 
 const headers = ({ name }) => ({ "Content-Type": /\.zip$/i.test(name) ? "application/zip" : "application/octet-stream" });
 const place = document.getElementById("import");
@@ -15,13 +16,14 @@ function telling() {
 /** The answer of the interface for the file. */
 async function sent(file, more) {
     const given = { file: file.name.slice(0, 200), ...(cut.value.trim() ? { cut: cut.value.trim() } : {}), ...more };
-    const answer = await fetch(`/v1/imports?${new URLSearchParams(given)}`, { method: "POST", headers: headers(file), body: file });
+    const answer = await reached(`/v1/imports?${new URLSearchParams(given)}`, { method: "POST", headers: headers(file), body: file });
     const told = await answer.json();
     if (!answer.ok) throw Object.assign(new Error(told.detail), { faults: told.errors ?? [] });
     return [answer.status, told];
 }
 
 function refused({ message, faults = [] }) {
+    if (message === LOST) return [element("p", { class: "warn" }, message)];
     const lines = faults.length ? faults.map((fault) => fault.message) : [message];
     return [element("p", { class: "warn" }, "This cannot be stored:"), element("ul", {}, ...lines.map((line) => element("li", {}, line)))];
 }

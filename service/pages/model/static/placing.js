@@ -4,24 +4,31 @@ import { plain } from "./coupled.js";
 import { misfit } from "./fitting.js";
 import { element } from "./fragments.js";
 import { ghost, sceneOf } from "./ghost.js";
-import { load } from "./program.js";
+import { once } from "./once.js";
+import { answered, load } from "./program.js";
+import { reached } from "./reached.js";
 import { filled } from "./steps.js";
 import { drawn } from "./viewing.js";
 
 export class Placing {
     /** path: of the tree in the interface; spec: its document; form: of couplings; changed(form) hears of a drag. */
     constructor(path, spec, form, changed) {
-        Object.assign(this, { path, form, changed, view: null, ahead: null, latest: 0 });
+        Object.assign(this, { path, form, changed, view: null, latest: 0, kept: new Map() });
+        this.ahead = new Ahead(path, async () => (await this.scene()).poses.home);
         this.instances = JSON.parse(spec).instances ?? [];
         this.parts = document.getElementById("parts");
+    }
+
+    /** The scene of the tree, asked for once more where it could not be had. */
+    scene() {
+        return once(this.kept, "scene", async () => (await answered(await reached(`${this.path}/scene`))).json());
     }
 
     /** Draws the tree, whose frames pick(name) hears of. */
     async start(pick) {
         try {
             const [program] = await load(this.path);
-            const scene = await (await fetch(`${this.path}/scene`)).json();
-            this.ahead = new Ahead(this.path, scene.poses.home);
+            const scene = await this.scene();
             this.view = await drawn(scene);
             program.vectors.q?.set(scene.poses.home);
             this.view.pose(program);
@@ -36,7 +43,7 @@ export class Placing {
 
     /** Parts whose names, titles or words are like what was typed. */
     async search(words) {
-        const answer = await fetch(`/v1/substructures?${new URLSearchParams({ q: words, page_size: "12" })}`);
+        const answer = await reached(`/v1/substructures?${new URLSearchParams({ q: words, page_size: "12" })}`);
         if (!answer.ok) return;
         const { items } = await answer.json();
         const options = items.map(({ name, title, dof }) => element("option", { value: name, label: `${title}, ${dof} dof` }));
@@ -49,14 +56,15 @@ export class Placing {
         const mine = ++this.latest; // what was asked for before may be answered later
         const coupling = filled(form);
         const { substructure, at, placement } = coupling;
-        const found = () => [...this.parts.options].some(({ value }) => value === substructure.split("@")[0]);
-        if (substructure && !found()) await this.search(substructure);
+        const [wanted] = substructure?.split("@") ?? [""];
+        const found = () => [...this.parts.options].some(({ value }) => value === wanted);
+        if (wanted && !found()) await this.search(wanted);
         if (form.dataset.method) return;
         const part = substructure && found() && at ? await sceneOf(substructure) : null;
         const differs = part ? await misfit(this.instances, at, substructure) : "";
         if (mine !== this.latest) return;
         this.view?.ghost(part && ghost(part, placement), at);
-        await this.ahead?.show(coupling, part?.scene.poses.home, differs);
+        await this.ahead.show(coupling, part?.scene.poses.home, differs);
     }
 
     /** The part follows the pointer, its place in the fields and M with it. */

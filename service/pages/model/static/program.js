@@ -1,4 +1,5 @@
 // The program of a model as WebAssembly: memory is laid out once, a call writes into it, arrays are views of it.
+import { reached } from "./reached.js";
 
 /** A module with its layout (program.json): vectors to be written, functions to be called by quantity. */
 export class Program {
@@ -49,13 +50,14 @@ export class Program {
 export async function load(address, quantities = []) {
     const query = quantities.length ? `?quantities=${quantities.join(",")}` : "";
     const [layout, module] = await Promise.all([
-        fetch(`${address}/program.json${query}`).then(answered).then((answer) => answer.json()),
-        WebAssembly.compileStreaming(fetch(`${address}/program.wasm${query}`).then(answered)),
+        reached(`${address}/program.json${query}`).then(answered).then((answer) => answer.json()),
+        WebAssembly.compileStreaming(reached(`${address}/program.wasm${query}`).then(answered)),
     ]);
     return [new Program(module, layout), layout];
 }
 
-function answered(answer) {
+/** An answer that is a success. */
+export function answered(answer) {
     if (!answer.ok) throw new Error(`${answer.url}: ${answer.status}`);
     return answer;
 }

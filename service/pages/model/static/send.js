@@ -1,6 +1,7 @@
 // Sends requests of the page of the interface by the session, and shows what is answered, as text.
 import { element } from "./fragments.js";
 import "./keys.js";
+import { reached } from "./reached.js";
 
 const MOST = 20_000; // characters that are shown
 
@@ -12,7 +13,7 @@ async function sent(form) {
     const body = field("body");
     const headers = body === undefined ? {} : { "Content-Type": "application/json" };
     const start = performance.now();
-    const answer = await fetch(path, { method, headers, body });
+    const answer = await reached(path, { method, headers, body });
     const type = answer.headers.get("content-type") ?? "";
     const content = await answer.arrayBuffer();
     const took = (performance.now() - start).toFixed(0);

@@ -2,10 +2,15 @@
 const PLACEMENT = { position: ["x", "y", "z"], rpy: ["roll", "pitch", "yaw"] };
 const METHODS = { couplings: "couple", loads: "load", closures: "close_loop" };
 
-/** A number where it is one, else the expression. */
-function number(text) {
+const WITH_UNIT = /^([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*([a-zA-Zµ°%].*)$/;
+
+/** A number, one with a unit behind it, else the expression. */
+export function number(text) {
     const given = text.trim();
-    return given === "" ? 0 : Number.isFinite(Number(given)) ? Number(given) : given;
+    if (given === "") return 0;
+    if (Number.isFinite(Number(given))) return Number(given);
+    const [, value, unit] = WITH_UNIT.exec(given) ?? [];
+    return unit ? { value, unit } : given;
 }
 
 const split = (text) => text.split(",").map((each) => each.trim());

@@ -1,11 +1,10 @@
 // Begins a tree with one part on the world, and shows it in the workbench.
 import "./keys.js";
+import { reached } from "./reached.js";
+import { number } from "./steps.js";
 
 const form = document.getElementById("begin");
 const told = document.getElementById("told");
-
-/** A number where it is one, else the expression. */
-const number = (text) => (text.trim() !== "" && Number.isFinite(Number(text)) ? Number(text) : text.trim());
 
 async function begin() {
     const value = (name) => form.elements.namedItem(name).value.trim();
@@ -16,10 +15,10 @@ async function begin() {
         gravity: value("gravity").split(",").map(number),
         instances: [{ name: /^[A-Za-z]/.test(instance) ? instance : `part_${instance}`, substructure: part }],
     };
-    const there = await fetch(`/v1/trees/${encodeURIComponent(body.name)}/revisions?page_size=1`);
+    const there = await reached(`/v1/trees/${encodeURIComponent(body.name)}/revisions?page_size=1`);
     if (there.ok && (await there.json()).items.length) throw new Error(`there is a tree '${body.name}': choose another name`);
     const headers = { "Content-Type": "application/json" };
-    const answer = await fetch("/v1/trees", { method: "POST", headers, body: JSON.stringify(body) });
+    const answer = await reached("/v1/trees", { method: "POST", headers, body: JSON.stringify(body) });
     const found = await answer.json();
     const faults = (found.errors ?? []).map(({ pointer, message }) => `${pointer}: ${message}`);
     if (!answer.ok) throw new Error(faults.join("; ") || found.detail);

@@ -1,4 +1,5 @@
 // Loads what draws in three dimensions, after the page can be used.
+import { reached } from "./reached.js";
 
 /** A scene in the place of the picture, with the switches of the view below it, where they hide nothing. */
 export async function drawn(scene) {
@@ -12,7 +13,7 @@ export async function drawn(scene) {
 /** The view in three dimensions, null where there is no WebGL: the picture of the server stays. */
 export async function shown(kind, reference, sliders) {
     try {
-        const answer = await fetch(`/v1/${kind}/${reference}/scene`);
+        const answer = await reached(`/v1/${kind}/${reference}/scene`);
         if (!answer.ok) return null;
         const scene = await answer.json();
         const view = await drawn(scene);

@@ -2,6 +2,7 @@
 import "./keys.js";
 import { fragment } from "./fragments.js";
 import { Placing } from "./placing.js";
+import { reached } from "./reached.js";
 import { filled, request, texts } from "./steps.js";
 
 const JSON_TYPE = { "Content-Type": "application/json" };
@@ -13,17 +14,28 @@ const given = new URL(location.href).searchParams;
 const revision = Number(bench.reference.split("@")[1]);
 const of = Number(given.get("of") ?? revision); // the revision that this one is like, after undo and redo
 const top = Number(given.get("top") ?? of);
-let [picked, waiting] = [document.querySelector("[data-pick]"), 0];
+let [picked, waiting, busy] = [document.querySelector("[data-pick]"), 0, false];
 
 function tell(words, kind = "quiet") {
     told.replaceChildren(words);
     told.className = kind;
 }
 
-/** Takes a step, and shows what it made. */
-async function step(method, address, body, more = "") {
+/** Takes a step, and shows what it made; what is pressed meanwhile is none, as a second click of two. */
+async function step(...given) {
+    if (busy) return;
+    busy = true;
+    await taken(...given).catch((error) => {
+        busy = false;
+        throw error;
+    });
+}
+
+addEventListener("pageshow", () => (busy = false)); // the way back shows the page as it was left
+
+async function taken(method, address, body, more = "") {
     tell("deriving and proving ...");
-    const answer = await fetch(address, { method, headers: JSON_TYPE, body });
+    const answer = await reached(address, { method, headers: JSON_TYPE, body });
     const found = await answer.json();
     const faults = (found.errors ?? []).map(({ pointer, message }) => `${pointer}: ${message}`);
     if (!answer.ok) throw new Error(faults.join("; ") || found.detail);

@@ -1,4 +1,6 @@
 // Requests of the interface: an answer, or the job that it became, followed until it has ended.
+import { reached } from "../reached.js";
+
 const PAUSE = 400; // ms
 const JSON_TYPE = "application/json";
 const headers = { "Content-Type": JSON_TYPE };
@@ -7,7 +9,7 @@ const headers = { "Content-Type": JSON_TYPE };
  * it. Throws an Error that says what is wrong. */
 export async function post(address, body, { told = () => {}, signal = undefined, media = JSON_TYPE } = {}) {
     const sent = { method: "POST", headers: { ...headers, Accept: media }, body: JSON.stringify(body), signal };
-    let answer = await fetch(address, sent);
+    let answer = await reached(address, sent);
     if (answer.status === 202) answer = await followed(await answer.json(), told, signal);
     return media === JSON_TYPE ? read(answer) : (await right(answer)).blob();
 }
@@ -29,13 +31,13 @@ async function followed(job, told, signal) {
         told(now);
         await new Promise((done) => setTimeout(done, PAUSE));
         if (signal?.aborted && now.state !== "cancelling") {
-            await fetch(job.links.cancel, { method: "POST", headers, body: "{}" });
+            await reached(job.links.cancel, { method: "POST", headers, body: "{}" });
         }
-        now = await read(await fetch(job.links.self));
+        now = await read(await reached(job.links.self));
     }
     if (now.state === "cancelled") throw new Error("cancelled");
-    const { items } = await read(await fetch(job.links.items));
+    const { items } = await read(await reached(job.links.items));
     const { problem, files } = items[0];
     if (!files.length) throw new Error(problem?.detail ?? `the job ${now.state}`);
-    return fetch(files[0].href); // also of a motion that is not right, and says so
+    return reached(files[0].href); // also of a motion that is not right, and says so
 }

@@ -1,0 +1,11 @@
+// Requests to the server: what is said where none answers.
+export const LOST = "the connection is lost: see whether the server runs, then try again";
+
+/** The answer of the server. Throws what can be done where there is none. */
+export async function reached(address, options = {}) {
+    try {
+        return await fetch(address, options);
+    } catch (error) {
+        throw options.signal?.aborted ? error : new Error(LOST);
+    }
+}
