@@ -27,6 +27,7 @@ TCP = {"keepalives_idle": 5, "keepalives_interval": 5, "keepalives_count": 3, "t
 CONNECT_SECONDS = 10
 
 ROOM = 2**20  # bytes
+STANDBY = "SELECT pg_is_in_recovery()"  # of PostgreSQL
 
 __all__ = ["Connection", "DBAPIError", "Database", "DatabaseError", "normalised", "told"]
 
@@ -122,10 +123,14 @@ class Database:
         with self.read() as connection:
             connection.execute(text("SELECT 1"))
 
-    @property
-    def has_room(self) -> bool:
-        """Whether the disk of an SQLite file has room for more; PostgreSQL does not say."""
-        return not self.is_sqlite or disk_usage(self.file.absolute().parent).free > ROOM
+    def obstacle(self) -> str:
+        """What keeps the database from changes, if anything: the disk of an SQLite file is full, which PostgreSQL does
+        not say of its own; or it is a standby."""
+        if self.is_sqlite:
+            return "" if disk_usage(self.file.absolute().parent).free > ROOM else "the disk of the database is full"
+        with self.read() as connection:
+            is_standby = connection.execute(text(STANDBY)).scalar_one()
+        return "the database is a standby, which takes no changes" if is_standby else ""
 
     def close(self) -> None:
         """Close all connections and give up the claim."""

@@ -25,7 +25,7 @@ from starlette.exceptions import HTTPException
 from service.http.request_id import current_request_id
 from service.messages.refusals import Refused, known_refusal, not_found, problem, unprocessable
 from service.models.formulas import QUANTITIES
-from service.queries.common import is_conflict, is_full, is_outage
+from service.queries.common import is_conflict, is_full, is_outage, is_read_only
 from substructures.documents import message_of, pointer_step
 from substructures.errors import Fault, InvalidInput, MissingValue, TooLarge, VerificationFailed, among
 from substructures.quantities.quantity import TABLE
@@ -68,6 +68,8 @@ def _is_unavailable(error: Exception) -> bool:
 def _why(error: Exception) -> str:
     if is_full(error):
         return "the disk of the database is full; nothing was changed"
+    if is_read_only(error):
+        return "the database takes no changes: it is read-only, or a standby; nothing was changed"
     what = "is busy with changes of others" if is_conflict(error) else "does not answer"
     return f"the database {what}; nothing was changed"
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Any
 
@@ -12,16 +12,15 @@ from service.database.connections import Connection
 from service.jobs.kinds.assemble import NAMED, pinned_spec
 from service.jobs.kinds.shapes import KNOWN, SHARE
 from service.jobs.worker import Worker
-from service.messages.answers import etag, names
 from service.messages.references import Reference, is_pinned, parse_reference
 from service.messages.refusals import Refused, StaleError, moved, not_found, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import catalogue, owners
 from service.operations.library import StoreLibrary
-from service.queries import audit, content, trees, uses
+from service.operations.preconditions import ANY, Expected, latest_as, require_match, tree_tag, withdrawn
+from service.queries import audit, content, trees
 from service.queries.common import now
 from service.queries.owners import private_parts
-from service.queries.uses import Withdrawn
 from service.schemas.entries import PLAIN, Entry
 from service.store.store import Store
 from substructures.documents import read_json
@@ -36,10 +35,11 @@ LATEST, SHORT = 8, 100_000
 
 @dataclass(frozen=True, slots=True)
 class Revision:
-    """A coupled tree ready to be stored; ``base`` is what it changes, ``is_exact``: named by number."""
+    """A coupled tree ready to be stored; ``base``: the number of the revision that it changes, 0 where there must be
+    none, ``is_exact``: named by number."""
 
     coupled: TreeContent
-    base: trees.Tree | None = None
+    base: int | None = None
     is_exact: bool = False
     entry: Entry = PLAIN
 
@@ -54,12 +54,21 @@ class TreeChange:
     step: str
 
 
-def prepare(store: Store, viewer: Viewer, worker: Worker, data: Any, entry: Entry, named: bool = False) -> Revision:
+def prepare(
+    store: Store,
+    viewer: Viewer,
+    worker: Worker,
+    data: Any,
+    entry: Entry,
+    named: bool = False,
+    expected: Expected = ANY,
+) -> Revision:
     """Resolve, pin and couple a tree; ``named``: parts that it brings along are called by name, too, for they are
-    stored before it. Raises InvalidDocument, TooLarge, TimeoutError, Refused 403 or 409.
+    stored before it. Raises InvalidDocument, TooLarge, TimeoutError, Refused 403, 409 or 412.
     """
-    coupled = _coupled(store, viewer, worker, TreeSpec.read(data), entry, {NAMED: True} if named else {})
-    return Revision(coupled, entry=entry)
+    spec = TreeSpec.read(data)
+    base = latest_as(store, viewer, spec.name, expected)
+    return Revision(_coupled(store, viewer, worker, spec, entry, {NAMED: True} if named else {}), base, entry=entry)
 
 
 def coupling(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
@@ -150,18 +159,7 @@ def prepare_change(store: Store, viewer: Viewer, worker: Worker, change: TreeCha
     """Couple a changed tree. Raises InvalidDocument, TooLarge, TimeoutError."""
     with moved(lambda pointer: pointer.removeprefix(change.step)):  # as seen from the instance document alone
         coupled = _coupled(store, viewer, worker, TreeSpec.read(change.document), PLAIN, {})
-    return Revision(coupled, change.base, change.is_exact)
-
-
-def tree_tag(tree: trees.Tree, withdrawn: Sequence[Withdrawn] = ()) -> str:
-    """The ETag of a tree; ``withdrawn``: those of its instances whose parts are withdrawn."""
-    gone = [f"{each.instance}:{each.successor}" for each in withdrawn]
-    return etag(tree.digest, tree.program, str(tree.revision), *([] if tree.is_public else [tree.visibility]), *gone)
-
-
-def withdrawn(connection: Connection, viewer: Viewer, tree: trees.Tree) -> Sequence[Withdrawn]:
-    """The instances of a tree whose parts are withdrawn, with reason and successor."""
-    return uses.withdrawn(connection, viewer, tree.name, tree.revision)
+    return Revision(coupled, change.base.revision, change.is_exact)
 
 
 def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> tuple[trees.Tree, dict[str, Any]]:
@@ -169,9 +167,8 @@ def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> 
         base = find(connection, viewer, text)
         tag = tree_tag(base, withdrawn(connection, viewer, base)) if if_match else ""
     owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
-    if if_match is not None and not names(if_match, tag):
-        detail = f"the tree '{text}' is not what If-Match says; it is {tag} now"
-        raise Refused(412, "precondition-failed", detail, headers={"ETag": tag})
+    if if_match is not None:
+        require_match(text, tag, if_match)
     return base, _current(base)
 
 
@@ -227,8 +224,7 @@ def _coupled(
 
 def commit(connection: Connection, viewer: Viewer, revision: Revision) -> tuple[trees.Tree, bool]:
     """Store a revision; as :func:`store`."""
-    number = revision.base.revision if revision.base else None
-    return store(connection, viewer, revision.coupled, revision.entry, number, revision.is_exact)
+    return store(connection, viewer, revision.coupled, revision.entry, revision.base, revision.is_exact)
 
 
 def store(
@@ -241,7 +237,8 @@ def store(
 ) -> tuple[trees.Tree, bool]:
     """Store a coupled tree; the tree, and whether it is new (neither the latest created again nor ``base`` unchanged).
 
-    Raises StaleError when the latest revision is no longer ``base``, the one that was changed, unless that was pinned;
+    Raises StaleError when the latest revision is no longer ``base``, the one that was changed (0: there is one), unless
+    that was pinned;
     Refused 403, 409 where the name is another's, or others would see private parts.
     """
     name, digest = coupled.name, digest_of(coupled.spec)
@@ -250,7 +247,8 @@ def store(
     latest = trees.latest_revision(connection, name)
     like = base or latest
     there = trees.digest_of(connection, name, like)
-    if base is not None and ((not is_exact and latest != base) or there is None):
+    is_other = base is not None and ((not is_exact and latest != base) or there is None)
+    if there is not None if base == 0 else is_other:
         raise StaleError(f"'{name}' was changed or removed meanwhile")
     current = trees.resolve(connection, viewer, Reference(name, like)) if there == digest else None
     if current is not None:
@@ -264,22 +262,24 @@ def store(
     spec = coupled.spec.decode()
     figures = {name: getattr(coupled, name) for name in ("dof", "joints", "mass", "software")}
     whom = {"author": viewer.key, "owner": whose.owner, "visibility": whose.visibility, "note": entry.note or ""}
-    more: dict[str, Any] = {"created": now(), "based_on": base, **figures, **whom, **coupled.summary.columns()}
+    more: dict[str, Any] = {"created": now(), "based_on": base or None, **figures, **whom, **coupled.summary.columns()}
     tree = trees.Tree(name, latest + 1, digest, spec, coupled.program_digest, **more)
     trees.add_revision(connection, tree, coupled.parts)
-    audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base)
+    audit.note(connection, viewer, "tree.store", f"{name}@{tree.revision}", digest=digest, based_on=base or None)
     return tree, True
 
 
-def remove(connection: Connection, viewer: Viewer, name: str) -> None:
+def remove(connection: Connection, viewer: Viewer, name: str, if_match: str | None = None) -> None:
     """Remove a tree with all its revisions; its parts stay, and what was published of it.
 
-    Raises Refused 404 where the viewer sees none, 403 where it is another's.
+    Raises Refused 404 where the viewer sees none, 403 where it is another's, 412 where it is not of ``if_match``.
     """
     tree = find(connection, viewer, name)
     if tree.name != name:
         raise Refused(422, "bare-name-expected", f"a tree is removed as a whole: '{tree.name}', not '{name[:160]}'")
     owners.require(viewer, tree.owner, name, "removes it")
+    if if_match is not None:
+        require_match(name, tree_tag(tree, withdrawn(connection, viewer, tree)), if_match)
     trees.remove(connection, name)
     audit.note(connection, viewer, "tree.remove", name, revisions=tree.revision)
 

@@ -13,6 +13,7 @@ from sqlalchemy.exc import DBAPIError, OperationalError
 
 from service.database.clock import time_now
 
+_READ_ONLY = ("25006", "0A000")  # of PostgreSQL
 _INSERT: dict[str, Any] = {"sqlite": sqlite.insert, "postgresql": postgresql.insert}
 
 
@@ -43,8 +44,17 @@ def _insert(dialect: str, table: Table) -> Any:
 
 
 def is_outage(error: Exception) -> bool:
-    """Whether it is the database that failed (locked, full, gone), so that the same may work later."""
-    return isinstance(error, OperationalError) or (isinstance(error, DBAPIError) and error.connection_invalidated)
+    """Whether it is the database that failed (locked, full, gone, read-only), so that the same may work later."""
+    if isinstance(error, OperationalError) or is_read_only(error):
+        return True
+    return isinstance(error, DBAPIError) and error.connection_invalidated
+
+
+def is_read_only(error: Exception) -> bool:
+    """Whether the database takes no changes: it was set so, or is a standby, which refuses to begin a transaction that
+    writes as a feature that it does not support."""
+    seen = getattr(error, "orig", None)
+    return getattr(seen, "sqlite_errorname", "") == "SQLITE_READONLY" or getattr(seen, "sqlstate", "") in _READ_ONLY
 
 
 def is_conflict(error: Exception) -> bool:

@@ -12,6 +12,7 @@ from service.messages.addresses import tree_path
 from service.messages.answers import Answer, json_answer
 from service.operations import modules, trees
 from service.operations.jobs.job_results import BASE_REVISION, IS_EXACT
+from service.operations.preconditions import tree_tag, withdrawn
 from service.routes.deferred import deferred
 from service.views.resources import tree_view
 
@@ -26,8 +27,9 @@ def revision(act: Act, prepare: Callable[[], trees.Revision]) -> Callable[[], Co
         def commit(connection: Connection) -> Answer:
             """Store the revision and answer it."""
             tree, is_new = trees.commit(connection, act.viewer, ready)
-            view = tree_view(tree, trees.withdrawn(connection, act.viewer, tree))
-            return json_answer(view, 201 if is_new else 200, {"Location": tree_path(tree)})
+            gone = withdrawn(connection, act.viewer, tree)
+            headers = {"Location": tree_path(tree), "ETag": tree_tag(tree, gone)}
+            return json_answer(tree_view(tree, gone), 201 if is_new else 200, headers)
 
         return commit
 

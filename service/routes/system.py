@@ -32,10 +32,11 @@ async def get_livez() -> Response:
 
 @router.get("/readyz", response_model=Health)
 def get_readyz(store: StoreOf) -> Response:
-    """The database answers and has room; the catalogue was imported before the server began to listen."""
+    """The database answers and takes changes; the catalogue was imported before the server began to listen."""
     store.database.ping()
-    if not store.database.has_room:
-        raise Refused(503, "database-unavailable", "the disk of the database is full", headers={"Retry-After": "30"})
+    obstacle = store.database.obstacle()
+    if obstacle:
+        raise Refused(503, "database-unavailable", obstacle, headers={"Retry-After": "30"})
     return response_of(OK)
 
 

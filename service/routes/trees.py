@@ -2,18 +2,21 @@
 
 from __future__ import annotations
 
+from functools import partial
 from typing import Annotated
 
 from fastapi import Header, Query, Request, Response
 
 from service.database.connections import Connection
-from service.http.acting import ActOf, timed
+from service.http.acting import ActOf, Commit, timed
 from service.http.requests import JsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
 from service.messages.answers import Answer, json_answer
 from service.messages.paging import limited
 from service.messages.refusals import unprocessable
 from service.operations import searches, trees
+from service.operations.jobs.job_results import BASE_REVISION
+from service.operations.preconditions import Expected, latest_as, tree_tag, withdrawn
 from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
 from service.routes.bodies import APIRouter, body_of
@@ -23,6 +26,7 @@ from service.routes.revisions import changed, revision, shown_soon
 from service.schemas.entries import Entry
 from service.schemas.resources import TreePage, TreeView
 from service.views.resources import dump, tree_page_view, tree_view
+from substructures.tree.document import TreeSpec
 
 router = APIRouter(prefix="/v1/trees", tags=["trees"])
 READ, WRITE = [needs("read")], [needs("write")]
@@ -38,11 +42,24 @@ IfMatch = Annotated[str | None, Header(description="ETag of the tree that is to 
     responses=made(TreeView),
 )
 @timed("derive")
-def create_tree(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def create_tree(
+    body: JsonBody,
+    store: StoreOf,
+    act: ActOf,
+    if_match: Annotated[str | None, Header(description="ETag of the tree whose next revision this is")] = None,
+    if_none_match: Annotated[str | None, Header(description="*: only where there is no tree of this name")] = None,
+) -> Response:
     """Couple instances to a tree. 201 with the new revision, 200 when the latest one is the same."""
     entry, document = Entry.parted(body)
-    prepared = revision(act, lambda: trees.prepare(store, act.viewer, act.worker, document, entry))
-    return shown_soon(act, act.run(prepared, deferred(act, "assemble", body)))
+    expected = Expected(if_match, if_none_match)
+
+    def later() -> Commit:
+        """The job that stores the same."""
+        base = latest_as(store, act.viewer, TreeSpec.read(document).name, expected)
+        return deferred(act, "assemble", body, members={} if base is None else {BASE_REVISION: base})()
+
+    make = partial(trees.prepare, store, act.viewer, act.worker, document, entry, expected=expected)
+    return shown_soon(act, act.run(revision(act, make), later))
 
 
 @router.get("", response_model=TreePage, dependencies=READ)
@@ -74,17 +91,17 @@ def get_tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf) -> Re
     """A revision of a tree, the latest for a bare name. Its parts may be withdrawn, so clients revalidate by ETag."""
     with store.database.read() as connection:
         tree = trees.find(connection, viewer, ref)
-        gone = trees.withdrawn(connection, viewer, tree)
-    return conditional(request, trees.tree_tag(tree, gone), False, lambda: json_answer(tree_view(tree, gone)))
+        gone = withdrawn(connection, viewer, tree)
+    return conditional(request, tree_tag(tree, gone), False, lambda: json_answer(tree_view(tree, gone)))
 
 
 @router.delete("/{ref}", status_code=204, dependencies=WRITE)
-def remove_tree(ref: str, act: ActOf) -> Response:
+def remove_tree(ref: str, act: ActOf, if_match: IfMatch = None) -> Response:
     """Remove a tree with all its revisions. Its parts stay, and later revisions of the name count on."""
 
     def commit(connection: Connection) -> Answer:
         """Remove it."""
-        trees.remove(connection, act.viewer, ref)
+        trees.remove(connection, act.viewer, ref, if_match)
         return Answer(204, b"")
 
     return act.submit(lambda: commit)

@@ -16,7 +16,7 @@ from service.store.runtime import THREADS
 from service.store.store import Store
 from substructures import InvalidDocument
 
-from .conftest import HAND, PENDULUM, SLIDER, make_client
+from .conftest import HAND, PENDULUM, SLIDER, TREE, make_client
 from .fake_engine import FakeEngine, finished, running
 
 ASYNC = {"Prefer": "respond-async"}
@@ -84,6 +84,24 @@ def test_a_change_of_a_tree_that_was_removed_meanwhile(filled: TestClient, store
             (item,) = filled.get(f"/v1/jobs/{job['id']}/items").json()["items"]
             assert (item["state"], item["problem"]["code"]) == ("failed", "conflict")
     assert filled.get("/v1/trees/cell").status_code == 404
+
+
+def test_a_tree_that_a_job_makes_is_what_its_request_expected(filled: TestClient, store: Store) -> None:
+    """What was expected of the tree when the job was submitted has to be so when the tree is stored."""
+    tag = filled.get("/v1/trees/cell").headers["etag"]
+    with running(store, FakeEngine(is_open=False)) as engine:
+        given = [("none", {"If-None-Match": "*"}), ("new", {"If-None-Match": "*"}), ("cell", {"If-Match": tag})]
+        tree = {**TREE, "gravity": [0, 0, -3]}
+        jobs = {n: filled.post("/v1/trees", json={**tree, "name": n}, headers=ASYNC | h).json() for n, h in given}
+        for name in ("new", "cell"):
+            assert filled.post("/v1/trees", json={**TREE, "name": name, "gravity": [0, 0, -1]}).status_code == 201
+        engine.open()
+        items = {}
+        for name, job in jobs.items():
+            finished(filled, job["id"])
+            (items[name],) = filled.get(f"/v1/jobs/{job['id']}/items").json()["items"]
+    assert items["none"]["result"]["tree"] == "none@1"
+    assert [items[name]["problem"]["code"] for name in ("new", "cell")] == ["conflict"] * 2
 
 
 @pytest.mark.parametrize("fails", [False, True])

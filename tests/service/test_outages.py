@@ -12,7 +12,7 @@ import pytest
 import sqlalchemy as sa
 from fastapi.testclient import TestClient
 from sqlalchemy.engine import make_url
-from sqlalchemy.exc import DBAPIError, OperationalError
+from sqlalchemy.exc import DBAPIError, NotSupportedError, OperationalError
 
 from service import app
 from service.app import open_store
@@ -155,6 +155,33 @@ def test_a_full_disk_is_named(client: TestClient, store: Store, monkeypatch: pyt
         503,
         "the disk of the database is full",
     )
+
+
+def test_a_database_that_takes_no_changes_is_named(
+    client: TestClient, store: Store, address: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    told = "the database takes no changes: it is read-only, or a standby; nothing was changed"
+    with store.database.write() as connection:
+        connection.exec_driver_sql("PRAGMA query_only = ON")
+    answer = client.post("/v1/substructures", json=PENDULUM)
+    assert (answer.status_code, answer.json()["code"]) == (503, "database-unavailable")
+    assert answer.json()["detail"] == told
+    database = Database(address)
+    with database.write() as connection:
+        connection.exec_driver_sql("SET TRANSACTION READ ONLY")
+        with pytest.raises(DBAPIError) as refused:
+            put(connection, "a")
+    errors = pytest.importorskip("psycopg").errors
+    standby = NotSupportedError("x", {}, errors.FeatureNotSupported("cannot set transaction read-write mode"))
+    for error in (refused.value, standby):
+        assert is_outage(error)
+        assert (as_refused(error).status, as_refused(error).detail) == (503, told)
+    assert not database.obstacle()
+    monkeypatch.setattr(connections, "STANDBY", "SELECT true")
+    monkeypatch.setattr(store, "database", database)
+    ready = client.get("/readyz")
+    assert (ready.status_code, ready.json()["detail"]) == (503, "the database is a standby, which takes no changes")
+    database.close()
 
 
 def test_conflicts_are_known_by_their_state() -> None:

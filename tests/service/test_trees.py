@@ -189,6 +189,37 @@ def test_if_match_guards_against_other_changes(filled: TestClient) -> None:
         assert answer.headers["etag"] == filled.get("/v1/trees/cell").headers["etag"]
 
 
+def test_what_a_new_revision_and_a_removal_expect(filled: TestClient) -> None:
+    def refused(answer: Any) -> bool:
+        return (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
+
+    old = filled.get("/v1/trees/cell").headers["etag"]
+    coupled = filled.post("/v1/trees/cell/couplings", json=HAND, headers={"If-Match": old})
+    tag = coupled.headers["etag"]
+    assert tag == filled.get("/v1/trees/cell").headers["etag"] != old
+    other = {**TREE, "gravity": [0, 0, -1]}
+    for prefer in ({}, {"Prefer": "respond-async"}):
+        assert refused(filled.post("/v1/trees", json=other, headers={"If-Match": old, **prefer}))
+        assert refused(filled.post("/v1/trees", json=other, headers={"If-None-Match": "*", **prefer}))
+    assert refused(filled.post("/v1/trees", json={**TREE, "name": "no-cell"}, headers={"If-Match": "*"}))
+    assert refused(filled.delete("/v1/trees/cell", headers={"If-Match": old}))
+    assert filled.get("/v1/trees/cell").json()["revision"] == 2
+    made = filled.post("/v1/trees", json=other, headers={"If-Match": tag})
+    assert (made.status_code, made.json()["revision"], made.json()["based_on"]) == (201, 3, 2)
+    assert filled.delete("/v1/trees/cell", headers={"If-Match": made.headers["etag"]}).status_code == 204
+    again = filled.post("/v1/trees", json=TREE, headers={"If-None-Match": "*"})
+    assert (again.status_code, again.json()["revision"], again.json()["based_on"]) == (201, 4, None)
+
+
+def test_of_those_that_expect_no_tree_one_makes_it(filled: TestClient) -> None:
+    def make(k: int) -> int:
+        document = {**TREE, "name": "first", "gravity": [0, 0, -k]}
+        return filled.post("/v1/trees", json=document, headers={"If-None-Match": "*"}).status_code
+
+    assert sorted(at_once(make, range(1, 6))) == [201] + 4 * [412]
+    assert filled.get("/v1/trees/first").json()["revision"] == 1
+
+
 def test_list(filled: TestClient) -> None:
     for k in range(4):
         filled.post("/v1/trees", json={**TREE, "name": f"t{k}"})

@@ -117,8 +117,9 @@ def _in_store(found: Settings) -> Iterator[Line]:
         yield "store", f"{database.url}{size}", False
         text = f"{len(keys)} that count" if keys else "none: on loopback the server is open to all of this machine"
         yield "keys", text, False
-        if not database.has_room:
-            yield "store", "there is no room left to write", True
+        obstacle = database.obstacle()
+        if obstacle:
+            yield "store", obstacle, True
     finally:
         database.close()
 

@@ -14,6 +14,7 @@ from service.jobs.worker import Worker
 from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
 from service.operations import catalogue, differences, modules, pictures, trees
+from service.operations.preconditions import withdrawn
 from service.pages.account import PageRoute
 from service.pages.bench import MOST, Bench, bench_page
 from service.pages.details import part_page, tree_page
@@ -104,7 +105,7 @@ async def tree(ref: str, request: Request, store: StoreOf, viewer: ViewerOf, ask
         with store.database.read() as connection:
             found = trees.find(connection, viewer, ref)
             model = store.model(connection, found)
-            gone = trees.withdrawn(connection, viewer, found)
+            gone = withdrawn(connection, viewer, found)
             all_of_it = versions.page_revisions(connection, viewer, found.name, None, SHOWN + 1)
         shown = of_tree(found, model, asked.pose, asked.q)
         work = first_screen(store, shown, partial(modules.of_revision, store, found, has_parts=True), worker, asked)

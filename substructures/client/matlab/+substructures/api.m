@@ -624,8 +624,8 @@ classdef api
     end
 
     function answer = get_readyz (varargin)
-      % GET /readyz: The database answers and has room; the catalogue was imported before the server began
-      % to listen.
+      % GET /readyz: The database answers and takes changes; the catalogue was imported before the server
+      % began to listen.
       answer = substructures.call ('get', '/readyz', ...
         {}, {}, varargin);
     end
