@@ -110,7 +110,9 @@ def _scaled(given: Any, unit: Unit) -> float:
 
 
 def numeric(given: Any, pointer: str) -> Array:
-    """A finite array of doubles from nested lists of numbers. Raises InvalidArgument with the first fault's place."""
+    """A finite array of doubles from nested lists of numbers, or of arrays. Raises InvalidArgument with the first
+    fault's place.
+    """
     if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
         values = given.astype(np.float64, copy=False)
     else:
@@ -126,6 +128,8 @@ def numeric(given: Any, pointer: str) -> Array:
 
 
 def _check_numbers(given: Any, pointer: str, depth: int = 0) -> None:
+    if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
+        return
     if isinstance(given, (list, tuple)) and depth < 3:
         for i, x in enumerate(given):
             if not isinstance(x, (int, float, Decimal, Real)) or isinstance(x, bool):

@@ -98,7 +98,8 @@ class Sources:
     def of(self, source: str) -> Any:
         """What is derived of the parts of the tree. Raises InvalidArgument where these are not at hand, TooLarge."""
         if self.of_parts is None:
-            raise InvalidArgument.at("/quantities", "needs-parts", f"'{source}' needs the parts of the tree")
+            message = f"'{source}' needs the parts of the tree: give Sources(model, of_parts=of_parts(tree, parts))"
+            raise InvalidArgument.at("/quantities", "needs-parts", message)
         found = self.of_parts(source)
         return found.of(self.joints) if source == REACTIONS else found
 

@@ -93,3 +93,21 @@ def test_what_drives_make_of_the_blade_is_certified(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(name, ("U", "Omega"))
     with pytest.raises(VerificationFailed):
         quasi_velocity_equations(sledge(driven=STEER, velocity_constraints=[EDGE]), independent=["s.x", "s.f"])
+
+
+def test_a_blade_that_is_steered_past_a_right_angle_changes_its_velocities() -> None:
+    """A blade that turns by a = 0.3 t^2: u' = c a'^2 along it, c from the blade to the mass centre before it."""
+    body = {"name": "body", "parent": "base", "joint": {"type": "planar", "coordinate": ["x", "y", "f"]}, **MASS}
+    edge = {"name": "blade", "type": "knife_edge", "frame": "s.body"}
+    model = tree_model(
+        {**TREE, "driven": {"s.f": "0.3*t^2"}, "velocity_constraints": [edge]}, {"p": {"name": "p", "bodies": [body]}}
+    )
+    found = simulate(model, [0, 0], (0, 3), qd=[1, 0], outputs=Outputs(count=13))
+    assert found.is_right, found.checks
+    # u = 1 + 0.1 * 0.36 t^3/3
+    along = 1 + 0.012 * found.t**3
+    np.testing.assert_allclose(
+        found.qd, along[:, None] * np.array([np.cos(a := 0.3 * found.t**2), np.sin(a)]).T, atol=1e-8
+    )
+    kept = simulate(model, [0, 0], (0, 3), kind=ConstrainedMotion(closing(model), independent=["s.x"], v=[1]))
+    assert "where cos(0.3*t^2) is near zero" in kept.message

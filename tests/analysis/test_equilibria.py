@@ -47,6 +47,14 @@ def test_forces_vanish_on_random_trees(number: int) -> None:
         assert e.at.is_equilibrium
 
 
+def test_starts_may_be_arrays_in_a_list() -> None:
+    """As states found elsewhere are."""
+    found = equilibria(catalogue_model("double-pendulum"), starts=[np.zeros(2), np.array([3.1, 0])], count=0)
+    assert len(found.found) == 2
+    with pytest.raises(InvalidInput, match="rectangular"):
+        equilibria(catalogue_model("double-pendulum"), starts=[np.zeros(2), np.zeros(3)], count=0)
+
+
 def test_a_coordinate_without_force_is_held() -> None:
     """The cart stays where it started; K is singular along it."""
     found = equilibria(catalogue_model("cart-pendulum"))

@@ -189,6 +189,19 @@ def test_runge_and_lenz() -> None:
     assert_held(model)
 
 
+def test_henon_and_heiles() -> None:
+    """With 2 y^3 beside x^2 y the motion is that of a fifth-order KdV wave: x^4 + 4 x^2 y^2 - 4 p (p y - q x) + ...
+
+    J. Hietarinta, Direct methods for the search of the second invariant, Phys. Rep. 147, 1987, section 3.
+    """
+    model = planet("m*((x^2 + y^2)/2 + x^2*y + 2*y^3)")
+    assert constants(model) == {"energy": "energy", "quadratic.1": "quadratic"}
+    at, values = values_of(model, "quadratic.1", "energy")
+    (x, y), (p, q) = at["q"].T, at["qd"].T
+    wanted = x**4 + 4 * x**2 * y**2 - 4 * p * (p * y - q * x) + 4 * x**2 * y + 3 * (p**2 + x**2)
+    assert left_over(values[:, 0], [wanted, values[:, 1]]) < 1e-12
+
+
 def test_other_central_forces_have_no_such_vector() -> None:
     """Bertrand: the oscillator has a tensor, whose diagonal is one more beside energy and moment; k/r^2 none."""
     assert set(constants(planet("k/(x^2 + y^2)"))) == {"energy", "angular_momentum.y"}

@@ -238,3 +238,16 @@ def test_of_a_nanokilogram_a_free_end_is_as_good() -> None:
     found = optimal_control(nanokilogram(), problem, Demands(segments=1))
     assert found.status == "optimal"
     assert found.cost == pytest.approx(0.75, rel=1e-6)
+
+
+def test_a_cost_that_vanishes_at_its_least_value_has_an_optimum() -> None:
+    """x = cos(sqrt(k) t) is -1/2 after a second where k = (2 pi/3)^2: the cost (x + 1/2)^2 falls to 0 there."""
+    joint = {"type": "prismatic", "coordinate": "s", "stiffness": "k"}
+    body = {"name": "b", "parent": "base", "joint": joint, "mass": 1}
+    document = {"name": "x", "parameters": {"k": {"value": 1, "unit": "N/m"}}, "bodies": [body]}
+    cost = Cost(terminal="(x.s + 1/2)^2")
+    problem = ControlProblem(controls=[], horizon=1, intervals=20, steps=5, q=[1], cost=cost)
+    wanted = Demands(free_parameters={"k": (1, 9)}, tolerance=1e-12)
+    found = optimal_control(model_of(document, (0, 0, 0)), problem, wanted)
+    assert found.parameters["k"] == pytest.approx((2 * np.pi / 3) ** 2, rel=1e-8)
+    assert (found.status, found.is_right) == ("optimal", True)

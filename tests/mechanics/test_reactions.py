@@ -198,7 +198,7 @@ def test_chosen_joints_alone() -> None:
     assert len(transmitted.of(["a2.q"]).program) < 0.7 * len(transmitted.program)
     with pytest.raises(InvalidArgument, match=r"there is no joint 'a2.p'.*a2.q"):
         transmitted.of(["a0.q", "a2.p"])
-    with pytest.raises(InvalidArgument, match="'reactions' needs the parts"):
+    with pytest.raises(InvalidArgument, match=r"'reactions' needs the parts .*: give Sources\("):
         evaluate(model, "reactions", [0, 0, 0])
 
 

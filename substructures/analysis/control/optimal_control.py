@@ -54,6 +54,8 @@ IterationReport = Callable[[int, float, float], None]
 STATIONARY = 1e-3
 #: distance of a limit along the path that counts as none, relative to the largest
 REACHED = 1e-6
+#: part of what the search took off the cost that counts as none: the least cost may be zero
+NONE = 1e-6
 
 ADVICE = {
     "optimal": "",
@@ -70,7 +72,7 @@ class Optimum:
     accurate); ``message`` says what to change. ``horizon`` [s] and ``parameters``: those given, or found where they
     were unknown.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost or, where it
-    is larger, to the cost over the largest variable;
+    is larger, to the cost (at least a millionth of what the search took off it) over the largest variable;
     ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
     where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
     series of substructures.analysis.control.cost_gradient, and the demands as its checks.
@@ -176,7 +178,9 @@ def _scaled(kind: str, one: Callable[[Array], Array], by: Callable[[Array], Arra
 def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:
     """The necessary conditions at z."""
     cost, _ = search.cost(z)
-    nu, stationarity = _multipliers(search, z)
+    costs = history[:, 0][history[:, 0] < BEYOND]
+    least = NONE * float(costs.max(initial=cost) - cost)
+    nu, stationarity = _multipliers(search, z, least)
     violation = search.violation(z)
     limit = max(1e-6, 10 * search.wanted.tolerance)
     status: Literal["optimal", "feasible", "failed"] = "failed"
@@ -190,7 +194,7 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
     still: About = ("stationarity", "zero", "the gradient of the Lagrangian, relative to that of the cost", "1")
     end = float(motion.t[-1])
     necessary = Check.at(met, violation, end, 1.0, limit), Check.at(still, stationarity, end, 1.0, STATIONARY)
-    accuracy = motion_checks(shooting, run, search.first, error_limit, search.limits_on_path)
+    accuracy = motion_checks(shooting, run, search.first, error_limit, search.limits_on_path, least)
     if not verdict(accuracy):
         # of a motion that is wrong nothing is optimal
         status, advice = "failed" if verdict(accuracy) is False else status, advice or STEPS
@@ -211,9 +215,10 @@ def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, 
     )
 
 
-def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
+def _multipliers(search: ShootingProgram, z: Array, least: float) -> tuple[Array, float]:
     """Multipliers nu of the equations, and |d(J + nu . residual - mu . path)/dz| in the free variables relative to
-    |dJ/dz| (J/|z| where that is larger), with mu >= 0 of the limits that are reached; all in the units of the program.
+    |dJ/dz| (J/|z| where that is larger, J at ``least`` so much), with mu >= 0 of the limits that are reached; all in
+    the units of the program.
     """
     unit, _ = search.units
     cost, gradient = search.cost(z)
@@ -227,7 +232,7 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     if search.rows:
         nu[:] = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0]
     # without demands dJ/dz itself vanishes: the cost over the size of the variables is the measure then
-    typical = abs(cost) / (1 + float(np.abs(z / unit).max(initial=0)))
+    typical = max(abs(cost), least) / (1 + float(np.abs(z / unit).max(initial=0)))
     size = max(float(np.abs(gradient).max(initial=0)), typical) or 1.0
     largest = _left(gradient + A.T @ nu, below, above) / size
     values, by = search.on_path(z)
@@ -237,9 +242,9 @@ def _multipliers(search: ShootingProgram, z: Array) -> tuple[Array, float]:
     # dJ/dz + A^T nu - C^T mu - low + high = 0 with mu, low, high >= 0: they are not unique, least squares find some
     one = np.eye(len(z))
     columns = np.concatenate([A, -reached, -one[below], one[above]]).T
-    least = np.zeros(columns.shape[1])
-    least[: search.rows] = -np.inf
-    found = scipy.optimize.lsq_linear(columns, -gradient, (least, np.inf), method="bvls").x
+    lowest = np.zeros(columns.shape[1])
+    lowest[: search.rows] = -np.inf
+    found = scipy.optimize.lsq_linear(columns, -gradient, (lowest, np.inf), method="bvls").x
     signed, mu = found[: search.rows], found[search.rows : search.rows + len(reached)]
     left = _left(gradient + A.T @ signed - reached.T @ mu, below, above) / size
     return (signed, left) if left < largest else (nu, largest)

@@ -29,10 +29,10 @@ ABRUPT = "the motion is not finite"
 
 
 def motion_checks(
-    shooting: Shooting, run: Rollout, start: Array, limit: float, path: PathLimits | None = None
+    shooting: Shooting, run: Rollout, start: Array, limit: float, path: PathLimits | None = None, least: float = 0.0
 ) -> tuple[Check, ...]:
     """Cost and motion of ``run`` are those of a run with half the steps from ``start`` (2 n,), in one piece, which
-    keeps the limits of the ``path`` at all its steps.
+    keeps the limits of the ``path`` at all its steps. The cost counts as ``least`` where it is less.
     """
     reason, names = _unable(shooting, run), () if path is None else path.texts
     if reason:
@@ -40,7 +40,7 @@ def motion_checks(
     finer = shooting.refined()
     two = finer.run(start[None], run.controls)
     kept = () if path is None else _kept(finer, two, path, limit)
-    return (*_motion(shooting, run, two, limit), *_closed(shooting, run, limit), *kept)
+    return (*_motion(shooting, run, two, limit, limit * least), *_closed(shooting, run, limit), *kept)
 
 
 def _kept(finer: Shooting, two: Rollout, path: PathLimits, limit: float) -> Iterator[Check]:
@@ -76,10 +76,10 @@ def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float
     return (*_motion(shooting, run, two, limit), *_closed(shooting, run, limit), *derivatives)
 
 
-def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float) -> Iterator[Check]:
+def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float, noise: float = 0.0) -> Iterator[Check]:
     m, problem = shooting.m, shooting.problem
     end = np.full(1, problem.t + problem.horizon)
-    yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit)
+    yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit, noise)
     one, other = run.states, two.states[::2]
     noise = ROUNDING * float(np.abs(other).max(initial=0))
     t = np.asarray(problem.t + shooting.h * np.arange(len(one)), dtype=np.float64)

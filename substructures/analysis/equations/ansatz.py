@@ -95,15 +95,19 @@ def in_momenta(f: ModelFormulas, degree: int) -> Ansatz:
     ansatz = Ansatz(f, [f"p.{name}" for name in f.model.coordinates], f.momenta, rates)
     f.symbols.setdefault("t", Symbol("t", "time", "s"))
     t, slides = f.graph.symbol("t"), [q for q, joint in zip(f.q, f.model.joints, strict=True) if joint == "P"]
+    squares = [x * y for x, y in combinations_with_replacement(slides, 2)]
     potential = _functions(f, [f.scalar("potential_energy")])
     ansatz.add([t, t * t, *f.q, *(x * y for x, y in combinations_with_replacement(f.q, 2))], 0)
     ansatz.add([*potential, *(x * y for x in potential for y in slides)], 0)
     ansatz.add([f.graph.one, t, *slides], 1)
     ansatz.told = "linear in the momenta"
-    squares = [x * y for x, y in combinations_with_replacement(slides, 2)]
     for power, some in enumerate(([f.graph.one], slides, squares) if degree > 1 else ()):
-        if len(ansatz.columns) + len(some) * f.n * (f.n + 1) // 2 > COLUMNS:
+        size = len(ansatz.columns) + len(some) * f.n * (f.n + 1) // 2
+        if size > COLUMNS:
             break
+        # phi' cancels q_a q_b p_c d_d V: terms of V with two more slides
+        more = [x * y for x in potential for y in some] if some is squares else []
+        ansatz.add(more if size + len(more) <= COLUMNS else [], 0)
         ansatz.add(some, 2)
         ansatz.told = f"quadratic in the momenta with coefficients of degree {power} in slides"
     return ansatz

@@ -94,9 +94,8 @@ def _choices(rolling: ReducedMotion, problem: RollingProblem, folder: Path | Non
     """Velocities that the program chose are changed on the way, but where a corner of a force law is followed."""
     equations, conditions = rolling.equations, rolling.conditions
     given = problem.kind.velocities is not None or problem.kind.independent is not None
-    is_moving = "t" in equations.program.needs(["constraints"])  # rows of frames that are driven
     cornered = has_corners(equations.program) or has_corners(conditions.expressions)
-    if given or is_moving or cornered or equations.determinant is None:
+    if given or cornered or equations.determinant is None:
         return VelocityChoices(rolling, None)
 
     def make(chosen: Sequence[str]) -> ReducedMotion:
@@ -149,7 +148,7 @@ def _judged(choices: VelocityChoices, problem: RollingProblem, motion: Integrate
     equations, conditions, n = choices.first.equations, choices.first.conditions, choices.first.n
     t, states, results = motion.judged()
     x, columns = np.zeros((len(t), 2 * n)), dict[str, Array]()
-    for rolling, places, y in choices.pieces(states):
+    for rolling, places, y in choices.pieces(t, states):
         x[places], found = _series(rolling, t[places], y)
         for name, values in found.items():
             columns.setdefault(name, np.zeros((len(t), *values.shape[1:])))[places] = values

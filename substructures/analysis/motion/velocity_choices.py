@@ -66,24 +66,24 @@ class VelocityChoices:
             return make
         return lambda _, t, x, end, **__: ChangingStepper(self, make, t, x, end)
 
-    def pieces(self, x: Array) -> list[tuple[ReducedMotion, NDArray[np.int64], Array]]:
-        """States (K, N) by the choice that is best at them: their places, and y there."""
+    def pieces(self, t: Array, x: Array) -> list[tuple[ReducedMotion, NDArray[np.int64], Array]]:
+        """States (K, N) at times (K,) by the choice that is best at them: their places, and y there."""
         if self.make is None:
             return [(self.first, np.arange(len(x)), x)]
-        best = [self._best(B) for B in self._constraints(x)]
+        best = [self._best(B) for B in self._constraints(t, x)]
         found = []
         for motion in dict.fromkeys(best):
             places = np.flatnonzero([one is motion for one in best])
             found.append((motion, places, np.array([motion.reduced(state) for state in x[places]])))
         return found
 
-    def good(self, x: Array, motion: ReducedMotion) -> bool:
+    def good(self, t: float, x: Array, motion: ReducedMotion) -> bool:
         """Whether a choice may be kept at a state."""
-        return self._share(self._constraints(x[None])[0], motion) >= WORN
+        return self._share(self._constraints(np.full(1, t), x[None])[0], motion) >= WORN
 
-    def at(self, x: Array) -> ReducedMotion:
+    def at(self, t: float, x: Array) -> ReducedMotion:
         """The best choice at a state, of those that are known if one of them is good."""
-        return self._best(self._constraints(x[None])[0])
+        return self._best(self._constraints(np.full(1, t), x[None])[0])
 
     def _best(self, B: Array) -> ReducedMotion:
         """The same where the constraints are B (m, n)."""
@@ -103,10 +103,12 @@ class VelocityChoices:
                 self.known[key].inputs.enter(*self._between)
         return self.known[key]
 
-    def _constraints(self, x: Array) -> Array:
-        """B (K, m, n) at states (K, N)."""
+    def _constraints(self, t: Array, x: Array) -> Array:
+        """B (K, m, n) at times (K,) and states (K, N)."""
+        conditions = self.first.conditions
         columns = [(list(self.first.equations.model.coordinates), x[:, : self.first.n])]
-        return self._rows.evaluate(self.first.conditions.values, columns=columns)["constraints"]
+        values = conditions.values | conditions.inputs_at(t, x[:, :-1]) | {"t": t}
+        return self._rows.evaluate(values, columns=columns)["constraints"]
 
     @cached_property
     def _rows(self) -> Kernel:
@@ -128,7 +130,7 @@ class ChangingStepper:
         self._begin({})
 
     def _begin(self, step: dict[str, float]) -> None:
-        self.motion = self.choices.at(self.y)
+        self.motion = self.choices.at(self.t, self.y)
         self.inner: Any = self.make(self.motion, self.t, self.motion.reduced(self.y), self.end, **step)
 
     @property
@@ -138,7 +140,7 @@ class ChangingStepper:
 
     def step(self) -> str | None:
         """Advance by one step, at most to the end; a message when that failed."""
-        if not self.choices.good(self.y, self.motion):
+        if not self.choices.good(self.t, self.y, self.motion):
             self._counted += self.inner.nfev
             # machine code may be steps ahead, where it came to the end of its choice
             known = hasattr(self.inner, "h_abs") and self.t > self.t_old
