@@ -36,9 +36,9 @@ from substructures.analysis.motion.problems.problem import TAYLOR, Start
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.taylor import taylor_stepper
+from substructures.analysis.plot import Line, Panel, plot
 from substructures.analysis.simulate import FixedStep, Integrator, Outputs, simulate
 from substructures.compile import compile_program
-from substructures.pictures.plot import Line, Panel, plot
 from substructures.tree.model import Model
 
 Array = Any

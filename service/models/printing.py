@@ -29,8 +29,9 @@ from substructures.quantities.numbers.result import plain_names
 from substructures.quantities.numbers.workspace import momentum
 from substructures.quantities.quantity import REACTIONS, TABLE, askable, needs_parts
 from substructures.quantities.sources import Sources
+from substructures.quantities.stored_outputs import require_stored
 from substructures.tree.glossary import glossary
-from substructures.tree.model import Model, require_stored
+from substructures.tree.model import Model
 
 JSON = "json"
 CHRISTOFFEL, BASE = "christoffel", "base_parameters"

@@ -11,7 +11,7 @@ from substructures.part.part import Part
 from substructures.quantities.accelerations import Evaluator
 from substructures.quantities.numbers.evaluation import interpreted
 from substructures.quantities.quantity import REGRESSOR
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.quantities.sources import Sources
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec

@@ -39,7 +39,7 @@ from service.queries.searching.tree_search import TreeSearch
 from service.queries.searching.words import words_of
 from service.queries.trees import Tree
 from service.views.jobs import job_path
-from substructures.documents.faults import PATTERNS
+from substructures.documents.patterns import PATTERNS
 
 Filter = Annotated[str, Query(max_length=500)]
 To = Annotated[str, Query(min_length=1, max_length=160)]

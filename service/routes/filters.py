@@ -8,8 +8,7 @@ from fastapi import Depends, Query
 from pydantic import StringConstraints
 
 from service.queries.searching.search import SORTS
-from substructures.documents.faults import PATTERNS
-from substructures.documents.fields import NAME
+from substructures.documents.patterns import NAME, PATTERNS
 
 PortName = Annotated[str, StringConstraints(pattern=NAME)]
 JOINTS = "^[RPrp]*$"

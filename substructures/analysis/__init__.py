@@ -25,6 +25,7 @@ equations        ``nonholonomic``: velocity constraints, Voronets and Boltzmann-
                  dependencies between functions; ``formulas``: a model in a new graph
 continuation     curves F(u) = 0 by pseudo-arclength, and where two cross
 report           a model told in words: structure, symmetries, sizes of terms; as text, LaTeX, a page
+plot             lines over an axis as SVG
 verdict          what checks found, and what they say together: right, wrong, or nobody knows
 ===============  ===================================================================================================
 """

@@ -10,12 +10,12 @@ import numpy as np
 
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.sections import PoincareSection
+from substructures.analysis.plot import Line, Panel, plot
 from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.stability.steady_result import BallSteadyMotion, SteadyMotion, SteadyMotions
 from substructures.analysis.verdict import Check
 from substructures.array import Array
-from substructures.pictures.plot import Line, Panel, plot
 
 TIME = "t in s"
 #: spread of what is the same at all crossings of a section [rad, m, per s]

@@ -54,8 +54,10 @@ def require_no_less(before: Mapping[str, Any], now: Mapping[str, Any]) -> None:
         raise VerificationFailed(f"the potential of the forces on {listed(sorted(left_out))} is left out")
 
 
-def told_agreement(certificate: Mapping[str, Any]) -> str:
-    """The largest error of a certificate, in words."""
+def told_figures(operations: Mapping[str, int], certificate: Mapping[str, Any]) -> str:
+    """How much metric and Christoffel symbols take, and the largest error of a certificate, in words."""
+    counts = (f"{name} {operations.get(name, 'not stored')}" for name in ("metric", "christoffel"))
     errors = certificate.get("direct_form", {}).get("max_relative_error", {})
     known = [error for error in errors.values() if error is not None]
-    return f"agrees with the direct form to {max(known):.0e}" if known else "not verified"
+    agrees = f"agrees with the direct form to {max(known):.0e}" if known else "not verified"
+    return f"operations: {', '.join(counts)}; {agrees}"

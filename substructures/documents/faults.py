@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cache
 from typing import Any
 
 from pydantic import BaseModel, ValidationError
 
+from substructures.documents.patterns import PATTERNS
 from substructures.documents.text import escape
 from substructures.documents.to_json import write_json
 from substructures.errors import Fault, InvalidDocument, listed, meant
 
 #: so many characters of a value are shown in a message
 SHOWN = 80
-#: by pattern, what is said about a text that does not match it
-PATTERNS: dict[str, Callable[[str], str]] = {}
 
 Step = int | str
 Error = Mapping[str, Any]

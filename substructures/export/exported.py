@@ -24,7 +24,7 @@ from substructures.printers.meanings import OUTPUTS as LETTERS_OF_OUTPUTS
 from substructures.printers.symmetry import symmetry_rule
 from substructures.quantities.quantity import TABLE, askable, made_of, outputs_of
 from substructures.quantities.sources import Sources
-from substructures.tree.model import require_stored
+from substructures.quantities.stored_outputs import require_stored
 
 ALL = "all"
 #: operations of a program that names are looked for in

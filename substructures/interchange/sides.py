@@ -16,7 +16,8 @@ from substructures.part.definition import Definition
 from substructures.part.part import Part
 from substructures.quantities.numbers.evaluation import evaluate
 from substructures.quantities.numbers.states import read_states, symbol_values
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.given.ties import require_untied

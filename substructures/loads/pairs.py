@@ -17,7 +17,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.mechanics.composite_form import pairing
 from substructures.mechanics.kinematics import Columns, Link, Pose, carrier_link, fixed_columns
 from substructures.mechanics.linear3 import ZERO, Scalar, Vector, add, apply, cross, scale, sub, transpose
-from substructures.mechanics.newton_euler import Wrench
+from substructures.mechanics.wrench import Wrench
 
 
 class Carriers(Protocol):

@@ -12,7 +12,8 @@ from dataclasses import dataclass
 from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.kinematics import INTERFACE, Link
 from substructures.mechanics.linear3 import Scalar, dot, scale
-from substructures.mechanics.newton_euler import BodyMotion, Wrench
+from substructures.mechanics.newton_euler import BodyMotion
+from substructures.mechanics.wrench import Wrench
 
 
 def velocity_forces(

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
-from substructures.certificate.agreement import not_judged, told_agreement
+from substructures.certificate.agreement import not_judged, told_figures
 from substructures.documents import write_json
 from substructures.errors import listed
 from substructures.expr.operations import Output
@@ -54,7 +54,7 @@ class Part:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
         what = f"{self.dof} coordinates ({self.joints or 'none'}): {listed(self.coordinates) or 'none'}"
         places = f"bodies {listed(self.bodies) or 'none'}; ports {listed(self.ports) or 'none'}"
-        figures = f"{told_operations(self.operations)}; {told_agreement(self.certificate)}"
+        figures = told_figures(self.operations, self.certificate)
         return f"Part '{self.name}', {what}; {places}\n{figures}"
 
     @classmethod
@@ -220,9 +220,3 @@ def _grouped(output: Output, axes: int) -> dict[tuple[int, ...], list[int]]:
     for index, entry in zip(output.index, output.entries, strict=True):
         groups.setdefault(index[:axes], []).append(entry)
     return groups
-
-
-def told_operations(operations: Mapping[str, int]) -> str:
-    """How much metric and Christoffel symbols take, in words."""
-    counts = (f"{name} {operations.get(name, 'not stored')}" for name in ("metric", "christoffel"))
-    return f"operations: {', '.join(counts)}"

@@ -21,7 +21,8 @@ from substructures.expr.graph import Expr
 from substructures.expr.program import Entries, Formulas, Program, Symbol
 from substructures.quantities.derivatives import factors_of
 from substructures.quantities.numbers.workspace import Workspace, momentum, vector
-from substructures.tree.model import Model, require_stored
+from substructures.quantities.stored_outputs import require_stored
+from substructures.tree.model import Model
 
 MOMENTA = ("hamiltonian", "canonical_equations")
 PIVOTS = "pivots"

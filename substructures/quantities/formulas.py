@@ -13,7 +13,8 @@ from substructures.quantities.certificate import certified
 from substructures.quantities.numbers.memo import ProgramCache
 from substructures.quantities.numbers.workspace import ID, Workspace, momentum, vector
 from substructures.quantities.quantity import DERIVED, PROGRAMS
-from substructures.tree.model import Model, require_stored
+from substructures.quantities.stored_outputs import require_stored
+from substructures.tree.model import Model
 
 #: outputs of a model from which accelerations are computed by numbers: g q'' = Q - Gamma q' q'
 DYNAMICS = ("metric", "bias", "forces")

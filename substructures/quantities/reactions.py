@@ -22,7 +22,8 @@ from substructures.expr.program import Formulas, array
 from substructures.expr.walk import transfer
 from substructures.mechanics.kinematics import INTERFACE
 from substructures.mechanics.linear3 import Matrix, Scalar, apply, negate, transpose
-from substructures.mechanics.newton_euler import Wrench, inertial_load
+from substructures.mechanics.newton_euler import inertial_load
+from substructures.mechanics.wrench import Wrench
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.relations import of_coordinates

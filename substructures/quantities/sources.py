@@ -35,10 +35,11 @@ from substructures.quantities.quantity import (
     made_of,
     outputs_of,
 )
+from substructures.quantities.stored_outputs import require_stored
 from substructures.tree.document import TreeSpec, require_undriven
 from substructures.tree.given.ties import require_untied
-from substructures.tree.model import Model, require_stored
-from substructures.tree.plausibility import Plausibility
+from substructures.tree.judge import Judge
+from substructures.tree.model import Model
 
 #: outputs that a large model does not have as formulas, in numbers from the parts of the tree
 PARTS = "parts"
@@ -72,12 +73,12 @@ class Sources:
     model: Model
     derive: Callable[[Model, str], Program] = kept
     of_parts: Callable[[str], Any] | None = None
-    plausibility: Callable[[], Plausibility] | None = None
+    plausibility: Callable[[], Judge] | None = None
     numbers: Callable[[Mapping[str, Any], list[str], int], dict[str, Array]] | None = None
     joints: tuple[str, ...] | None = None
 
     @property
-    def judge(self) -> Plausibility | None:
+    def judge(self) -> Judge | None:
         """What says whether values are plausible; None of a model out of a store without its parts."""
         return self.model.plausibility if self.plausibility is None else self.plausibility()
 
@@ -87,8 +88,8 @@ class Sources:
         stored = self.model.program.outputs.get("christoffel")
         if stored is not None:
             return stored.symmetry
-        definitions = () if self.judge is None else self.judge.definitions.values()
-        return "connection" if self.model.balls or any(each.relations for each in definitions) else "christoffel"
+        has_relations = self.judge is not None and self.judge.has_relations
+        return "connection" if self.model.balls or has_relations else "christoffel"
 
     @cached_property
     def defaults(self) -> Mapping[str, float]:

@@ -9,7 +9,8 @@ from pydantic_core import PydanticCustomError
 
 from substructures.analysis.motion.problems.output_times import MAX_OUTPUTS
 from substructures.documents import DocumentPart
-from substructures.documents.fields import NAME, Real
+from substructures.documents.fields import Real
+from substructures.documents.patterns import NAME
 from substructures.ensembles.motion_column import MOST_COLUMNS, MotionColumn
 from substructures.ensembles.quantity_columns import QuantityColumn
 from substructures.ensembles.samples import Samples

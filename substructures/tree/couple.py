@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Mapping
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from time import perf_counter
 from typing import Any
 
 from substructures.certificate.agreement import not_judged
+from substructures.documents.fields import in_si
 from substructures.errors import TooLarge, VerificationFailed
 from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
@@ -21,7 +22,7 @@ from substructures.part.topology import entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, declared, division_by_zero, joint_parents
 from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.coupling import Coupled, couple_parts
-from substructures.tree.cuts import Reduction, reduction_of
+from substructures.tree.cuts import Reduction
 from substructures.tree.document import TreeSpec
 from substructures.tree.forces.load_potentials import found_potential
 from substructures.tree.forces.loads import load_formulas
@@ -173,7 +174,7 @@ def _model(assembly: Assembly, result: Program, plausibility: Plausibility) -> M
     limited = tuple(moving[a] for a in sorted(assembly.limits) if moving[a] in free)
     spec = assembly.reading.spec
     order = [(each.name, m.part) for each, m in zip(assembly.instances, assembly.mounted, strict=True)]
-    told = reduction_of(order, bool(spec.closures), assembly.reduced)
+    told = _reduction_of(order, bool(spec.closures), assembly.reduced)
     tied, touching = (tuple(each.plain() for each in some) for some in (spec.velocity_constraints, spec.contacts))
     axes, inputs = (tuple(free), "".join(free.values()), frames), assembly.inputs | driven_inputs(assembly)
     reduction = Reduction() if any(given.values()) else told
@@ -210,6 +211,28 @@ def loaded_outputs(assembly: Assembly, coupled: Coupled, names: frozenset[str] |
         coupled = coupled.with_loads(acting.forces, acting.potential)
     least = partial(least_forces, assembly.scope, coupled, rates)
     return model_outputs(assembly, coupled, rates, accelerations, names, least)
+
+
+def _reduction_of(order: Sequence[tuple[str, Part]], is_closed: bool, reduced: Collection[str]) -> Reduction:
+    """Of the instances of a tree by name, hosts first; ``is_closed``: by closures of its own; ``reduced``: those whose
+    formulas are of independent coordinates alone.
+
+    Independent are the coordinates that closed parts name, and all those of open ones.
+    """
+    closed = [part.definition for name, part in order if part.definition.closures and name not in reduced]
+    independent: list[str] = []
+    start: dict[str, str] = {}
+    ranges: dict[str, tuple[str, str]] = {}
+    for name, part in order:
+        own = part.definition.independent if part.definition.closures else part.coordinates
+        independent += [f"{name}.{c}" for c in part.coordinates if c in own]
+        given = part.definition.start.items()
+        start |= {f"{name}.{c}": str(in_si(x)) for c, x in given if c in own or name not in reduced}
+        for c, (low, high) in part.definition.ranges.items():
+            ranges[f"{name}.{c}"] = str(in_si(low)), str(in_si(high))
+    # a closure of the tree may bind coordinates of any part, of which no part can say which are independent then
+    is_said = closed and all(definition.independent for definition in closed) and not is_closed
+    return Reduction(tuple(independent) if is_said else (), start, ranges)
 
 
 def _limited(result: Program, max_nodes: int) -> Program:

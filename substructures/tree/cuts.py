@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from substructures.documents.fields import in_si
 from substructures.errors import InvalidDocument
 from substructures.expr.graph import Expr
 from substructures.mechanics.linear3 import Matrix, Vector
-from substructures.part.part import Part
 
 
 @dataclass(frozen=True, slots=True)
@@ -77,28 +75,6 @@ class Cut:
     start: ClosureEnd
     end: ClosureEnd
     length: Expr
-
-
-def reduction_of(order: Sequence[tuple[str, Part]], is_closed: bool, reduced: Collection[str]) -> Reduction:
-    """Of the instances of a tree by name, hosts first; ``is_closed``: by closures of its own; ``reduced``: those whose
-    formulas are of independent coordinates alone.
-
-    Independent are the coordinates that closed parts name, and all those of open ones.
-    """
-    closed = [part.definition for name, part in order if part.definition.closures and name not in reduced]
-    independent: list[str] = []
-    start: dict[str, str] = {}
-    ranges: dict[str, tuple[str, str]] = {}
-    for name, part in order:
-        own = part.definition.independent if part.definition.closures else part.coordinates
-        independent += [f"{name}.{c}" for c in part.coordinates if c in own]
-        given = part.definition.start.items()
-        start |= {f"{name}.{c}": str(in_si(x)) for c, x in given if c in own or name not in reduced}
-        for c, (low, high) in part.definition.ranges.items():
-            ranges[f"{name}.{c}"] = str(in_si(low)), str(in_si(high))
-    # a closure of the tree may bind coordinates of any part, of which no part can say which are independent then
-    is_said = closed and all(definition.independent for definition in closed) and not is_closed
-    return Reduction(tuple(independent) if is_said else (), start, ranges)
 
 
 def require_open(closures: Sequence[ClosureRows], instead: str) -> None:

@@ -11,8 +11,8 @@ from pydantic import Discriminator, Field, Tag, model_validator
 from pydantic_core import PydanticCustomError
 
 from substructures.documents import DocumentPart, read_model
-from substructures.documents.faults import PATTERNS
-from substructures.documents.fields import NAME, LibraryName, Name, Number, NumberVector, PlainNumber
+from substructures.documents.fields import LibraryName, Name, Number, NumberVector, PlainNumber
+from substructures.documents.patterns import NAME, PATTERNS
 from substructures.errors import Fault, InvalidDocument, among, listed, meant
 from substructures.expr.steps import RESERVED
 from substructures.loads.document import AT

@@ -11,8 +11,9 @@ from collections.abc import Iterator, Mapping, Sequence
 from substructures.mechanics.composite_form import JointMomentum
 from substructures.mechanics.kinematics import INTERFACE, Link, from_body
 from substructures.mechanics.linear3 import Matrix, Scalar, Vector, negate
-from substructures.mechanics.newton_euler import BodyMotion, Wrench
+from substructures.mechanics.newton_euler import BodyMotion
 from substructures.mechanics.velocity_forces import motions_before, transmitted
+from substructures.mechanics.wrench import Wrench
 from substructures.tree.forces.velocity_forces import outermost
 from substructures.tree.grouping import on_carriers
 from substructures.tree.inverse_dynamics import body_motions, inertial_loads, pass_back, subtract_applied

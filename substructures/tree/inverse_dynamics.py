@@ -11,7 +11,8 @@ from collections.abc import Mapping, Sequence
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, from_body
 from substructures.mechanics.linear3 import Scalar, exactly, negate
-from substructures.mechanics.newton_euler import BodyMotion, Wrench, inertial_load
+from substructures.mechanics.newton_euler import BodyMotion, inertial_load
+from substructures.mechanics.wrench import Wrench
 from substructures.tree.grouping import Inertias, on_carriers
 from substructures.tree.mounted_part import WORLD, PlacedPart
 

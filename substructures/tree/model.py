@@ -2,21 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
 
-from substructures.certificate.agreement import not_judged, told_agreement
-from substructures.errors import InvalidDocument, listed
+from substructures.certificate.agreement import not_judged, told_figures
+from substructures.errors import listed
 from substructures.expr.program import Program
 from substructures.mechanics.state_names import effort_units, positions_of, state_units
-from substructures.part.part import told_operations
-from substructures.part.topology import MOST_CHRISTOFFEL
 from substructures.tree.cuts import ClosureRows, Reduction
-from substructures.tree.numbers import with_numbers
-from substructures.tree.plausibility import Plausibility
+from substructures.tree.judge import Judge
+from substructures.tree.with_numbers import with_numbers
 
 KINEMATICS = ("position", "rotation", "U", "Omega")
 AXES = ("coordinates", "joints", "frames", "limited")
@@ -43,7 +41,7 @@ class Model:
     closures: tuple[ClosureRows, ...] = ()
     inputs: Mapping[str, Mapping[str, Any]] = field(default_factory=dict, hash=False)
     limited: tuple[str, ...] = ()
-    plausibility: Plausibility | None = field(default=None, compare=False, repr=False)
+    plausibility: Judge | None = field(default=None, compare=False, repr=False)
     reduction: Reduction = field(default=Reduction(), hash=False)
     driven: tuple[str, ...] = ()
     velocity_constraints: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
@@ -58,7 +56,7 @@ class Model:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
         loops = f"; closures {listed(rows.name for rows in self.closures)}" if self.closures else ""
         what = f"{self.dof} coordinates ({self.joints or 'none'}): {listed(self.coordinates) or 'none'}{loops}"
-        return f"Model, {what}\n{told_operations(self.operations)}; {told_agreement(self.certificate)}"
+        return f"Model, {what}\n{told_figures(self.operations, self.certificate)}"
 
     @cached_property
     def operations(self) -> dict[str, int]:
@@ -152,18 +150,6 @@ class Model:
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
         return cls(program, *names, *described, closures, summary.get("inputs", {}), **more).with_numbers()
-
-
-def require_stored(program: Program, names: Iterable[str]) -> None:
-    """Raises InvalidDocument (``not-stored``) for outputs that a model of many coordinates does not have."""
-    missing = [name for name in names if name not in program.outputs]
-    if missing:
-        message = (
-            f"of more than {MOST_CHRISTOFFEL:,} Christoffel symbols no formulas are stored, so there is no "
-            f"{listed(missing)}, but in numbers by an evaluation of a stored tree; velocity forces are found without "
-            "them (bias, inverse_dynamics, forward_dynamics)"
-        )
-        raise InvalidDocument.at("", "not-stored", message)
 
 
 def no_coordinates(dof: int) -> list[dict[str, str]]:

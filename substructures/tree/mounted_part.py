@@ -32,8 +32,8 @@ from substructures.mechanics.linear3 import (
     Vector,
     apply,
 )
-from substructures.mechanics.newton_euler import Wrench
 from substructures.mechanics.ratios import Ratios
+from substructures.mechanics.wrench import Wrench
 from substructures.part.forces.wrenches import wrench_about_origin
 from substructures.part.outputs import PartOutputs, Run, frame_placement, over_formulas
 from substructures.part.part import Part

@@ -1,17 +1,12 @@
-"""Numbers of a tree that are values: taken out of its document, and put in where its formulas have their symbols."""
+"""Numbers of a tree that are values, taken out of its document: :mod:`.with_numbers` puts them in again."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from fractions import Fraction
 from typing import Any
 
 from substructures.documents.fields import in_si
-from substructures.expr.bind import bind
 from substructures.expr.direct import steps_of
-from substructures.expr.garbage import without_collections
-from substructures.expr.hoist import hoisted
-from substructures.expr.program import Program
 from substructures.part.definition import Parameter, Placement
 from substructures.tree.document import Instance, TreeSpec
 
@@ -84,12 +79,3 @@ def _value(given: Any) -> Fraction | None:
     if abs(found) in (0, 1):
         return None
     return found if max(found.numerator.bit_length(), found.denominator.bit_length()) <= MOST_BITS else None
-
-
-@without_collections
-def with_numbers(program: Program, values: Mapping[str, Fraction]) -> Program:
-    """The program of a shape with numbers in the places of symbols, exactly. Raises as
-    :func:`substructures.expr.bind.bind`.
-    """
-    own = {symbol.name: values[symbol.name] for symbol in program.symbols if symbol.name in values}
-    return hoisted(bind(program, own)).marked(program.not_judged) if own else program

@@ -132,6 +132,11 @@ class Plausibility:
                 total += mass
         return rounded(total)
 
+    @property
+    def has_relations(self) -> bool:
+        """Whether relations move joints of its parts."""
+        return any(each.relations for each in self.definitions.values())
+
     def masses(self, given: Mapping[str, Any]) -> Any:
         """Of all bodies in kg, with the parameters ``given`` (numbers, or (N,)) and defaults; NaN without a value."""
         values, pairs = _Values(self._texts, given), self.definitions.items()

@@ -23,7 +23,8 @@ from substructures.analysis.identification.consistent import consistent_inertia
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.defaults import default_numbers
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 
 DOWN = (0, -9.81, 0)
 MOTION = "0.9 + 0.5*sin(2*t) + 0.3*cos(3.1*t) - 0.2*sin(5*t)"

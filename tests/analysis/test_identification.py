@@ -20,7 +20,8 @@ from substructures.export import FORMATS, Interface, render
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 
 from .identified_motions import IN_PLANE, UP, base_of, motion, tree
 

@@ -19,7 +19,8 @@ from substructures.array import Array
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 
 from .identified_motions import IN_PLANE, base_of, motion, tree
 

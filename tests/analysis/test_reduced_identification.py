@@ -18,7 +18,8 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.errors import VerificationFailed
 from substructures.expr.interpret import interpret
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 
 NAMES = {each["name"]: each for each in PARTS if "ranges" not in each}
 GRAVITY = [0, "-9.81", 0]

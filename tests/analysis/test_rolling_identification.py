@@ -21,7 +21,8 @@ from substructures.analysis.identification.base_parameters import BaseParameters
 from substructures.analysis.identification.fit import excitation, identify
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.defaults import default_numbers
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 
 R, HALF = 0.1, 0.2
 

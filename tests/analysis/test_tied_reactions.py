@@ -13,7 +13,7 @@ from substructures import ConstrainedMotion, Definition, Model, TreeSpec, couple
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.simulate import Outputs
 from substructures.errors import InvalidInput, VerificationFailed
-from substructures.mechanics.newton_euler import Wrench
+from substructures.mechanics.wrench import Wrench
 from substructures.quantities import reactions as module
 from substructures.quantities.part_models import ReactionModel
 from substructures.quantities.reactions import reactions

@@ -25,7 +25,8 @@ from substructures.expr.replay import replay
 from substructures.quantities.formulas import derived
 from substructures.quantities.numbers.defaults import default_number
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.quantities.sources import Sources
 
 N = 3

@@ -34,8 +34,8 @@ from substructures.part.definition import Definition
 from substructures.part.derive import derive, recheck
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
+from .damaged_bundles import bump, swapped, wrong_elsewhere
 from .seals import seal_again
-from .test_bundles import bump, swapped, wrong_elsewhere
 
 Forgery = Callable[[Any], None]
 AT_HALF = {"q": [0.5], "quantities": ["metric"]}

@@ -19,8 +19,9 @@ from service.queries import content
 from service.store.store import Store
 from substructures.documents import write_json
 
+from .bundle_files import Files, changed_program, packed, sent
 from .conftest import TREE
-from .test_bundles import Files, changed_program, files, packed, sent, source
+from .test_bundles import files, source
 
 __all__ = ["files", "source"]
 

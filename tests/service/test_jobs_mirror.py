@@ -26,9 +26,10 @@ from service.store.store import Store
 from substructures.client import Client, ProblemError
 from substructures.documents import write_json
 
+from .bundle_files import consistent, packed, unpacked
 from .conftest import PENDULUM, SLIDER, make_client
+from .damaged_bundles import bump
 from .fake_engine import FakeEngine, eventually, finished, items, running, submitted
-from .test_bundles import bump, consistent, packed, unpacked
 
 NAMES = [f"part-{k:02}" for k in range(7)]
 SECRET = "sub_0123_secret-of-the-source"

@@ -26,6 +26,7 @@ from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.quantity import OF_PARTS
 from substructures.quantities.sources import Sources
 from substructures.tree.document import TreeSpec, with_levels
+from substructures.tree.judge import Judge
 from substructures.tree.model import Model
 from substructures.tree.plausibility import Plausibility
 
@@ -63,7 +64,7 @@ def _derived(store: Store, tree: Tree, worker: Worker, source: str) -> Any:
         raise
 
 
-def plausibility_of(store: Store, tree: Tree, model: Model) -> Plausibility:
+def plausibility_of(store: Store, tree: Tree, model: Model) -> Judge:
     """What judges the values that a tree is evaluated with."""
     found = model.plausibility or store.caches.plausibilities.get(tree.digest)
     if found is None:

@@ -22,7 +22,8 @@ from substructures.analysis.closed.stepper import ClosedStepper
 from substructures.analysis.motion.friction.dry_friction import friction_laws
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry, sticking
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
-from substructures.analysis.motion.integrators.integration import STIFF, IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import STIFF, IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges.states import energy_balance, unbalanced

@@ -11,7 +11,7 @@ from typing import Any, Literal
 from substructures.analysis.equations.energy import EnergyRule
 from substructures.errors import listed
 from substructures.expr.program import Program
-from substructures.tree.numbers import with_numbers
+from substructures.tree.with_numbers import with_numbers
 
 IntegralKind = Literal[
     "energy",

@@ -45,7 +45,7 @@ from substructures.expr.rings.expand import expand
 from substructures.expr.walk import transfer
 from substructures.mechanics.state_names import BallRow
 from substructures.printers import entries
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.tree.cuts import require_open
 from substructures.tree.document import require_undriven
 

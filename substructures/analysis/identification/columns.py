@@ -14,7 +14,7 @@ from substructures.expr.bind import bind
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.replay import replay
 from substructures.expr.rings.modular import Field, NoSquareRoot
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 
 #: unit of a drive's parameter, for revolute and prismatic joints
 DRIVE_UNITS = {

@@ -32,7 +32,7 @@ from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret
 from substructures.quantities.numbers.defaults import default_numbers
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 
 #: by what the squares (1 is one standard deviation) may still fall, and part of a base parameter that counts as known
 OPTIMAL, EXACT = 1e-2, 1e-5

@@ -22,7 +22,8 @@ from substructures.analysis.equations.first_integrals import first_integrals
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.analysis.motion.conditions import Conditions, read_conditions, state_names
 from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
-from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.judges.balls import (

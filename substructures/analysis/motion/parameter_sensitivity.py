@@ -20,7 +20,8 @@ from substructures.analysis.equations.nonholonomic.quasi_velocities import Quasi
 from substructures.analysis.equations.perturbation import require_smooth
 from substructures.analysis.given import require_known
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions
-from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.judges.balls import conditions_in_rates, reached_in_rates, with_lengths
 from substructures.analysis.motion.judges.integrals import AlongMotion, judge

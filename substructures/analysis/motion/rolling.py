@@ -16,7 +16,8 @@ from substructures.analysis.equations.nonholonomic.positions import start_veloci
 from substructures.analysis.equations.nonholonomic.quasi_velocities import QuasiVelocities, quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.corners import has_corners
-from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import METHODS
 from substructures.analysis.motion.judges.states import energy_balance, spread, unbalanced

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from dataclasses import replace
 from typing import TypeVar
 
-from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator, MotionProblem

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from substructures.analysis.motion.integrators.integration import IntegratedMotion
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.verdict import About, Check

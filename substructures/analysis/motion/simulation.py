@@ -18,7 +18,8 @@ from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry
 from substructures.analysis.motion.friction.loaded_friction import LoadedRightHandSide, with_loads
 from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT
 from substructures.analysis.motion.integrators.fixed_step import march, require_no_stops, semi_implicit_euler
-from substructures.analysis.motion.integrators.integration import IntegratedMotion, IntegratorSettings, integrate
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
 from substructures.analysis.motion.integrators.progress import ProgressReport, share_of
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.judges.integrals import AlongMotion, integrals_along, judge

@@ -15,7 +15,8 @@ from typing import Any
 import numpy as np
 
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
-from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import Function
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER

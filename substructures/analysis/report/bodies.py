@@ -16,7 +16,7 @@ from substructures.analysis.report.statements import Figure, Names, Statement, i
 from substructures.array import Array
 from substructures.errors import InvalidInput, MissingValue, listed
 from substructures.quantities.numbers.evaluation import evaluate
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.tree.model import Model
 
 

@@ -34,7 +34,7 @@ from substructures.printers.text import Text
 from substructures.printers.textbook import TextbookTerms
 from substructures.quantities.numbers.defaults import default_numbers
 from substructures.quantities.numbers.limits import joint_limits
-from substructures.quantities.regressor import RegressorModel
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.tree.given.ties import require_untied
 from substructures.tree.model import Model
 

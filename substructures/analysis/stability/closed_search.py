@@ -7,6 +7,7 @@ least size. Every phi_k counts over its width, and every lambda_k over what it i
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import scipy
@@ -53,25 +54,10 @@ class ClosedSearch(RestSearch):
         q, k = state.q.copy(), len(moving)
         self.multipliers[:] = 0
         F, _ = self.at(q)
-        length, width = np.append(self.length[moving], np.ones(len(self.s.width))), self.s.width
+        length = np.append(self.length[moving], np.ones(len(self.s.width)))
         # multipliers over what they are for forces of one unit
         force = multiplier_units(self.G[0], self.s.reach, self.unit)
-
-        def both(x: Array) -> tuple[Array, Array]:
-            """Residuals and their Jacobian at free coordinates and multipliers."""
-            q[moving], self.multipliers[0] = x[:k], force * x[k:]
-            F, K = self.at(q)
-            G = self.G[0]
-            # F = -Q - lambda G and phi, by q and lambda
-            K = np.where(np.isfinite(K), K, 0)
-            J = np.block(
-                [
-                    [K[:, moving], -(G * force[:, None] / self.unit).T],
-                    [G[:, moving] / width[:, None], np.zeros((len(G), len(G)))],
-                ]
-            )
-            return np.concatenate((F, self.phi[0] / width)), J
-
+        both = partial(self._with_multipliers, q, moving, force)
         # lambda_0 of least squares: G^T lambda = -Q
         x = np.append(q[moving], np.linalg.lstsq((self.G[0] * force[:, None] / self.unit).T, F, rcond=1e-8)[0])
         with np.errstate(all="ignore"):
@@ -86,6 +72,23 @@ class ClosedSearch(RestSearch):
             return None
         self.s.move(self.conditions.t, q, rest)
         return None if self.s.upside_down() else self.wound(q)
+
+    def _with_multipliers(self, q: Array, moving: Sequence[int], force: Array, x: Array) -> tuple[Array, Array]:
+        """Residuals and their Jacobian at free coordinates and multipliers ``x``, the latter over ``force``; the
+        coordinates are put into ``q``.
+        """
+        q[moving], self.multipliers[0] = x[: len(moving)], force * x[len(moving) :]
+        F, K = self.at(q)
+        G, width = self.G[0], self.s.width
+        # F = -Q - lambda G and phi, by q and lambda
+        K = np.where(np.isfinite(K), K, 0)
+        J = np.block(
+            [
+                [K[:, moving], -(G * force[:, None] / self.unit).T],
+                [G[:, moving] / width[:, None], np.zeros((len(G), len(G)))],
+            ]
+        )
+        return np.concatenate((F, self.phi[0] / width)), J
 
     def advice(self, q: Array, held: Sequence[int]) -> str:
         """Why there is none."""

@@ -14,7 +14,7 @@ from __future__ import annotations
 import re
 from typing import Any
 
-from substructures.documents.fields import NAME
+from substructures.documents.patterns import NAME
 from substructures.errors import InvalidDocument, meant
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.parse import parse

@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
 
-from substructures.documents.fields import NAME
+from substructures.documents.patterns import NAME
 from substructures.documents.text import decoded
 from substructures.documents.units import UnknownUnitError, read_unit
 from substructures.errors import meant

@@ -13,7 +13,7 @@ from typing import TypeGuard
 from substructures.loads.names import Names, names_in
 from substructures.loads.vectors import ForceBetween, ForceLoad, TorqueBetween, TorqueLoad
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, sub, transpose
-from substructures.mechanics.newton_euler import Wrench
+from substructures.mechanics.wrench import Wrench
 from substructures.part.definition import Definition
 
 WrenchLoad = ForceLoad | TorqueLoad | ForceBetween | TorqueBetween

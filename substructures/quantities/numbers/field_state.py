@@ -15,7 +15,8 @@ from typing import Literal
 from flint import fmpz_mod_ctx, fmpz_mod_mat
 
 from substructures.expr.rings.modular import Field, FieldValues, NoSquareRoot
-from substructures.tree.model import Model, require_stored
+from substructures.quantities.stored_outputs import require_stored
+from substructures.tree.model import Model
 
 MOMENTA = ("linear_momentum", "angular_momentum")
 NEEDED = ("metric", "christoffel", "bias", "forces", *MOMENTA)

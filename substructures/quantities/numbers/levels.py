@@ -11,8 +11,8 @@ from substructures.array import Array
 from substructures.errors import listed
 from substructures.expr.interpret import interpret_in_blocks
 from substructures.quantities.numbers.defaults import default_number, default_numbers
+from substructures.tree.judge import Judge
 from substructures.tree.model import Model
-from substructures.tree.plausibility import Plausibility
 
 
 def ranges_left(model: Model, lowest: Array, highest: Array) -> list[dict[str, str]]:
@@ -33,7 +33,7 @@ def ranges_left(model: Model, lowest: Array, highest: Array) -> list[dict[str, s
 
 
 def dependent_left(
-    model: Model, judge: Plausibility | None, q: Array, given: Mapping[str, Any], first: int = 0
+    model: Model, judge: Judge | None, q: Array, given: Mapping[str, Any], first: int = 0
 ) -> list[dict[str, str]]:
     """A warning for each dependent coordinate beyond the limits of its joint in states ``q`` (N, m); ``given``:
     parameters in place of defaults, and the time where it counts, without which nothing is known.

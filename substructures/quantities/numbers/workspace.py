@@ -17,7 +17,8 @@ from substructures.expr.program import Entries, Formulas, Program, Symbol, array
 from substructures.expr.replay import replay
 from substructures.loads.scope import Scope
 from substructures.part.balls import position_rates
-from substructures.tree.model import KINEMATICS, Model, require_stored
+from substructures.quantities.stored_outputs import require_stored
+from substructures.tree.model import KINEMATICS, Model
 
 #: of coordinates by the letter of their joint
 UNITS = {"R": "rad", "P": "m"}

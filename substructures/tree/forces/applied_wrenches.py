@@ -13,7 +13,7 @@ from substructures.expr.program import Program
 from substructures.loads.pairs import Acting, Pair, Place, axes_in_world
 from substructures.mechanics.cut_joints import PLACE
 from substructures.mechanics.linear3 import ZERO, Vector, apply, cross, dot, scale, sub, transpose
-from substructures.mechanics.newton_euler import Wrench
+from substructures.mechanics.wrench import Wrench
 from substructures.part.frames import axis_rotation
 from substructures.tree.assembly import Assembly
 from substructures.tree.closures import closure_formulas

@@ -23,7 +23,8 @@ from substructures.interchange.difference.difference import Difference, of_parts
 from substructures.part.part import Part
 from substructures.pictures.latex import latex_picture
 from substructures.pictures.tree import picture
-from substructures.quantities.regressor import RegressorModel, regressor
+from substructures.quantities.regressor import regressor
+from substructures.quantities.regressor_model import RegressorModel
 from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec
 from substructures.tree.glossary import glossary

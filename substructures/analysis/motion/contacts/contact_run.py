@@ -13,12 +13,8 @@ from substructures.analysis.motion.contacts.contact_motion import OPEN, STICK
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.friction.dry_run import DryRun, integrate_dry
 from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
-from substructures.analysis.motion.integrators.integration import (
-    IntegratedMotion,
-    IntegratorSettings,
-    TimeReport,
-    integrate,
-)
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, TimeReport, integrate
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.verdict import About, Check

@@ -9,12 +9,8 @@ from typing import Any, ClassVar, Protocol, TypeVar
 import numpy as np
 
 from substructures.analysis.motion.friction.dry_friction import DryMotion, FrictionLaws, Signs
-from substructures.analysis.motion.integrators.integration import (
-    IntegratedMotion,
-    IntegratorSettings,
-    TimeReport,
-    integrate,
-)
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import IntegratorSettings, TimeReport, integrate
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.trajectory import Crossing
 from substructures.analysis.verdict import About, Check

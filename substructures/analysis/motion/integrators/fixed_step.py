@@ -12,7 +12,8 @@ import numpy as np
 
 from substructures.analysis.arguments import one_of, positive
 from substructures.analysis.motion.integrators.compiled_steps import rates_of
-from substructures.analysis.motion.integrators.integration import Function, IntegratedMotion, TimeReport
+from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
+from substructures.analysis.motion.integrators.integration import Function, TimeReport
 from substructures.array import Array
 from substructures.compile.motion import CompiledRates, CompiledRun, Tableau
 from substructures.errors import InvalidArgument

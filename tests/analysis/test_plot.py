@@ -11,10 +11,10 @@ import pytest
 from substructures.analysis import drawings
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.orbits.sections import PoincareSection
+from substructures.analysis.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
 from substructures.analysis.stability.frequency_response import FrequencyResponse
 from substructures.analysis.stability.root_locus import RootLocus
 from substructures.analysis.verdict import Check
-from substructures.pictures.plot import LEFT, RIGHT, WIDTH, Line, Panel, plot, ticks
 
 GRID = np.linspace(0.0, 1.0, 11)
 COLUMNS = {
