@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -30,9 +31,9 @@ def derived_anew(*parts: str) -> Model:
     return couple(spec, {f"i{k}": derive(Definition.read(open_entry(name))) for k, name in enumerate(parts)})
 
 
-def exported_of(model: Model, name: str = "demo", **options: Any) -> Exported:
+def exported_of(model: Model, name: str = "demo", quantities: Sequence[str] = QUANTITIES, **options: Any) -> Exported:
     interface = interface_of_model(model, "demo@1", "sha256:1")
-    return exported_model(Sources(model), interface, QUANTITIES, name, **options)
+    return exported_model(Sources(model), interface, quantities, name, **options)
 
 
 def write(exported: Exported, target: str, folder: Path) -> list[Path]:

@@ -32,11 +32,11 @@ def blocks(readme: str) -> dict[str, str]:
     return dict(re.findall(r"```(\w+)\n(.*?)```", readme, re.DOTALL))
 
 
-def printed(folder: Path) -> list[str]:
-    """What the commands of the README print, line by line."""
+def printed(folder: Path, **more: str) -> list[str]:
+    """What the commands of the README print, line by line. ``more``: of the environment."""
     commands = blocks((folder / "README.md").read_text())["sh"]
     path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
-    environment = {**os.environ, "PATH": path, "CARGO_NET_OFFLINE": "true"}
+    environment = {**os.environ, "PATH": path, "CARGO_NET_OFFLINE": "true", **more}
     done = subprocess.run(
         [tool("sh"), "-e", "-c", commands], cwd=folder, capture_output=True, text=True, timeout=300, env=environment
     )
@@ -62,6 +62,18 @@ def test_the_readme_does_what_it_says(target: str, tmp_path: Path) -> None:
         *_, ok, number = printed(folder)
         assert ok == "ok"
         assert float(number) == pytest.approx(expected(exported), rel=1e-8)
+
+
+@pytest.mark.parametrize("target", [pytest.param(t, marks=() if t == "python" else pytest.mark.deep) for t in RUN])
+def test_where_nothing_moves_there_is_nothing_to_print(target: str, tmp_path: Path) -> None:
+    if target == "jax":
+        pytest.importorskip("jax", reason="the wheel jax is not installed")
+    tool(NEEDS.get(target, "sh"))
+    write(exported_of(tree_of("camera"), "arm", quantities=("metric", "forces")), target, tmp_path)
+    with_warnings = {"CFLAGS": "-Wall -Wextra -Werror", "CXXFLAGS": "-Wall -Wextra -Werror"}
+    assert printed(tmp_path, **with_warnings)[-1] == "ok"
+    write(exported_of(tree_of("camera"), "arm", quantities=("metric", "position")), target, tmp_path)
+    assert float(printed(tmp_path)[-1]) == 0
 
 
 def forces() -> Exported:

@@ -20,7 +20,8 @@ def c(e: Example) -> str:
     body += [f"{n}_prepare(p, w);"] if "w" in e.lengths else []
     if e.coordinate:
         body.append(f"q[{e.place(f'{n}_Q_{{}}')}] = {VALUE}; /* {e.coordinate} */")
-    body += [f"{e.called}({', '.join(given)});", f'printf("%.9g\\n", {next(iter(e.outputs))}[0]);', "return 0;"]
+    body += [f"{e.called}({', '.join(given)});", *e.shown(f'printf("%.9g\\n", {next(iter(e.outputs))}[0]);')]
+    body += ["return 0;"]
     return "\n".join([f'#include "{n}.h"', "#include <stdio.h>", "", "int main(void) {", *indented(body), "}", ""])
 
 
@@ -34,8 +35,8 @@ def cpp(e: Example) -> str:
         body.append(f"q[{e.place(f'{n}::Q_{{}}')}] = {VALUE}; // {e.coordinate}")
     variable, shape = next(iter(e.outputs.items()))
     value = f"result.{variable}" if len(e.outputs) > 1 else "result"
-    body += [f"const auto result = {called}({', '.join(e.function.arguments)});"]
-    body += [f'std::printf("%.9g\\n", {value}{"[0]" if shape else ""});']
+    body += [f"[[maybe_unused]] const auto result = {called}({', '.join(e.function.arguments)});"]
+    body += e.shown(f'std::printf("%.9g\\n", {value}{"[0]" if shape else ""});')
     return "\n".join([f'#include "{n}.hpp"', "#include <cstdio>", "", "int main() {", *indented(body), "}", ""])
 
 
@@ -52,7 +53,8 @@ def fortran(e: Example) -> str:
     lines.append(f"call {e.called}({', '.join([*e.function.arguments, *e.outputs])})")
     variable, shape = next(iter(e.outputs.items()))
     index = f"({', '.join('1' for _ in shape)})" if shape else ""
-    return "\n".join(["program example", *indented([*lines, f"print '(g0.9)', {variable}{index}"]), "end program", ""])
+    lines += e.shown(f"print '(g0.9)', {variable}{index}")
+    return "\n".join(["program example", *indented(lines), "end program", ""])
 
 
 def rust(e: Example) -> str:
@@ -68,7 +70,7 @@ def rust(e: Example) -> str:
         body.append(f"q[{constant}] = {VALUE}; // {e.coordinate}")
     given = ["0.0" if s == "t" else f"&{s}" for s in e.function.arguments] + [f"&mut {s}" for s in e.outputs]
     variable, shape = next(iter(e.outputs.items()))
-    body += [f"{n}::{e.called}({', '.join(given)});", f'println!("{{}}", {variable}{"[0]" * len(shape)});']
+    body += [f"{n}::{e.called}({', '.join(given)});", *e.shown(f'println!("{{}}", {variable}{"[0]" * len(shape)});')]
     return "\n".join(["fn main() {", *indented(body), "}", ""])
 
 

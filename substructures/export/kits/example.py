@@ -29,8 +29,13 @@ class Example:
 
     @property
     def function(self) -> Function:
-        """The first one that has a quantity of mechanics."""
-        return next(each for each in self.exported.functions if each.quantity != PREPARE)
+        """The first one that has a quantity of mechanics, with elements if there is one."""
+        some = [each for each in self.exported.functions if each.quantity != PREPARE]
+        return next((each for each in some if _has_elements(each)), some[0])
+
+    def shown(self, line: str) -> list[str]:
+        """The line that prints the first element; none where nothing moves, and there is none."""
+        return [line] if _has_elements(self.function) else []
 
     @property
     def called(self) -> str:
@@ -75,3 +80,7 @@ class Example:
         """Of the coordinate by its constant, ``written`` with its name; by its number where it has none."""
         name = elements(self.function.vector("q"), alike)[0].name
         return written.format(name) if name else str(first)
+
+
+def _has_elements(function: Function) -> bool:
+    return prod(next(iter(function.program.outputs.values())).shape) > 0

@@ -31,7 +31,7 @@ def python(e: Example, suffix: str = "") -> str:
     names = list(e.function.program.outputs)
     value = f"result[{names[0]!a}]" if len(names) > 1 else "result"
     index = ", ".join("0" for _ in e.outputs[variable])
-    return "\n".join([*lines, f"print({value}{f'[{index}]' if index else ''})", ""])
+    return "\n".join([*lines, *e.shown(f"print({value}{f'[{index}]' if index else ''})"), ""])
 
 
 def jax(e: Example) -> str:
@@ -51,7 +51,7 @@ def javascript(e: Example) -> str:
     names = list(e.function.program.outputs)
     lines.append(f"const result = model.{e.called}({given}); // the parameters at their defaults")
     value = f"result[{json.dumps(names[0])}]" if len(names) > 1 else "result"
-    return "\n".join([*lines, f"console.log({value}[0]);", ""])
+    return "\n".join([*lines, *e.shown(f"console.log({value}[0]);"), ""])
 
 
 def package(e: Example) -> dict[str, str]:
@@ -80,7 +80,7 @@ def matlab(e: Example) -> str:
     for s, called in (("q", "coordinates"), ("p", "parameters")):
         given = ", ".join(f"{n}_{called}({s})" if each == s else each for each in given.split(", "))
     lines.append(f"result = {e.called}({given});")
-    return "\n".join([*lines, "fprintf('%.9g\\n', result(1));", ""])
+    return "\n".join([*lines, *e.shown("fprintf('%.9g\\n', result(1));"), ""])
 
 
 def simulink(e: Example) -> str:

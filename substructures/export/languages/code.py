@@ -28,6 +28,7 @@ LONGEST = 63
 _TEMPORARY = re.compile(r"t\d+|work", re.ASCII)
 _NUMBERED = re.compile(r"\bt\d+\b", re.ASCII)
 _WORD = re.compile(r"[A-Za-z]\w*", re.ASCII)
+_NUMBER = re.compile(r"[\d.]+(e[+-]?\d+)?", re.ASCII)
 NOT_EXECUTED = "Not executed: the tests of the generator have no interpreter or compiler of this language."
 YOURS = "This file is the output of a program and belongs to whoever had it made; it may be used for anything."
 
@@ -167,7 +168,7 @@ class Code(Language):
     def real_call(self, op: str, args: list[Piece]) -> Piece:
         """A function, with ``real_`` before its name where it is partial and the argument no constant."""
         plain = Language.call(self, op, args)
-        return Piece(f"real_{plain.text}") if op in REAL and not args[0].text[0].isdigit() else plain
+        return Piece(f"real_{plain.text}") if op in REAL and not _NUMBER.fullmatch(args[0].text) else plain
 
     def vectors(self) -> list[Vector]:
         """The arguments."""

@@ -117,7 +117,8 @@ class Cpp(C):
             for symbol, values in each.arguments.items():
                 list_ = f"std::array<double, {len(values)}> {symbol}{{{', '.join(map(repr, values))}}}"
                 body.append(f"const double t = {values[0]!r};" if symbol == "t" else f"const {list_};")
-            body.append(f"const auto y = {called(exported, function)}({', '.join(each.arguments)});")
+            unused = "" if each.checks else "[[maybe_unused]] "
+            body.append(f"{unused}const auto y = {called(exported, function)}({', '.join(each.arguments)});")
             variables = list(cls(function, exported).variables.values())
             for check in each.checks:
                 shape = each.shapes[check.output]
@@ -140,7 +141,7 @@ def called(exported: Exported, function: Function) -> str:
 
 
 _CHECK = (
-    "static bool differs(double found, double expected, double limit, const char* what) {",
+    "inline bool differs(double found, double expected, double limit, const char* what) {",
     "    if (std::abs(found - expected) <= limit) return false;",
     '    std::printf("%s: %.17g for %.17g\\n", what, found, expected);',
     "    return true;",
