@@ -72,6 +72,8 @@ class Claim:
                 raise DatabaseError(f"{path} was deleted or replaced; restart the server")
             return
         beside = self.path.with_name(f"{self.path.name}.lock")
+        if not self.path.parent.is_dir():
+            raise DatabaseError(f"cannot open {path}: there is no folder {self.path.parent}")
         try:
             self._lock = sqlite3.connect(beside, timeout=0, isolation_level=None, check_same_thread=False)
         except sqlite3.OperationalError as error:
@@ -80,8 +82,11 @@ class Claim:
             make_private(beside)
             self._lock.execute("BEGIN EXCLUSIVE")
             self._file = _locked(self.path)
-        except (sqlite3.OperationalError, BlockingIOError):
+        except (sqlite3.OperationalError, BlockingIOError) as error:
             self._lock.close()
+            if getattr(error, "sqlite_errorcode", sqlite3.SQLITE_BUSY) != sqlite3.SQLITE_BUSY:
+                how = "is there space left, and may its user write there?"
+                raise DatabaseError(f"cannot write {beside}: {error}; {how}") from None
             raise DatabaseError(f"another server uses {path}; stop it or use PostgreSQL for several") from None
         except OSError as error:
             self._lock.close()

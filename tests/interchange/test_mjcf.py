@@ -48,6 +48,16 @@ FEATURES = {
     "inertia from geoms": ('<compiler inertiafromgeom="true"/>', '<inertial pos="0 0 0" mass="2" diaginertia="1 1 1"/>'
                            '<geom size="1"/>'),
     "bounds": ('<compiler boundmass="3" boundinertia=".5"/>', '<geom size=".1" pos="1 0 0"/>'),
+    "bounds of nothing": ('<compiler boundmass="3" boundinertia=".5"/>', '<geom size=".1" mass="0"/>'
+                          '<body pos="1 0 0"><joint name="b"/></body><body pos="0 1 0"/>'),
+    "inertial where no geom counts": ('<compiler inertiafromgeom="true" inertiagrouprange="1 2"/>', '<geom size="1"/>'
+                                      '<inertial pos="1 0 0" mass="2" diaginertia="1 1 1"/>'),
+    "sizes of classes": ('<default><geom type="box" size=".1 .2 .3"/><default class="x"><geom size=".4"/></default>'
+                         '</default>', '<geom class="x" size=".5 .6" pos="1 0 0"/><geom class="x" pos="0 1 0"/>'
+                         '<geom type="sphere" size=".7"/>'),
+    "orientations of classes": ('<default><geom euler="10 20 30"/><default class="x"><geom zaxis="1 2 3"/></default>'
+                                '</default>', '<geom class="x" type="box" size=".1 .2 .3" pos="1 0 0"/>'
+                                '<geom type="box" size=".1 .2 .3"/>'),
     "balanced": ('<compiler balanceinertia="true"/>', '<inertial pos="1 0 0" mass="2" diaginertia="1 1 9"/>'),
     "bounds, then balanced": ('<compiler balanceinertia="true" boundinertia=".5"/>',
                               '<inertial pos="1 0 0" mass="2" diaginertia=".1 .1 1"/>'),
@@ -176,6 +186,8 @@ BAD = {
     "range reversed": (one('<joint limited="true" range="1 -1"/>'), "line 4: <joint>: the range 1 -1 needs a first"),
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
+    "two moments": (one('<inertial pos="0 0 0" mass="1" diaginertia="1 1 1" fullinertia="1 1 1 0 0 0"/>'),
+                    "give one of diaginertia and fullinertia"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
     "no mass to scale": (one("<joint/>", '<compiler settotalmass="5"/>'), "line 3: .*settotalmass has nothing"),
     "no body": (b"<mujoco/>", "the file has no <body>"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import resource
 import sqlite3
 import threading
 from collections.abc import Callable, Iterator
@@ -187,6 +188,19 @@ def test_a_link_is_the_same_store(held: Path, tmp_path: Path, link: str) -> None
             Database(f"sqlite:///{other}")
     finally:
         (other.parent if link == "symbolic folder" else other).unlink()
+
+
+def test_a_full_disk_and_a_folder_that_is_not_there_are_no_other_server(tmp_path: Path) -> None:
+    limits = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (0, limits[1]))
+    try:
+        with pytest.raises(DatabaseError, match=r"cannot write .*x\.db\.lock: .*; is there space left"):
+            Database(f"sqlite:///{tmp_path}/x.db")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, limits)
+    with pytest.raises(DatabaseError, match=r"there is no folder .*nowhere"):
+        Database(f"sqlite:///{tmp_path}/nowhere/x.db")
+    Database(f"sqlite:///{tmp_path}/x.db").close()
 
 
 def test_a_claim_ends_with_its_database(tmp_path: Path) -> None:

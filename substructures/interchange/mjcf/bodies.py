@@ -229,25 +229,30 @@ class Bodies:
     def _inertial(self, node: Node, geoms: list[tuple[Node, Seat]]) -> Inertial:
         """As given or, as the compiler says, of the geoms."""
         given, of_geoms = node.one("inertial"), self.compiler.inertiafromgeom
-        if given is not None and of_geoms != "true":
-            return self._bounded(node, self._given(given))
-        if of_geoms == "false":
-            return Inertial()
         masses = []
-        for child, outer in geoms:
-            mass = mass_of(child, self.compiler, self.meshes)
-            if mass is not None:
-                masses.append(_moved(mass, outer))
+        if of_geoms == "true" or (of_geoms == "auto" and given is None):
+            found = ((mass_of(child, self.compiler, self.meshes), outer) for child, outer in geoms)
+            masses = [_moved(mass, outer) for mass, outer in found if mass is not None]
         total = summed(masses)
-        if total is None:
-            return Inertial()
+        if total is None:  # as it is without geoms that count
+            return self._bounded(node, self._nothing(node) if given is None else self._given(given))
         own = Inertial(cleaned([total.m])[0], vector(total.com, total.size), cleaned(six_of(total.theta)))
         return self._bounded(node, own)
+
+    def _nothing(self, node: Node) -> Inertial:
+        """No mass, where MuJoCo puts the least one that the compiler asks for."""
+        if not self.compiler.boundmass:
+            return Inertial()
+        message = "without a mass it gets boundmass, where MuJoCo puts it: at its own 'pos', in its own frame"
+        self.report.warning(node.place, message, "physics")
+        return Inertial(com=triple(node.numbers("pos", 3, ORIGIN)))
 
     def _given(self, node: Node) -> Inertial:
         """Mass, and R I R^T of <inertial>."""
         mass, com = node.number("mass"), triple(node.numbers("pos", 3, ORIGIN))
         R = orientation(node, self.compiler)
+        if "fullinertia" in node.attributes and "diaginertia" in node.attributes:
+            raise refuse(node.place, "two-inertias", "give one of diaginertia and fullinertia")
         if "fullinertia" in node.attributes:
             six = node.numbers("fullinertia", 6)
         elif "diaginertia" in node.attributes:
@@ -259,6 +264,8 @@ class Bodies:
     def _bounded(self, node: Node, own: Inertial) -> Inertial:
         """With the least mass and moments that the compiler asks for, and judged as that."""
         found = self._with_bounds(node, own)
+        if found.is_nothing:
+            return found
         judge(node.place, found.mass, found.com, found.inertia, self.report)
         return found
 

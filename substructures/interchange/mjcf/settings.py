@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from typing import Any
@@ -158,7 +158,7 @@ class Defaults:
         for child in node.children:
             if child.tag != "default":
                 tag = ACTUATOR if child.tag in _ACTUATORS else child.tag
-                own[tag] = own.get(tag, {}) | _FORCES.get(child.tag, {}) | child.attributes
+                own[tag] = _over(own.get(tag, {}), _FORCES.get(child.tag, {}) | child.attributes)
         self._classes[name] = own
         for child in node.all("default"):
             self._read(child, own, child.text_of("class"))
@@ -169,10 +169,21 @@ class Defaults:
         if name not in self._classes:
             message = f"there is no default class '{name[:60]}'{among(name, self._classes)}"
             raise refuse(node.place, "unknown-class", message)
-        attributes = dict(self._classes[name].get(node.tag, {}))
-        if any(k in node.attributes for k in _ORIENTATIONS):
-            attributes = {k: v for k, v in attributes.items() if k not in _ORIENTATIONS}
-        return replace(node, attributes=attributes | node.attributes)
+        return replace(node, attributes=_over(self._classes[name].get(node.tag, {}), node.attributes))
+
+
+def _over(inherited: Mapping[str, str], given: Mapping[str, str]) -> dict[str, str]:
+    """Attributes over inherited ones: any orientation is in the place of another, and of a size those numbers are that
+    are given.
+    """
+    left = dict(inherited)
+    if any(k in given for k in _ORIENTATIONS):
+        left = {k: v for k, v in inherited.items() if k not in _ORIENTATIONS}
+    found = {**left, **given}
+    if "size" in inherited and "size" in given:
+        sizes = given["size"].split()
+        found["size"] = " ".join([*sizes, *inherited["size"].split()[len(sizes) :]])
+    return found
 
 
 def orientation(node: Node, compiler: Compiler) -> Array:
