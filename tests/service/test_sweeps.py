@@ -306,6 +306,28 @@ def test_items_are_ranges_that_do_not_matter(monkeypatch: pytest.MonkeyPatch) ->
         assert np.array_equal(read[0][0][name], np.concatenate([each[name] for each in read[1]]))
 
 
+def test_ranges_of_motions_are_short(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Where every row is a motion, no more of them stand in an item than some seconds of work."""
+    library = MemoryLibrary([PENDULUM])
+    motion = {"analysis": "simulation", "at": {"q": [1]}, "span": [0, 0.5], "expression": "arm.q"}
+    template = {"name": "one", "gravity": [0, "-9.81", 0], "instances": [{"name": "arm", "substructure": "pendulum"}]}
+
+    def items(count: int) -> list[Any]:
+        samples = {"method": "sobol", "count": count, "of": {"arm.l": {"uniform": [1, 2]}}}
+        return library.items("sweep", {"template": template, "samples": samples, "columns": {"end": motion}})
+
+    found = [each["rows"] for each in items(20_000)]
+    assert max(stop - start for start, stop in found) <= 128
+    assert [start for start, _ in found] == [0, *(stop for _, stop in found[:-1])]
+    assert 500 < len(items(5_000_000)) <= 2000
+    whole = kind.KINDS["sweep"].run(items(12)[0], library.blobs, lambda _: None)
+    monkeypatch.setattr(kind, "MOTIONS", 5)
+    parts = [kind.KINDS["sweep"].run(item, library.blobs, lambda _: None) for item in items(12)]
+    assert len(parts) == 3
+    ends = [np.concatenate([kind.rows_of(each.files["rows"])["end"] for each in some]) for some in ([whole], parts)]
+    assert np.array_equal(*ends)
+
+
 def test_a_planted_fault_in_one_range_fails_it(monkeypatch: pytest.MonkeyPatch) -> None:
     library = MemoryLibrary([PENDULUM, SLIDER])
     request = {name: x for name, x in SWEEP.items() if name not in ("kind", "labels")} | {"proof": 400}

@@ -50,6 +50,8 @@ from substructures.sweeps.shapes import Option, Shape, option_of
 
 #: items of a sweep whose rows are quick; shapes of one item, each of which is coupled
 ITEMS, SHAPES = 500, 16
+#: items of a sweep with motions, of so many rows at least: about a second of work
+ITEMS_OF_MOTIONS, MOTIONS = 2000, 128
 #: options of all instances
 MOST_OPTIONS = 20_000
 #: members of a submission that are not the sweep's own
@@ -66,7 +68,8 @@ def _spread(item: ItemDocument, limits: Limits, library: Library) -> list[ItemDo
     known = {digest: _definition(digest, library) for digest in _first_digests(options)}
     check_names(plan, [[known[_digest(one)] for one in each] for each in options])
     rows = plan.rows
-    size = max(AT_ONCE, -(-rows // ITEMS // AT_ONCE) * AT_ONCE)
+    most, least = (ITEMS_OF_MOTIONS, MOTIONS) if plan.columns.of_motions else (ITEMS, AT_ONCE)
+    size = max(least, -(-rows // most // least) * least)
     shapes = prod(len({programs[_digest(one)] for one in each}) for each in options)
     if shapes > SHAPES:
         size = max(1, min(size, rows * SHAPES // shapes))
