@@ -210,6 +210,20 @@ def test_bodies_that_collide_exchange_their_momentum() -> None:
     assert motion.is_right
 
 
+def test_what_touches_without_any_force_is_hit_together() -> None:
+    """Two bodies that lie at each other, weightless, and a third one that hits them: all go on with what it had."""
+    slide = {"type": "prismatic", **PLACED, "axis": [0, 0, 1]}
+    bodies = [
+        {"name": n, "parent": "base", "joint": {**slide, "coordinate": n}, "mass": k} for k, n in enumerate("abc", 1)
+    ]
+    model = of("p", {"name": "three", "bodies": bodies}, [0, 0, 0])
+    contacts = [Contact("first", "p.b", plane="p.a"), Contact("second", "p.c", plane="p.b", friction=0.2)]
+    motion = move(model, [-1, 0, 0], [0.5, 0, 0], 3, contacts)
+    assert motion.is_right, motion.message
+    assert motion.events[0].t == pytest.approx(2)
+    np.testing.assert_allclose(motion.qd[-1], 0.5 / 6, atol=1e-12)
+
+
 @pytest.mark.parametrize("speed", [1.0, 3.0])
 def test_a_point_that_hits_a_plane_slips_or_stops(speed: float) -> None:
     """A mass at v_N = -2 and v_T: it loses mu (1 + e) 2 of v_T along its way, or all of it."""

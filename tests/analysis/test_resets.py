@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from itertools import pairwise
 from typing import Any
 
@@ -103,6 +104,30 @@ def test_bounces_that_accumulate_stop_the_motion(ball: Model) -> None:
     late = simulate(ball, [1], (0, 10), outputs=Outputs(events=[FLOOR], times=[9]))
     assert (late.status, len(late.t), late.t[-1]) == ("stopped", 1, motion.t[-1])
     assert len(motion.events) < 100
+
+
+@pytest.mark.parametrize("share", [0.2, 0.35, 0.5, 0.65, 0.8])
+def test_what_is_slowed_down_where_it_passes_is_slowed_down_once(ball: Model, share: float) -> None:
+    """z falls through 0 at t = sqrt(2 h/g), and goes on with a share of its speed."""
+    sheet = Event("sheet", "b.z", direction="falling", reset={"b.z'": f"{share}*b.z'"})
+    for h in (0.3, 0.7, 1.0, 1.9):
+        motion = simulate(ball, [h], (0, 1), outputs=Outputs(events=[sheet], times=[1]))
+        first = math.sqrt(2 * h / G)
+        left = 1 - first
+        assert [event.t for event in motion.events] == pytest.approx([first], abs=1e-12)
+        assert motion.q[-1, 0] == pytest.approx(-share * G * first * left - G * left**2 / 2, abs=1e-11)
+
+
+def test_what_does_not_bounce_at_all_does_not_fall_through(ball: Model) -> None:
+    """At rest on the floor, or on one that is moved, the motion ends; what is drawn away from it goes on."""
+    stays = replace(FLOOR, reset={"b.z'": "0"})
+    motion = simulate(ball, [1], (0, 10), outputs=Outputs(events=[stays]))
+    assert (motion.status, motion.is_right, len(motion.events)) == ("stopped", True, 1)
+    assert "of a body at rest" in motion.message
+    moved = replace(FLOOR, quantity="b.z - 0.1*sin(3*t)", reset={"b.z'": "0.3*cos(3*t)"})
+    assert simulate(ball, [1], (0, 3), outputs=Outputs(events=[moved])).status == "stopped"
+    motion = simulate(ball, [1], (0, 2), inputs={"tau.b.z": "40*t"}, outputs=Outputs(events=[stays]))
+    assert (motion.status, len(motion.events)) == ("finished", 1)
 
 
 def test_positions_jump_and_other_events_are_noted_on_the_way(ball: Model) -> None:

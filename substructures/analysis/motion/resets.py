@@ -2,7 +2,7 @@
 
 Between two such events it is a motion like any other, and judged as one: first integrals are constant there, whatever
 the event did to them. What it did to the energy is told with it. Events that follow each other ever more quickly (Zeno:
-a ball that comes to rest) end the motion where they accumulate.
+a ball that comes to rest) end the motion where they accumulate, at once where a ball does not bounce at all.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import MotionProblem, Start
+from substructures.analysis.motion.right_hand_side import ACCELERATION, forward_dynamics
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.verdict import Check
 from substructures.array import Array
@@ -32,6 +33,8 @@ from substructures.quantities.numbers.quaternions import quaternions_in
 MANY, SOON = 10, 1e-6
 #: most events that act in a motion
 MOST = 10_000
+#: step of differences [s], and what of a rate is none beside that before an event
+STEP, NONE = 1e-4, 1e-6
 Status = Literal["finished", "stopped", "failed"]
 Problem = TypeVar("Problem", bound=MotionProblem)
 ENERGY = ("metric", "potential_energy")
@@ -48,6 +51,9 @@ class Resets:
 
     def __init__(self, problem: MotionProblem, conditions: Conditions) -> None:
         self.conditions, self.events = conditions, problem.events
+        kind = getattr(problem, "kind", None)
+        #: whether accelerations are those of forward_dynamics, without joints that stick
+        self._is_plain = not problem.model.balls and getattr(kind, "friction", "regularised") == "regularised"
         names = state_names(problem.model)
         self._places: dict[int, list[int]] = {}
         given: list[Given] = []
@@ -88,6 +94,32 @@ class Resets:
         inputs = {name: float(u[0]) for name, u in self.conditions.inputs_at(np.array([t]), x[None]).items()}
         return {**self.conditions.values, **inputs, **dict(zip(state_names(self.conditions.model), x, strict=True))}
 
+    def draw_across(self, event: int, t: float, x: Array, y: Array) -> bool:
+        """Whether the state y that an event makes of x stays at its level but for the accelerations, and these carry it
+        across once more: a ball that does not bounce.
+        """
+        conditions, n = self.conditions, len(x) // 2
+        source = conditions.expressions
+
+        def at(h: float, start: Array, second: Array) -> float:
+            """quantity - level a time h from a state."""
+            moved = np.concatenate([start[:n] + h * start[n:] + h * h / 2 * second, start[n:] + h * second])
+            when = np.full(1, t + h)
+            return float(conditions.followed(when, moved[None], ["events"])["events"][0, event] - level)
+
+        level, still = self.events[event].level, np.zeros(n)
+        if not self._is_plain or "events" not in source.outputs:
+            return False
+        before, after = ((at(STEP, z, still) - at(-STEP, z, still)) / (2 * STEP) for z in (x, y))
+        here, noise = at(0, y, still), 1e-12 * (1 + float(np.abs(y[:n]).max(initial=0)))
+        if not (abs(here) <= abs(at(0, x, still)) + noise and abs(after) <= NONE * abs(before)):
+            return False
+        program = forward_dynamics(conditions.model, conditions.zero)
+        values = self._values(t, y) | {"t": t}
+        second = interpret_in_blocks(program, values, [ACCELERATION], 1)[ACCELERATION][0]
+        bent = (at(STEP, y, second) + at(-STEP, y, second)) / 2 - here
+        return bool((bent if self.events[event].direction == "rising" else -bent) > noise)
+
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
         n, model = len(self.conditions.model.positions), self.conditions.model
@@ -121,6 +153,8 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
         told = replace(last, after=(y[:n], y[n:]), energy_change=change)
         piece = replace(piece, events=(*piece.events[:-1], told))
         soon = soon + 1 if last.t - t <= SOON * (span[1] - span[0]) else 0
+        if np.isfinite(y).all() and resets.draw_across(k, last.t, x, y):
+            soon = MANY
         why = ("finished", "") if last.t >= span[1] else _why_not(last, y, soon, len(pieces) + 1)
         if why is not None:  # the state before the event is the last result
             return replace(_joined([*pieces, piece]), status=why[0], message=why[1])

@@ -82,10 +82,10 @@ class Cones:
                 [
                     -w[:, 0] / size,
                     -p[:, 0] / force,
-                    np.abs(w[:, 0] * p[:, 0]) / (size * force),
+                    np.abs(w[:, 0] * p[:, 0]) / size / force,
                     (drag - most) / force,
                     # what slips has all of its friction against its way: |w_T| mu p_N + w_T . p_T = 0
-                    np.where(self.tangents.any(axis=1), slip * most + (w_T * p_T).sum(axis=1), 0) / (size * force),
+                    np.where(self.tangents.any(axis=1), slip * most + (w_T * p_T).sum(axis=1), 0) / size / force,
                 ],
                 initial=0.0,
             )

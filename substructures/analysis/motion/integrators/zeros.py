@@ -138,4 +138,9 @@ def _zero(g: Callable[[float], float], a: float, b: float) -> float:
     first, last = g(a), g(b)
     if first * last > 0:  # the zero is within rounding of an end
         return a if abs(first) < abs(last) else b
-    return float(scipy.optimize.brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
+    t = float(scipy.optimize.brentq(g, a, b, xtol=4e-15 * max(abs(a), abs(b), 1.0), rtol=1e-15))
+    step = float(np.spacing(max(abs(a), abs(b))))
+    # up to where g has its new sign: a motion that goes on from there does not meet the same zero again
+    while t < b and first * g(t) > 0:
+        t, step = min(t + step, b), 2 * step
+    return t
