@@ -1,4 +1,4 @@
-"""Test helpers in this directory (random_trees, random_cuts, independent) can be imported by every test."""
+"""What is in tests/tools (random trees, independent engines, a reader of exports) can be imported by every test."""
 
 from __future__ import annotations
 
@@ -16,6 +16,7 @@ os.environ["OMP_NUM_THREADS"] = os.environ["OPENBLAS_NUM_THREADS"] = os.environ[
 # a process of a server or command would compile all modules that it imports, a quarter of its start
 os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 sys.path.insert(0, str(Path(__file__).parent))
+sys.path.insert(0, str(Path(__file__).parent / "tools"))
 
 import checked_graph
 
@@ -25,7 +26,7 @@ LONG = Path(__file__).with_name("long.txt")
 
 
 def pytest_addoption(parser: pytest.Parser) -> None:
-    """The test mode of tests/checked_graph.py."""
+    """The test mode of tests/tools/checked_graph.py."""
     parser.addoption("--checked", action="store_true", help="check every constructor of formulas")
 
 

@@ -10,14 +10,13 @@ run: they do not turn.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cache
 
-from substructures.mechanics.by_angles import ByAngles
-from substructures.mechanics.composite_form import Inertia
+from substructures.mechanics.composite_form import Inertia, JointMomentum
 from substructures.mechanics.evaluation_frames import Entries
 from substructures.mechanics.kinematics import INTERFACE, Link, path
-from substructures.mechanics.linear3 import ZERO, Planar, Rotation, Scalar, Vector, add
+from substructures.mechanics.linear3 import ZERO, Planar, Rotation, Scalar, Vector, add, dot
 
 #: revolute joints on a path up to which absolute angles are taken for metric and Christoffel symbols. They need more
 #: sines and cosines, n (n - 1) in place of 2 (n - 1), each of which counts three operations, what the addition theorem
@@ -64,6 +63,33 @@ class Arm:
     parent: int
     turn: Planar | None
     Z: Vector
+
+
+@dataclass(frozen=True)
+class ByAngles:
+    """What absolute angles give: g_ac and Gamma_abc of some joints c; of others, by joint, the moment of gravity on
+    their lumps about their axes, and the parallel joints ``beyond``.
+    """
+
+    joints: frozenset[int] = frozenset()
+    metric: Entries = field(default_factory=dict)
+    christoffel: Entries = field(default_factory=dict)
+    lumps: Mapping[int, Scalar] = field(default_factory=dict)
+    beyond: Mapping[int, Sequence[int]] = field(default_factory=dict)
+
+    def gravity(self, gamma: Sequence[Vector], momenta: Sequence[JointMomentum]) -> list[Scalar]:
+        """Q_c of gravity; ``gamma``: in frame c."""
+        Q: list[Scalar] = [0] * len(momenta)
+        for c in reversed(range(len(momenta))):
+            if c in self.lumps:
+                # the moment about the axis of c is that of its lump and those about the parallel axes beyond
+                Q[c] = self.lumps[c]
+                for k in self.beyond[c]:
+                    Q[c] = Q[c] + Q[k]
+            else:
+                # Q_c = gamma_c . p_c
+                Q[c] = dot(gamma[c], momenta[c].p)
+        return Q
 
 
 class ParallelAxes:

@@ -42,7 +42,6 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from substructures.expr.program import Formulas, array
-from substructures.mechanics.by_angles import ByAngles
 from substructures.mechanics.composite_form import (
     Inertia,
     JointMomentum,
@@ -75,7 +74,7 @@ from substructures.mechanics.linear3 import (
     subtract,
     transpose,
 )
-from substructures.mechanics.parallel_axes import ParallelAxes, absolute
+from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes, absolute
 from substructures.part.forces.applied_forces import Loads, applied_forces
 from substructures.part.forces.wrenches import AppliedWrench
 from substructures.part.frames import joined_turns

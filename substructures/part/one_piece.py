@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from typing import Any
 
 from substructures.expr.program import Formulas, Program, array, program
-from substructures.mechanics.by_angles import ByAngles
 from substructures.mechanics.composite_form import JointMomentum, composites, joint_momentum
 from substructures.mechanics.kinematics import INTERFACE, Link, base_functions, links
 from substructures.mechanics.linear3 import Vector
-from substructures.mechanics.parallel_axes import absolute
+from substructures.mechanics.parallel_axes import ByAngles, absolute
 from substructures.part.definition import Definition
 from substructures.part.formulas import own_dynamics, parallel_axes
 from substructures.part.mechanism import Mechanism, mechanism

@@ -12,7 +12,6 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 
 from substructures.loads.pairs import wrench_forces
-from substructures.mechanics.by_angles import ByAngles
 from substructures.mechanics.composite_form import Inertia, joint_momentum, with_moments_about_axes
 from substructures.mechanics.kinematics import (
     INTERFACE,
@@ -28,7 +27,7 @@ from substructures.mechanics.kinematics import (
     path,
 )
 from substructures.mechanics.linear3 import ZERO, Rotation, Scalar, Vector, add, apply, dot, transpose
-from substructures.mechanics.parallel_axes import ParallelAxes
+from substructures.mechanics.parallel_axes import ByAngles, ParallelAxes
 from substructures.mechanics.ratios import Ratios
 from substructures.part.frames import joined_turns
 from substructures.part.outputs import OWN_INERTIA, PartOutputs, Run, frame_placement, inertia_bindings, links_of

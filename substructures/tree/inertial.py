@@ -12,13 +12,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from substructures.expr.graph import Graph
-from substructures.mechanics.by_angles import ByAngles
 from substructures.mechanics.composite_form import about_one_direction
 from substructures.mechanics.evaluation_frames import Entries, Frames, InertialEntries
 from substructures.mechanics.frame_choice import evaluation_frames
 from substructures.mechanics.kinematics import INTERFACE, Link, constant_rotation
 from substructures.mechanics.linear3 import ZERO, Rotation
-from substructures.mechanics.parallel_axes import absolute
+from substructures.mechanics.parallel_axes import ByAngles, absolute
 from substructures.part.outputs import Run, links_of, over_formulas
 from substructures.tree.mounted_part import WORLD, EvaluatedPart, MountedPart, PlacedPart
 

@@ -19,7 +19,7 @@ from substructures.errors import InvalidInput
 from substructures.interchange.importing import import_file
 from substructures.quantities.numbers.evaluation import evaluate
 
-sys.path.insert(0, str(Path(__file__).parents[1]))
+sys.path.insert(0, str(Path(__file__).parents[1] / "tools"))
 sys.path.insert(0, str(Path(__file__).parent))
 from engines import Reduced, deviation
 from package_files import included, mjcf_files, more_files, urdf_files
