@@ -105,7 +105,8 @@ class Resets:
             """quantity - level a time h from a state."""
             moved = np.concatenate([start[:n] + h * start[n:] + h * h / 2 * second, start[n:] + h * second])
             when = np.full(1, t + h)
-            return float(conditions.followed(when, moved[None], ["events"])["events"][0, event] - level)
+            with np.errstate(all="ignore"):
+                return float(conditions.followed(when, moved[None], ["events"])["events"][0, event] - level)
 
         level, still = self.events[event].level, np.zeros(n)
         if not self._is_plain or "events" not in source.outputs:
