@@ -161,7 +161,7 @@ class Layout:
         found += [Variable(n, begins["u"] + i, "input", x, start=starts[i]) for i, (n, x) in _named(inputs, u.units)]
         for i, (name, unit) in _named(p.names, p.units):
             if not isfinite(p.defaults[i]):
-                raise MissingValue(f"'{name}' has no value: give one, or a default in its definition")
+                raise MissingValue(name)
             called = _free(name, "parameter", taken)
             found.append(Variable(called, begins["p"] + i, "parameter", unit, start=p.defaults[i]))
         told = "step of classical Runge-Kutta steps in co-simulation; 0: steps of Dormand and Prince as tolerance asks"
