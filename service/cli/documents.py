@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import asdict, replace
 from errno import EACCES, EISDIR, ENOENT
+from io import BytesIO
 from pathlib import Path
 from typing import IO, Any
 
@@ -23,10 +24,13 @@ def is_document(given: str) -> bool:
     return given.endswith(DOCUMENTS)
 
 
-def read_document(path: Path) -> Any:
-    """A document in JSON or YAML, which is an object. Raises InvalidDocument naming the file."""
-    with path.open("rb") as file, named(path):
-        document = read_from(path, file) if path.stat().st_size else None
+def read_document(path: Path, content: bytes | None = None) -> Any:
+    """A document in JSON or YAML, which is an object; ``content``: of the file, where it was read already, since a pipe
+    is read only once. Raises InvalidDocument naming the file.
+    """
+    content = path.read_bytes() if content is None else content
+    with named(path):
+        document = read_from(path, BytesIO(content)) if content else None
         require_object(document)
         return with_tables(document, path.parent)
 

@@ -18,8 +18,9 @@ ROBOTS = "service.cli.commands.robots"
 
 def read_definition(path: Path) -> Any:
     """A definition as plain data, also out of a robot file; its warnings are told. Raises InvalidDocument."""
-    if not is_foreign(path.read_bytes()):
-        return read_document(path)
+    content = path.read_bytes()
+    if not is_foreign(content):
+        return read_document(path, content)
     found = imported(path)
     remarks = [{"pointer": r["place"], "message": r["message"]} for r in found.report if r["level"] == "warning"]
     tell_warnings({"warnings": remarks})

@@ -150,20 +150,24 @@ async def _limited(request: Request, limit: int) -> AsyncIterator[bytes]:
         raise Refused(415, "unsupported-media-type", detail, headers={"Accept-Encoding": "identity"})
     declared = request.headers.get("content-length", "0")
     if declared.isdigit() and int(declared) > limit:
-        raise _too_long(limit)
+        raise _too_long(request, limit)
     size = 0
     async for chunk in request.stream():
         size += len(chunk)
         if size > limit:
-            raise _too_long(limit)
+            raise _too_long(request, limit)
         yield chunk
 
 
-def _too_long(limit: int) -> Refused:
-    detail = (
-        f"the request body is larger than {limit:,} bytes, the limit for its media type; states take fewer bytes as "
-        f"npz ({arrays.MEDIA_TYPE}), any number goes as Arrow ({arrow.MEDIA_TYPE}) or as a job (POST {SUBMISSIONS})"
+def _too_long(request: Request, limit: int) -> Refused:
+    how = (
+        f"states take fewer bytes as npz ({arrays.MEDIA_TYPE}), any number goes as Arrow ({arrow.MEDIA_TYPE}) or as a "
+        f"job (POST {SUBMISSIONS})"
     )
+    if request.url.path == IMPORTS:
+        most = store_of(request).settings.limits.binary_bytes
+        how = f"a zip with the file ({bundles.MEDIA_TYPE}) may have {most:,} bytes"
+    detail = f"the request body is larger than {limit:,} bytes, the limit for its media type; {how}"
     return Refused(413, "body-too-large", detail, limit=limit)
 
 

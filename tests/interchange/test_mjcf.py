@@ -187,7 +187,7 @@ BAD = {
     "no size": (one("<geom/>"), "size needs 1 positive"),
     "negative mass": (one('<geom size="1" mass="-1"/>'), "the mass -1 kg is negative"),
     "two moments": (one('<inertial pos="0 0 0" mass="1" diaginertia="1 1 1" fullinertia="1 1 1 0 0 0"/>'),
-                    "give one of diaginertia and fullinertia"),
+                    "either 'diaginertia' or 'fullinertia' is needed"),
     "no moment": (one('<inertial pos="0 0 0" mass="1"/>'), "'diaginertia' or 'fullinertia' is needed"),
     "no mass to scale": (one("<joint/>", '<compiler settotalmass="5"/>'), "line 3: .*settotalmass has nothing"),
     "no body": (b"<mujoco/>", "the file has no <body>"),

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import copy
+import json
+import os
 import re
 import socket
 from pathlib import Path
@@ -209,6 +211,16 @@ def test_settings_are_named_as_they_were_given(
     monkeypatch.setenv("SUBSTRUCTURES_PORT", "-1")
     assert main(["serve"]) == 1
     assert 'SUBSTRUCTURES_PORT: at least 0 is needed, found "-1"' in capsys.readouterr().err
+
+
+def test_a_document_comes_through_a_pipe(capsys: pytest.CaptureFixture[str]) -> None:
+    """As of a shell, <(...), which has no size and is read once."""
+    read, write = os.pipe()
+    os.write(write, json.dumps(PENDULUM).encode())
+    os.close(write)
+    assert main(["derive", f"/dev/fd/{read}"]) == 0
+    os.close(read)
+    assert capsys.readouterr().out.startswith("pendulum: 1 coordinate (R)")
 
 
 @pytest.mark.parametrize(

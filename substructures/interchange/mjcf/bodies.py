@@ -251,15 +251,11 @@ class Bodies:
         """Mass, and R I R^T of <inertial>."""
         mass, com = node.number("mass"), triple(node.numbers("pos", 3, ORIGIN))
         R = orientation(node, self.compiler)
-        if "fullinertia" in node.attributes and "diaginertia" in node.attributes:
-            raise refuse(node.place, "two-inertias", "give one of diaginertia and fullinertia")
+        if ("fullinertia" in node.attributes) == ("diaginertia" in node.attributes):
+            raise refuse(node.place, "missing-attribute", "either 'diaginertia' or 'fullinertia' is needed")
         if "fullinertia" in node.attributes:
-            six = node.numbers("fullinertia", 6)
-        elif "diaginertia" in node.attributes:
-            six = (*node.numbers("diaginertia", 3), ZERO, ZERO, ZERO)
-        else:
-            raise refuse(node.place, "missing-attribute", "'diaginertia' or 'fullinertia' is needed")
-        return Inertial(mass, com, turned_inertia(six, R))
+            return Inertial(mass, com, turned_inertia(node.numbers("fullinertia", 6), R))
+        return Inertial(mass, com, turned_inertia((*node.numbers("diaginertia", 3), ZERO, ZERO, ZERO), R))
 
     def _bounded(self, node: Node, own: Inertial) -> Inertial:
         """With the least mass and moments that the compiler asks for, and judged as that."""
