@@ -6,6 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from decimal import Decimal
 from fractions import Fraction
+from math import isfinite
 from typing import Any
 
 from substructures.abbreviation.balls import above, below, enclosures
@@ -142,8 +143,9 @@ def _number(given: Any, place: str) -> Any:
         found = ball(Decimal(repr(given)) if isinstance(given, float) else given)
     except (ExpressionError, ValueError, ArithmeticError) as error:
         raise InvalidArgument.at(place, "number-expected", f"no finite number: {error}"[:300]) from None
-    if not found.is_finite():
-        raise InvalidArgument.at(place, "number-not-finite", f"the number is not finite: {str(given)[:80]}")
+    if not (isfinite(below(found)) and isfinite(above(found))):
+        message = f"the number is not finite, or beyond those of double precision: {str(given)[:80]}"
+        raise InvalidArgument.at(place, "number-not-finite", message)
     return found
 
 

@@ -160,6 +160,7 @@ BAD: list[tuple[dict[str, Any], str, str]] = [
     ({"ranges": RANGES | {"x.q1": 3}}, "/ranges/x.q1", "range-expected"),
     ({"ranges": RANGES | {"x.q1": (0, float("inf"))}}, "/ranges/x.q1/1", "number-expected"),
     ({"ranges": RANGES | {"x.q1": (0, "x")}}, "/ranges/x.q1/1", "number-expected"),
+    ({"ranges": RANGES | {"x.q1": (0, "exp(800)")}}, "/ranges/x.q1/1", "number-not-finite"),
     ({"ranges": RANGES | {"x.q1": (None, 1)}}, "/ranges/x.q1/0", "number-expected"),
     ({"parameters": {"x.nothing": 1}}, "/parameters/x.nothing", "unknown-parameter"),
     ({"parameters": {"x.m1": 1}, "ranges": RANGES | {"x.m1": (1, 2)}}, "/parameters/x.m1", "twice"),

@@ -64,6 +64,14 @@ def test_slow_tops_do_not_precess() -> None:
     assert "no rate of precession keeps the 'starts'" in found.message
 
 
+def test_nothing_precesses_where_forces_are_not_finite() -> None:
+    model = model_of(top(), gravity=(0, 0, "1" * 399))
+    with np.errstate(all="ignore"):
+        found = steady_motions(model, rates={SPIN: 30.0}, precession="any", starts=[tilted(0.7)], count=0)
+    assert found.found == ()
+    assert "no rate of precession keeps the 'starts'" in found.message
+
+
 def test_it_is_the_motion_of_the_top() -> None:
     """The tilt stays, and the heading turns at the rate of the precession."""
     model = model_of(top())

@@ -129,7 +129,7 @@ class TurningSearch(BallSearch):
         return float(v @ self.g[0] @ v)
 
     def precessions(self, q: Array) -> list[float]:
-        """All Omega that keep a place: ID is quadratic in it."""
+        """All Omega that keep a place: ID is quadratic in it; none where it has no finite value."""
         rows = []
         for turn in (-1.0, 0.0, 1.0):
             self.given.wanted[-1] = turn
@@ -137,6 +137,8 @@ class TurningSearch(BallSearch):
         square, linear = (rows[0] + rows[2]) / 2 - rows[1], (rows[2] - rows[0]) / 2
         k = int(np.abs(np.stack((square, linear))).max(axis=0).argmax())
         terms, found = np.array([square[k], linear[k], rows[1][k]]), []
+        if not np.isfinite(terms).all():
+            return []
         terms[np.abs(terms) <= NOTHING * np.abs(terms).max()] = 0
         for root in np.roots(terms):
             self.given.wanted[-1] = float(root.real)
