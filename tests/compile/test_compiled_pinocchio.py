@@ -37,24 +37,30 @@ def compare(model: Model, definition: Plain, numbers: dict[str, float], count: i
     assert all(np.isfinite(found[name]).all() for name in ("metric", "gravity", "christoffel"))
     engine, names = engine_of(definition, gravity), list(joints_of(definition))
     order = engine.order(names)
-    place, rotors = np.argsort(order), np.diag(by_coordinate(definition, "armature", names))
     N, q0 = reduction(definition, names, [c.removeprefix("x.") for c in model.coordinates])
-    joints, rates = q @ N.T + q0, qd @ N.T
-    data, worst = engine.model.createData(), 0.0
+    place = np.argsort(order)
+    joints, rates = (q @ N.T + q0)[:, place], (qd @ N.T)[:, place]
+    data, rotors = engine.model.createData(), np.diag(by_coordinate(definition, "armature", names))
+    metric, coriolis = np.empty((2, count, len(names), len(names)))
+    forces = np.empty((count, len(names)))
     for i in range(count):
-        upper = np.triu(pin.crba(engine.model, data, joints[i][place]))
-        metric = (upper + np.triu(upper, 1).T)[np.ix_(order, order)] + rotors
-        coriolis = pin.computeCoriolisMatrix(engine.model, data, joints[i][place], rates[i][place])[
-            np.ix_(order, order)
-        ]
-        forces = -pin.computeGeneralizedGravity(engine.model, data, joints[i][place])[order]
-        pairs = (
-            (found["metric"][i], N.T @ metric @ N),
-            (found["gravity"][i], N.T @ forces),
-            (found["christoffel"][i] @ qd[i], N.T @ coriolis @ N),
-        )
-        worst = max(worst, *(float(np.abs(a - b).max() / max(np.abs(b).max(), 1e-2)) for a, b in pairs))
-    return worst
+        metric[i] = pin.crba(engine.model, data, joints[i])
+        coriolis[i] = pin.computeCoriolisMatrix(engine.model, data, joints[i], rates[i])
+        forces[i] = -pin.computeGeneralizedGravity(engine.model, data, joints[i])
+    upper = np.triu(metric)
+    metric = (upper + np.triu(upper, 1).swapaxes(1, 2))[:, order][:, :, order] + rotors
+    pairs = (
+        (found["metric"], N.T @ metric @ N),
+        (found["gravity"], forces[:, order] @ N),
+        (np.einsum("iabc,ic->iab", found["christoffel"], qd), N.T @ coriolis[:, order][:, :, order] @ N),
+    )
+    return max(worst(*pair) for pair in pairs)
+
+
+def worst(found: Any, expected: Any) -> float:
+    """The largest deviation in a state, relative to its largest number there."""
+    states = found.reshape(len(found), -1), expected.reshape(len(found), -1)
+    return float((np.abs(states[0] - states[1]).max(axis=1) / np.abs(states[1]).max(axis=1).clip(min=1e-2)).max())
 
 
 def random_tree(seed: int, count: int) -> float:

@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from pathlib import Path
 from time import process_time
 from typing import Any
@@ -81,8 +82,9 @@ def compared(name: str, path: Path, twin_of: Callable[..., Any]) -> Row:
     return Row(name, model.dof, seconds, max(errors), any(x.forward_dynamics is None for x in expected))
 
 
+@cache
 def all_files() -> dict[str, Path]:
-    """Of all packages, by their path in it."""
+    """Of all packages, by their path in it; what a package lists is looked for on the disk, which takes 0.2 s."""
     return {**urdf_files(), **mjcf_files(), **more_files()}
 
 
