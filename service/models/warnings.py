@@ -26,7 +26,7 @@ def warnings_of(source: Source, request: BaseModel, motion: Trajectory | None) -
     q: Any = None if told else getattr(request, "q", None)
     states = np.zeros((0, len(source.model.positions))) if q is None else read_states(source.model, {"q": q}, None).q
     notices = value_warnings(source.sources, given, inputs, states)
-    notices += not_judged_warnings(name for name in DYNAMICS if name in source.model.program.not_judged)
+    notices += not_judged_warnings(name for name in DYNAMICS if name in source.model.of_shape.program.not_judged)
     if getattr(request, "friction", None) == "loaded":
         notices = [each for each in notices if each["code"] != "friction-left-out"]
     # a model with its definitions has told of relations itself

@@ -51,7 +51,7 @@ class Caches:
         return cls(
             parts=Cache(nodes // 4, lambda part: len(part.program)),
             programs=Cache(nodes // 8, len),
-            models=Cache(nodes // 4, lambda model: len(model.program)),
+            models=Cache(nodes // 4, lambda model: len(model.of_shape.program)),
             derived=Cache(nodes // 4, len),
             of_parts=Cache(nodes // 8, lambda found: len(found.program)),
             numeric_trees=Cache(nodes // 8, NumericTree.weight),

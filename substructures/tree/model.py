@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field, fields
 from fractions import Fraction
 from functools import cached_property
 from typing import Any
@@ -30,7 +30,7 @@ class Model:
     ``ignored``: whose momentum is; ``velocity_constraints``, ``contacts``: of its motions, as plain data; the formulas
     are those without; ``balls``: joints whose rates are no derivatives of coordinates;
     ``reduced``: instances whose loops are in the formulas, with their coordinates; ``numbers``: in SI, still to be
-    put in for symbols of the program (:meth:`with_numbers`), ``unbound``: that program, and the model before."""
+    put in for symbols of the program (:meth:`with_numbers`), ``unbound``: the model before."""
 
     program: Program
     coordinates: tuple[str, ...]
@@ -50,7 +50,7 @@ class Model:
     contacts: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
     balls: tuple[Mapping[str, Sequence[str]], ...] = field(default=(), hash=False)
     reduced: tuple[Mapping[str, Any], ...] = field(default=(), hash=False)
-    unbound: tuple[Program, Model] | None = field(default=None, compare=False, repr=False)
+    unbound: Model | None = field(default=None, compare=False, repr=False)
 
     def __repr__(self) -> str:
         """Two lines: what it is, and what its formulas take and how well they agree with the direct form."""
@@ -65,17 +65,26 @@ class Model:
         return self.program.totals() | {"total": self.program.count(together)["total"]}
 
     def with_numbers(self) -> Model:
-        """The model with its numbers in the formulas, exactly."""
+        """The model with its numbers in the formulas, exactly; these are made when they are first asked for."""
         if not self.numbers:
             return self
-        program = with_numbers(self.program, self.numbers)
-        return replace(self, program=program, numbers={}, unbound=(program, self))
+        given = {each.name: getattr(self, each.name) for each in fields(self)}
+        found = _WithNumbers(**{**given, "numbers": {}, "unbound": self})
+        del vars(found)["program"]
+        return found
+
+    @cached_property
+    def bound(self) -> Program:
+        """The program with the ``numbers`` in the places of symbols."""
+        return with_numbers(self.program, self.numbers)
 
     @property
     def of_shape(self) -> Model:
         """The model before its ``numbers`` were put in, whose program is that of its shape; itself without any."""
-        bound, shape = self.unbound or (None, self)
-        return shape if bound is self.program else self
+        if self.unbound is None:
+            return self
+        made = vars(self).get("program")
+        return self.unbound if made is None or made is vars(self.unbound).get("bound") else self
 
     @property
     def given(self) -> tuple[str, ...]:
@@ -101,7 +110,8 @@ class Model:
     def units(self) -> dict[str, str]:
         """The SI units of parameters and inputs by name, actuators last; empty where none was given."""
         declared, own = {**self.parameters, **self.inputs}, effort_units(self.coordinates, self.joints)
-        own |= {s.name: s.unit for s in self.program.symbols if s.name.removeprefix("tau.") in self.dependent}
+        if self.dependent:
+            own |= {s.name: s.unit for s in self.program.symbols if s.name.removeprefix("tau.") in self.dependent}
         return {name: str(given.get("unit", "")) for name, given in declared.items()} | own
 
     @cached_property
@@ -116,8 +126,8 @@ class Model:
 
     @cached_property
     def input_names(self) -> tuple[str, ...]:
-        """All inputs: those in the formulas in the order of the program's symbols, then those without effect."""
-        named = [s.name for s in self.program.symbols if s.kind == "input"]
+        """All inputs: those in the formulas of its shape in the order of the symbols, then those without effect."""
+        named = [s.name for s in self.of_shape.program.symbols if s.kind == "input"]
         return tuple(dict.fromkeys([*named, *self.inputs, *effort_units(self.coordinates, self.joints)]))
 
     def described(self) -> dict[str, Any]:
@@ -150,6 +160,17 @@ class Model:
         more |= {"numbers": {name: Fraction(x) for name, x in summary.get("numbers", {}).items()}}
         more |= {"reduction": Reduction.read(summary["reduction"])} if summary.get("reduction") else {}
         return cls(program, *names, *described, closures, summary.get("inputs", {}), **more).with_numbers()
+
+
+class _WithNumbers(Model):
+    """A model whose numbers are put in when its formulas are first asked for: motions go by those of the shape."""
+
+    @cached_property
+    def program(self) -> Program:  # a field, until then without a value
+        """The formulas with the numbers."""
+        shape = self.unbound
+        assert shape is not None  # noqa: S101 -- with_numbers gives it
+        return shape.bound
 
 
 def no_coordinates(dof: int) -> list[dict[str, str]]:

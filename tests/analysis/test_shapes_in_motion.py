@@ -14,9 +14,9 @@ from substructures.analysis.motion.judges.integrals import integrals_along
 from substructures.analysis.motion.right_hand_side import RightHandSide
 
 
-def _model(mass: str, place: str, pull: str) -> Model:
-    """An arm with a pendulum as its hand, which no search for further integrals takes."""
-    parts = {"arm": shipped_part("scara"), "hand": shipped_part("simple-pendulum")}
+def _model(mass: str, place: str, pull: str, arm: str = "scara") -> Model:
+    """An arm with a pendulum as its hand."""
+    parts = {"arm": shipped_part(arm), "hand": shipped_part("simple-pendulum")}
     hand: dict[str, Any] = {"name": "hand", "substructure": "x", "at": f"arm.{parts['arm'].ports[0]}"}
     hand |= {"parameters": {"m": mass}, "placement": {"position": [place, 0, "1/5"]}}
     tree = {"name": "t", "gravity": [0, 0, pull], "instances": [{"name": "arm", "substructure": "x"}, hand]}
@@ -52,3 +52,14 @@ def test_integrals_by_the_shape_are_those_of_the_tree() -> None:
     found, expected = integrals_along(model, [], []), first_integrals(model, [], [])
     assert [each.name for each in found.integrals] == [each.name for each in expected.integrals]
     assert {s.name for s in found.program.symbols} == {s.name for s in expected.program.symbols}
+
+
+def test_a_motion_leaves_the_numbers_out_of_the_formulas() -> None:
+    # which no search for further integrals takes
+    model = _model("0.7", "0.31", "-1.62", "ur5")
+    assert simulate(model, 0.3 + 0.1 * np.arange(model.dof), (0, 1)).is_right
+    assert "program" not in vars(model)
+    assert len(model.program)
+    assert model.of_shape.numbers
+    other = replace(model, program=model.of_shape.program)
+    assert other.of_shape is other

@@ -16,7 +16,7 @@ from substructures.interchange.importing import document_of
 from substructures.part.definition import Definition
 from substructures.part.derive import derive
 from substructures.part.part import Part
-from substructures.tree.couple import couple
+from substructures.tree.couple import couple_shape
 from substructures.tree.document import TreeSpec
 
 BUDGET = Budget(60.0, 2**31)
@@ -42,7 +42,7 @@ class MemoryLibrary:
         pins = {name: f"{part.name}@{part.definition.digest}" for name, part in parts.items()}
         pinned = tuple(i.model_copy(update={"substructure": pins[i.name]}) for i in spec.instances)
         spec = spec.model_copy(update={"instances": pinned})
-        model = couple(spec, parts)
+        model = couple_shape(spec, parts)
         self.blobs[model.program.digest] = model.program.to_bytes()
         document = spec.canonical().decode()
         made = tree_summary(spec, model)

@@ -11,6 +11,7 @@ import pytest
 
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds import run
+from substructures import catalogue
 from substructures.documents import read_json, write_json
 from substructures.errors import InvalidInput
 
@@ -41,6 +42,23 @@ def test_a_list_of_requests(library: MemoryLibrary) -> None:
     found = outcomes(library, "simulate", {"items": [{"tree": "cell", "requests": requests}]})
     assert [json.loads(outcome.files["result"])["q"][0][0] for outcome in found] == [0.1, 0.2, 0.3]
     assert all(outcome.summary["status"] == "finished" and outcome.summary["is_right"] for outcome in found)
+
+
+def test_a_motion_puts_no_numbers_into_formulas(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Of a tree with a tool somewhere: it moves by the formulas of its shape."""
+    robot, hand = (catalogue.load(name) for name in ("ur5", "simple-pendulum"))
+    arm = {"name": "arm", "substructure": "ur5"}
+    tool = {"name": "tool", "substructure": hand["name"], "at": f"arm.{robot['ports'][0]['name']}"}
+    tool["placement"] = {"position": ["0.31", 0, "0.2"]}
+    tree = {"name": "placed", "gravity": [0, 0, "-9.81"], "instances": [arm, tool]}
+    placed = MemoryLibrary([robot, hand], [tree])
+
+    def put_in(*_: Any) -> None:
+        raise AssertionError("numbers are put into the formulas")
+
+    monkeypatch.setattr("substructures.tree.model.with_numbers", put_in)
+    (found,) = outcomes(placed, "simulate", {"items": [{"tree": "placed", "request": {**SWING, "q": [0.3] * 7}}]})
+    assert found.summary["is_right"]
 
 
 def test_a_template_with_choices(library: MemoryLibrary) -> None:

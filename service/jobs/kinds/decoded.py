@@ -21,7 +21,7 @@ CAPACITY = 300_000  # operations
 
 _parts: Cache[Part] = Cache(CAPACITY, lambda part: len(part.program))
 _programs: Cache[Program] = Cache(CAPACITY, len)
-_models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.program))
+_models: Cache[Model] = Cache(CAPACITY, lambda model: len(model.of_shape.program))
 
 
 def part_of(definition: str, program: str, blobs: Mapping[str, bytes]) -> Part:

@@ -40,17 +40,14 @@ def vector(entries: Sequence[Expr]) -> Formulas:
 def _dependent(model: Model, scope: Scope) -> Callable[[str], Expr | None]:
     """The lookup of dependent coordinates, z(y), and of their rates, d z/d y y' + d z/dt (reduced level)."""
 
-    def declared(name: str) -> Expr:
-        """A symbol of the model, declared in the scope."""
-        symbol = symbols[name]
-        return scope.declare(name, symbol.kind, symbol.unit)
-
     def lookup(name: str) -> Expr | None:
         """z or its rate; None of all other names."""
         z = name.removesuffix("'")
         if z not in model.dependent:
             return None
-        known = {x: declared(x) for x in model.program.needs(["dependent"])}
+        symbols = {symbol.name: symbol for symbol in model.program.symbols}
+        needed = [symbols[x] for x in model.program.needs(["dependent"])]
+        known = {symbol.name: scope.declare(symbol.name, symbol.kind, symbol.unit) for symbol in needed}
         found = replay(model.program, scope.graph, known, ["dependent"])["dependent"].entries[model.dependent.index(z),]
         if z == name:
             return found
@@ -59,7 +56,6 @@ def _dependent(model: Model, scope: Scope) -> Callable[[str], Expr | None]:
         slopes = gradient([found], list(moving))[0]
         return scope.graph.sum(x * v for x, v in zip(slopes, moving.values(), strict=True))
 
-    symbols = {symbol.name: symbol for symbol in model.program.symbols}
     return lookup
 
 

@@ -189,8 +189,10 @@ def by_name(model: Model, given: Mapping[str, Any], name: str) -> Array:
 
 def symbol_values(model: Model, given: ArgumentsByName, states: States, needs: Iterable[str]) -> dict[str, Any]:
     """Values of all symbols that the needed outputs of the model depend on. Raises InvalidArgument, MissingValue."""
-    values = known_values(model, given, states, model.parameters)
-    require(model.program, needs, values)
+    values, shape, names = known_values(model, given, states, model.parameters), model.of_shape, list(needs)
+    # what the formulas of the shape need is all that those with the numbers may
+    if not values.keys() | shape.numbers.keys() >= set(shape.program.needs(names)):
+        require(model.program, names, values)
     return values
 
 

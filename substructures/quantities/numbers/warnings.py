@@ -59,9 +59,7 @@ def value_warnings(
         notices += [x if x in known else {**x, "pointer": "/parameters"} for x in judge.inertias(parameters, first)]
     else:
         notices += judge.at_defaults
-    effective = model.effective.union(others) if judge is None else model.effective.union(others, judge.limiting)
-    notices += [_without_effect("parameter", name) for name in parameters if name not in effective]
-    notices += [_without_effect("input", name) for name in inputs if name in model.inputs and name not in effective]
+    notices += _without_effect(sources, parameters, inputs, others)
     if judge is not None and q is not None:
         notices += judge.left(model.positions, q, parameters, first)
         notices += judge.apart(model.positions, q, first)
@@ -71,9 +69,24 @@ def value_warnings(
     return notices
 
 
-def _without_effect(kind: str, name: str) -> Notice:
-    message = f"no formula depends on the {kind} '{name}'"
-    return {"pointer": f"/{kind}s/{escape(name)}", "code": "no-effect", "message": message}
+def _without_effect(
+    sources: Sources, parameters: Collection[str], inputs: Collection[str], others: Collection[str]
+) -> list[Notice]:
+    """Parameters and inputs that nothing depends on."""
+    model, judge = sources.model, sources.judge
+    given = [("parameter", name) for name in parameters] + [("input", name) for name in inputs if name in model.inputs]
+    if not given:
+        return []
+    effective = model.effective.union(others, () if judge is None else judge.limiting)
+    return [
+        {
+            "pointer": f"/{kind}s/{escape(name)}",
+            "code": "no-effect",
+            "message": f"no formula depends on the {kind} '{name}'",
+        }
+        for kind, name in given
+        if name not in effective
+    ]
 
 
 def doubted(sources: Sources, quantities: Sequence[str]) -> list[str]:
