@@ -175,9 +175,10 @@ class Act:
         return replace(answer, headers={**answer.headers, "Preference-Applied": applied}) if applied else answer
 
     def _prefers(self, preference: str) -> re.Match[str] | None:
-        """The preference (RFC 7240) if it is asked for."""
+        """The preference (RFC 7240) if it is asked for; none has parameters, and those that are given are ignored."""
         given = ",".join(self._request.headers.getlist("prefer")).split(",")
-        return next(filter(None, (re.fullmatch(preference, each.strip().lower()) for each in given)), None)
+        names = (each.partition(";")[0].strip().lower() for each in given)
+        return next(filter(None, (re.fullmatch(preference, each) for each in names)), None)
 
 
 class SpooledAct(Act):

@@ -38,7 +38,7 @@ def set_limit(store: Store, seconds: float) -> None:
     store.settings = store.settings.model_copy(update={"limits": limits})
 
 
-@pytest.mark.parametrize("headers", [ASYNC, {"Prefer": "wait=0"}, {"Prefer": "wait=10, Respond-Async"}])
+@pytest.mark.parametrize("headers", [ASYNC, {"Prefer": "wait=0"}, {"Prefer": "wait=10, Respond-Async; x=y"}])
 def test_everything_that_computes(filled: TestClient, store: Store, headers: dict[str, str]) -> None:
     with running(store, FakeEngine()):
         hand = deferred(filled, "/v1/trees/cell/couplings", HAND, headers)
