@@ -1,6 +1,6 @@
 // A robot file: read, derived and drawn before anything of it is stored.
 import { element } from "./fragments.js";
-import { LOST, reached } from "./reached.js";
+import { reached } from "./reached.js";
 
 const headers = ({ name }) => ({ "Content-Type": /\.zip$/i.test(name) ? "application/zip" : "application/octet-stream" });
 const place = document.getElementById("import");
@@ -23,7 +23,6 @@ async function sent(file, more) {
 }
 
 function refused({ message, faults = [] }) {
-    if (message === LOST) return [element("p", { class: "warn" }, message)];
     const lines = faults.length ? faults.map((fault) => fault.message) : [message];
     return [element("p", { class: "warn" }, "This cannot be stored:"), element("ul", {}, ...lines.map((line) => element("li", {}, line)))];
 }
