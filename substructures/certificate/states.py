@@ -106,16 +106,17 @@ def _signed(
     negative: bool = False,
 ) -> list[State]:
     states: list[State] = [{} for _ in range(count)]
-    for name in sorted(kinds):
-        sign = source.choice((-1, 1))
-        for k, state in enumerate(states):
-            size = fmpq(2**29 + source.getrandbits(30), 2**30)
-            if kinds[name] in POSITIVE:
-                # a length may be negative: in every other state some are
-                is_negative = negative and k % 2 and kinds[name] == "parameter" and sign < 0
-                state[name] = defaults.get(name, -size if is_negative else size)
-            else:
-                # every sign in one of two states; a default is as exact there as it is
-                with ctx.workprec(EXACT):
+    # a default is as exact in a state as it is
+    with ctx.workprec(EXACT):
+        for name in sorted(kinds):
+            sign = source.choice((-1, 1))
+            for k, state in enumerate(states):
+                size = fmpq(2**29 + source.getrandbits(30), 2**30)
+                if kinds[name] in POSITIVE:
+                    # a length may be negative: in every other state some are
+                    is_negative = negative and k % 2 and kinds[name] == "parameter" and sign < 0
+                    state[name] = defaults.get(name, -size if is_negative else size)
+                else:
+                    # every sign in one of two states
                     state[name] = sign * (-1) ** k * size / smaller + defaults.get(name, 0)
     return states

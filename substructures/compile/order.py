@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from substructures.expr.needs import needed
 from substructures.expr.operations import BINARY
 from substructures.expr.program import Operation, Program, operands
 
@@ -29,21 +30,21 @@ def sharp(ops: Sequence[Operation], needed: Iterable[int]) -> set[int]:
     return found
 
 
-def registers(ops: Sequence[Operation], results: Iterable[int]) -> dict[int, int]:
+def registers(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
     """How many registers each value that the results need takes while it is computed, as if it was used once: none for
     what is read from memory (R. Sethi and J. D. Ullman, The generation of optimal code for arithmetic expressions,
     Journal of the ACM 17, 1970).
     """
-    stack = list(results)
-    needed, found = set(stack), dict[int, int]()
-    while stack:
-        new = [x for x in operands(ops[stack.pop()]) if x not in needed]
-        needed.update(new)
-        stack += new
-    for i in sorted(needed):
-        of = [found[x] for x in operands(ops[i])]
-        # of two that take the same number the first one waits in a register
-        found[i] = max(1, max(of) + (len(of) > 1 and of[0] == of[1])) if of else 0
+    found = [0] * len(ops)
+    for i in needed(ops, results):
+        operation = ops[i]
+        if operation[0] in BINARY:
+            a, b = found[operation[1]], found[operation[2]]
+            # of two that take the same number the first one waits in a register
+            found[i] = a + 1 if a == b else max(a, b)
+        else:
+            of = [found[x] for x in operands(operation)]
+            found[i] = max(1, max(of) + (len(of) > 1 and of[0] == of[1])) if of else 0
     return found
 
 
@@ -61,9 +62,13 @@ def depth_first(ops: Sequence[Operation], results: Iterable[int]) -> list[int]:
             if i < 0:
                 order.append(~i)
             elif not done[i]:
-                done[i] = 1
+                done[i], operation = 1, ops[i]
                 stack.append(~i)
-                stack += sorted(operands(ops[i]), key=most.__getitem__)
+                if operation[0] in BINARY:
+                    a, b = operation[1], operation[2]
+                    stack += (a, b) if most[a] <= most[b] else (b, a)
+                else:
+                    stack += sorted(operands(operation), key=most.__getitem__)
     return order
 
 

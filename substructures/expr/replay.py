@@ -7,7 +7,6 @@ from fractions import Fraction
 from typing import Any
 
 from substructures.expr.graph import Expr, Graph
-from substructures.expr.operations import operands
 from substructures.expr.program import Formulas, Program
 from substructures.expr.walk import build
 
@@ -22,14 +21,15 @@ def replay(
     """The program's outputs as expressions in ``graph``, with symbols replaced by ``bindings`` (others by themselves).
 
     Every operation passes the graph's simplification, so binding numbers folds the program to its lean form.
-    ``known``: what operations became in this graph with these bindings, which are not replayed and to which others are
-    added. Raises ZeroDivisionError when a divisor becomes zero.
+    ``known``: what operations became in this graph with these bindings, with all that they need; they are not replayed,
+    and others are added. Raises ZeroDivisionError when a divisor becomes zero.
     """
     names = list(program.outputs if names is None else names)
     values: dict[int, Any] = {} if known is None else known
     symbols = [s.name for s in program.symbols]
     operations = program.operations
-    for i in _missing(program, names, values) if values else program.reachable(names):
+    needed = program.reachable(names)
+    for i in [i for i in needed if i not in values] if values else needed:
         operation = operations[i]
         op = operation[0]
         if op == "mul":
@@ -50,18 +50,6 @@ def replay(
         else:
             values[i] = build(graph, op, [values[x] for x in operation[1:]])
     return {name: _formulas(program, name, values) for name in names}
-
-
-def _missing(program: Program, names: Iterable[str], known: Mapping[int, Any]) -> list[int]:
-    """The operations that the outputs need beside those that are known, in order."""
-    found: set[int] = set()
-    stack = [entry for name in names for entry in program.outputs[name].entries if entry not in known]
-    while stack:
-        i = stack.pop()
-        if i not in found:
-            found.add(i)
-            stack += [x for x in operands(program.operations[i]) if x not in known]
-    return sorted(found)
 
 
 def _formulas(program: Program, name: str, values: Mapping[int, Expr]) -> Formulas:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from functools import lru_cache
 from typing import Any
 
 from flint import arb
@@ -11,10 +12,10 @@ from substructures.certificate.compare import compare
 from substructures.certificate.derived.model_at import ModelAt
 from substructures.certificate.derived.model_formulas import Expectation
 from substructures.certificate.outputs import Outputs
-from substructures.certificate.states import states_between
+from substructures.certificate.states import EXACT, states_between
 from substructures.certificate.stored import pruned
 from substructures.errors import VerificationFailed
-from substructures.expr.direct import ball
+from substructures.expr.direct import Given, ball
 from substructures.expr.program import Program
 from substructures.tree.model import Model
 
@@ -48,12 +49,18 @@ def certified(
     kinds = kinds_of(model)
     kinds |= {f"d.{name}": kind for name, kind in kinds.items()} | dict(more or {})
     given = {name: parameter.get("value") for name, parameter in model.parameters.items()}
-    defaults = {name: ball(value, precision=1100) for name, value in given.items() if value is not None}
+    defaults = {name: _exact(value) for name, value in given.items() if value is not None}
     try:
         found = compare(program, kinds, expected, defaults, states_between(program.operations, source.operations))
     except VerificationFailed as error:
         raise VerificationFailed(f"{what}: {error}") from None
     return program.marked(program.outputs if model.program.not_judged & set(needs) else found.not_judged)
+
+
+@lru_cache(maxsize=4096)
+def _exact(value: Given) -> Any:
+    """A default, which every tree of a part has."""
+    return ball(value, precision=EXACT)
 
 
 def kinds_of(model: Model) -> dict[str, str]:
