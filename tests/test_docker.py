@@ -230,6 +230,9 @@ class Replay:
             case "ENV":
                 for name, value in re.findall(r"(\w+)=(\S+)", step.text):
                     self.environment[name] = self.here(value).replace("$PATH", self.environment["PATH"])
+                # pip compiles in the image; where it is told not to, each command here would compile all it imports
+                if self.environment.get("PIP_COMPILE") == "0":
+                    self.environment.pop("PYTHONDONTWRITEBYTECODE", None)
 
     def copy(self, source: Path, target: Path) -> None:
         if source.is_dir():

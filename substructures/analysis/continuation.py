@@ -21,6 +21,8 @@ from substructures.array import Array
 Equations = Callable[[Array], tuple[Array, Array]]
 #: integers at a point, whose changes along a curve are located
 Signature = Callable[[Array], tuple[int, ...]]
+#: u, and the integers there
+Point = tuple[Array, tuple[int, ...]]
 #: points of one curve over those that its length 1 would take; halvings of the place of a change
 MOST, PLACED = 40, 24
 #: most changes between two points
@@ -50,8 +52,8 @@ class Change:
     which: int
     tangent: Array
     seen_from: Array
-    before: tuple[Array, tuple[int, ...]]
-    after: tuple[Array, tuple[int, ...]]
+    before: Point
+    after: Point
     #: whether there was a point of the curve wherever it was looked for, and none far from the next
     is_placed: bool
 
@@ -88,7 +90,7 @@ class Continuation:
                 new = self._at_the_end(u, t, new)
                 turned = self.tangent(new, t)
             after = self._integers(new, turned)
-            changes = self._changes(u, t, here, float(t @ (new - u)), after)
+            changes = self._changes(t, (u, here), (new, after))
             if step > 4 * self.step * SHORT and not all(change.is_placed for change in changes):
                 step /= 4
                 continue
@@ -170,8 +172,11 @@ class Continuation:
 
     def _at_the_end(self, u: Array, t: Array, beyond: Array) -> Array:
         """The point at the end of the range of s, which is between two."""
-        end = float(beyond[-1] > 0.5)
-        low, high, inside = 0.0, float(t @ (beyond - u)), u
+        end, chord = float(beyond[-1] > 0.5), beyond - u
+        found = self._corrected(u + (end - u[-1]) / chord[-1] * chord, np.eye(len(u))[-1])
+        if found is not None and 0 <= t @ (found - u) <= t @ chord:
+            return found
+        low, high, inside = 0.0, float(t @ chord), u
         for _ in range(PLACED):
             middle = (low + high) / 2
             point = self._corrected(u + middle * t, t)
@@ -192,45 +197,51 @@ class Continuation:
             if not (np.isfinite(rows).all() and np.isfinite(right).all()):
                 return None
             du = np.linalg.lstsq(rows, right, rcond=1e-12)[0]
-            u, size = u + du, float(np.abs(du).max())
-            if np.linalg.norm(u - guess) > self.step:
-                return None
+            size = float(np.abs(du).max())
+            # that step would lead nowhere: here the equations are known
             if size <= SMALL or before / 4 < size <= ROUNDED:
                 return u
+            u = u + du
+            if np.linalg.norm(u - guess) > self.step:
+                return None
             before = size
         # beside another curve the last steps are rounding
         return u if np.abs(self.equations(u)[0]).max(initial=0) <= SMALL else None
 
-    def _changes(self, u: Array, t: Array, here: tuple[int, ...], end: float, after: tuple[int, ...]) -> list[Change]:
-        """Those that are seen between u and the point at ``end`` along its tangent, by integers."""
-        found: list[Change] = []
-        for k, last in enumerate(after):
-            low, before = 0.0, (u, here)
-            while before[1][k] != last and len(found) < CHANGES:
-                low, change = self._located(u, t, k, before, (low, end))
-                found.append(change)
-                before = change.after
+    def _changes(self, t: Array, first: Point, last: Point) -> list[Change]:
+        """Those that are seen between two points, by integers; t is the tangent at the first one."""
+        found, points = list[Change](), [first, last]
+        for k, end in enumerate(last[1]):
+            before = first
+            while before[1][k] != end and len(found) < CHANGES:
+                found.append(self._located(t, k, before, points))
+                before = found[-1].after
         return found
 
-    def _located(
-        self, u: Array, t: Array, k: int, before: tuple[Array, tuple[int, ...]], between: tuple[float, float]
-    ) -> tuple[float, Change]:
-        """The first change of integer k between two lengths along the tangent t, by bisection."""
-        (low, high), start = between, before[1][k]
-        after, is_placed = self._watched(u, t, high)
-        for _ in range(PLACED):
-            middle, is_found = self._watched(u, t, (low + high) / 2)
-            is_placed &= is_found
-            if middle[1][k] == start:
-                low, before = (low + high) / 2, middle
-            else:
-                high, after = (low + high) / 2, middle
-        is_placed &= bool(np.linalg.norm(after[0] - before[0]) < GAP * between[1])
-        return high, Change(k, self.tangent(after[0], t), t, before, after, is_placed)
+    def _located(self, t: Array, k: int, before: Point, points: list[Point]) -> Change:
+        """The first change of integer k behind a point, by bisection along the tangent t between the known ``points``,
+        the first and the last one and what was met before; what is met here is added.
+        """
 
-    def _watched(self, u: Array, t: Array, length: float) -> tuple[tuple[Array, tuple[int, ...]], bool]:
-        """The point at a length along the tangent with its integers, and whether there is one."""
-        guess = u + length * t
+        def along(point: Point) -> float:
+            return float(t @ (point[0] - points[0][0]))
+
+        start, is_placed, length = before[1][k], True, along(points[1])
+        after = min((one for one in points if along(one) > along(before) and one[1][k] != start), key=along)
+        before = max((before, *(one for one in points if along(one) < along(after))), key=along)
+        while along(after) - along(before) > length / 2**PLACED:
+            middle, is_found = self._watched((before[0] + after[0]) / 2, t)
+            is_placed &= is_found
+            points += [middle] if is_found else []
+            if middle[1][k] == start:
+                before = middle
+            else:
+                after = middle
+        is_placed &= bool(np.linalg.norm(after[0] - before[0]) < GAP * length)
+        return Change(k, self.tangent(after[0], t), t, before, after, is_placed)
+
+    def _watched(self, guess: Array, t: Array) -> tuple[Point, bool]:
+        """The point in the plane through the guess with its integers, and whether there is one."""
         found = self._corrected(guess, t)
         point = guess if found is None else found
         return (point, self._integers(point, self.tangent(point, t))), found is not None

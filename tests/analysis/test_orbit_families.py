@@ -9,6 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
 
+from substructures.analysis.continuation import Continuation
 from substructures.analysis.orbits.orbit import Family
 from substructures.analysis.orbits.periodic import Shooting, periodic_orbits
 from substructures.errors import InvalidInput
@@ -143,3 +144,23 @@ def test_a_period_that_is_no_time_is_refused(period: str) -> None:
     assert (caught.value.faults[0].pointer, caught.value.faults[0].code) == ("/period", "unit-mismatch")
     for some in ("2*pi/p.w", "6.3*p.w", "2*pi*sqrt(1/p.k)*3.0001", "12"):
         assert Shooting(some).period_at(forced("0"), {}) is not None
+
+
+def test_changes_are_placed_by_few_equations() -> None:
+    """s = x^3 - x + 1/2 turns back at x = -+1/sqrt(3), where an integer changes, too: each place is looked for once."""
+    asked: list[np.ndarray] = []
+
+    def equations(u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        asked.append(u)
+        return np.array([u[0] ** 3 - u[0] + 0.5 - u[1]]), np.array([[3 * u[0] ** 2 - 1, -1.0]])
+
+    curve = Continuation(equations, lambda u: (int(3 * u[0] ** 2 > 1),), 0.1)
+    first, last = (np.roots([1, 0, -1, constant])[0].real for constant in (0.5, -0.5))
+    points = list(curve.follow(np.array([first, 0.0]), np.array([0.0, 1.0])))
+    np.testing.assert_allclose(points[-1][0], [last, 1], atol=1e-12)
+    changes = [change for _, some in points for change in some]
+    assert [change.which for change in changes] == [0, 1, 0, 1]
+    assert all(change.is_placed for change in changes)
+    np.testing.assert_allclose([change.u[0] for change in changes], np.repeat([-1, 1], 2) / np.sqrt(3), atol=1e-7)
+    # 24 halvings of two places by two equations, and five for a point; 723 where each was found from the tangent
+    assert len(asked) < 24 * 2 * 3 + 8 * len(points)
