@@ -180,11 +180,14 @@ def tree_package(
 
 
 def _motion(model: Model, request: ExportRequest) -> tuple[str, ...]:
-    """The quantities of the motion, for targets that move."""
+    """The quantities of the motion, for targets that move. Raises InvalidArgument (``/target``)."""
     if request.target not in MOVING:
         return ()
+    if request.target != FMU and model.velocity_constraints:
+        message = f"target={request.target} does not take velocity constraints into account: take target={FMU}"
+        raise InvalidArgument.at("/target", "has-velocity-constraints", message)
     # with velocity constraints the motion is one in independent velocities
-    motion = VELOCITY_DYNAMICS if request.target == FMU and model.velocity_constraints else FORWARD
+    motion = VELOCITY_DYNAMICS if model.velocity_constraints else FORWARD
     return (motion, CHANGES) if model.balls else (motion,)
 
 
