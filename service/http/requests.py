@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import AsyncIterator, Iterator
 from contextlib import asynccontextmanager, closing
-from typing import Annotated, Any
+from typing import Annotated, Any, get_args, get_origin
 from urllib.parse import urlsplit
 
 from fastapi import Depends, Request
@@ -62,22 +62,29 @@ def needs(scope: str) -> Any:
 
 
 def check_query(request: Request) -> None:
-    """Raise Refused 422 for a query parameter that the endpoint does not have."""
+    """Raise Refused 422 for a query parameter that the endpoint does not have, or has once and is given twice."""
     route = request.scope.get("route")
     if not request.url.query or not isinstance(route, APIRoute):
         return
-    known = list(_query_names(route.dependant))
+    known = dict(_query_fields(route.dependant))
     for name in request.query_params:
         if name not in known:
             there = f"; there are {', '.join(known)}" if known else "; there are none"
             detail = f"unknown query parameter '{name[:80]}'{meant(name, known) or there}"
-            raise unprocessable("unknown-query", detail, "/query" + pointer_step(name[:80]), known=known)
+            raise unprocessable("unknown-query", detail, "/query" + pointer_step(name[:80]), known=list(known))
+        if len(request.query_params.getlist(name)) > 1 and not _is_list(known[name].field_info.annotation):
+            detail = f"the query parameter '{name}' is given more than once, and has one value: give it once"
+            raise unprocessable("given-twice", detail, "/query" + pointer_step(name))
 
 
-def _query_names(dependant: Any) -> Iterator[str]:
-    yield from (field.alias for field in dependant.query_params)
+def _query_fields(dependant: Any) -> Iterator[tuple[str, Any]]:
+    yield from ((field.alias, field) for field in dependant.query_params)
     for each in dependant.dependencies:
-        yield from _query_names(each)
+        yield from _query_fields(each)
+
+
+def _is_list(annotation: Any) -> bool:
+    return any(get_origin(each) is list for each in (annotation, *get_args(annotation)))
 
 
 def credentials(method: str, headers: Headers) -> Credentials:

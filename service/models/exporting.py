@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from importlib import import_module
 from typing import Any
 
-from service.models.binding import DEFAULTS, Parameters, bound, bound_names
-from substructures.errors import InvalidArgument
+from service.messages.refusals import unprocessable
+from service.models.binding import DEFAULTS, PLACE, Parameters, bound, bound_names
+from substructures.errors import InvalidArgument, MissingValue
 from substructures.export import (
     TARGETS,
     Exported,
@@ -127,6 +129,17 @@ def prefix(wanted: str, called: str) -> str:
         return NAME
 
 
+@contextmanager
+def _values_are_bound() -> Iterator[None]:
+    """Raises Refused 422 for a parameter without a value, which exports take by ``bind``."""
+    try:
+        yield
+    except MissingValue as error:
+        message = f"'{error.name}' has no value: give one with bind={error.name}:value, or a default in its definition"
+        raise unprocessable("missing-value", message, PLACE) from None
+
+
+@_values_are_bound()
 def tree_package(
     sources: Sources,
     called: str,
@@ -137,7 +150,7 @@ def tree_package(
     document: Document,
     others: Mapping[str, Callable[[], Program]],
 ) -> Package:
-    """A tree for a target. Raises InvalidArgument, InvalidDocument, TooLarge, MissingValue, Refused 422 for bad
+    """A tree for a target. Raises InvalidArgument, InvalidDocument, TooLarge, Refused 422 for bad and missing
     bindings. ``document``: what the tree is made of, where the target asks for it; ``others``: what makes quantities
     that follow from it by an analysis.
     """
@@ -167,11 +180,14 @@ def tree_package(
 
 
 def _motion(model: Model, request: ExportRequest) -> tuple[str, ...]:
-    """The quantities of the motion, for targets that move."""
+    """The quantities of the motion, for targets that move. Raises InvalidArgument (``/target``)."""
     if request.target not in MOVING:
         return ()
+    if request.target != FMU and model.velocity_constraints:
+        message = f"target={request.target} does not take velocity constraints into account: take target={FMU}"
+        raise InvalidArgument.at("/target", "has-velocity-constraints", message)
     # with velocity constraints the motion is one in independent velocities
-    motion = VELOCITY_DYNAMICS if request.target == FMU and model.velocity_constraints else FORWARD
+    motion = VELOCITY_DYNAMICS if model.velocity_constraints else FORWARD
     return (motion, CHANGES) if model.balls else (motion,)
 
 
@@ -186,6 +202,7 @@ def _contacts(
     return contacts, made.contact_programs(model, CONTACTS)
 
 
+@_values_are_bound()
 def part_package(part: Part, reference: str, digest: str, request: ExportRequest, limit: int) -> Package:
     """A part for a target, as it stands alone. Raises as :func:`tree_package`."""
     _check(request)

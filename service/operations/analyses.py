@@ -24,7 +24,6 @@ from service.operations.sharing.sources import pinned_tree
 from service.queries.catalogue import Version
 from service.queries.trees import Tree
 from service.store.store import Store
-from substructures.errors import InvalidInput
 
 FORMATS = {media: name for name, media in MEDIA_TYPES.items()}
 LIMITS = ("program_nodes", "binary_bytes", "states")
@@ -114,10 +113,8 @@ def _files(
 ) -> Answer:
     asked = {**asdict(wanted), "quantities": list(wanted.quantities)}
     limit = store.settings.limits.program_nodes
-    try:
+    with moved(lambda pointer: f"/query{pointer}" if pointer else pointer):
         found = worker("export", {**of, **asked, "reference": reference, "nodes": limit}, blobs)
-    except InvalidInput as error:
-        raise error.moved(lambda pointer: pointer if pointer.startswith("/query") else f"/query{pointer}") from None
     return _file(found)
 
 

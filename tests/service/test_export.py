@@ -27,6 +27,7 @@ from substructures.client import Client
 
 from .conftest import PENDULUM, make_client
 from .fake_engine import FakeEngine, finished, running
+from .job_outcomes import known_library, outcomes
 from .one_store import copied
 
 TREE = {
@@ -218,6 +219,25 @@ def test_refusals(made: TestClient, query: Any, pointer: str, code: str) -> None
     assert (fault["pointer"], fault["code"]) == (pointer, code)
     if query.get("target") != "exe" and "target" in query and "quantities" not in query:
         exported(made, "substructures/pendulum@1", 422, **query)
+
+
+@pytest.mark.parametrize("path", ["trees/valueless", "substructures/slider@1"])
+def test_a_parameter_without_value_is_named_where_it_is_given(made: TestClient, path: str) -> None:
+    """Exports take values by 'bind': pointer and way out say so, and it is one."""
+    tree = {"name": "valueless", "instances": [{"name": "a", "substructure": "slider", "parameters": {"k": "k"}}]}
+    made.post("/v1/trees", json={**tree, "parameters": {"k": {"unit": "N/m"}}})
+    for target in ("fmu", "urdf") if path.startswith("trees") else ("urdf", "mjcf"):
+        refused = exported(made, path, 422, target=target).json()
+        (fault,) = refused["errors"]
+        assert (refused["code"], fault["pointer"]) == ("missing-value", "/query/bind"), target
+        assert "'k' has no value: give one with bind=k:value" in fault["message"]
+        exported(made, path, target=target, bind="k:100")
+
+
+def test_an_item_without_a_value_points_to_its_own_field() -> None:
+    (outcome,) = outcomes(known_library(), "export", {"items": [{"substructure": "slider", "target": "urdf"}]})
+    assert outcome.problem is not None
+    assert [(each["pointer"], each["code"]) for each in outcome.problem["errors"]] == [("/bind", "missing-value")]
 
 
 def test_the_command(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

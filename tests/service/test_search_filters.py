@@ -253,6 +253,14 @@ def test_unknown_parameters_are_refused_with_the_known_ones(client: TestClient) 
     assert "'port'" in client.get("/v1/substructures?prot=tip").json()["detail"]
 
 
+def test_a_parameter_with_one_value_is_given_once(client: TestClient) -> None:
+    """The last one was taken in silence; lists are given as often as there are elements."""
+    answer = client.get("/v1/substructures?sort=name&sort=dof")
+    (fault,) = answer.json()["errors"]
+    assert (answer.status_code, fault["pointer"], fault["code"]) == (422, "/query/sort", "given-twice")
+    assert client.get("/v1/substructures?sort=name&port=tip&port=top&tag=planar&tag=textbook").status_code == 200
+
+
 @pytest.mark.parametrize(
     "text", ["%00", "%22", "'", "%25", "_", "%5C", "a*", "NEAR", "a%20OR%20b", "(", "source%20:%20a"]
 )

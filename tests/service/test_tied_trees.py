@@ -214,6 +214,10 @@ def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
     answer = tied.get(f"/v1/trees/sleigh/{path}")
     assert answer.status_code == 422, answer.text[:300]
     assert answer.json()["errors"][0]["code"] == "has-velocity-constraints"
+    if "simulink" in path:  # and what takes them instead
+        (fault,) = answer.json()["errors"]
+        assert fault["pointer"] == "/query/target"
+        assert "target=simulink does not take velocity constraints into account: take target=fmu" in fault["message"]
 
 
 def test_formulas_of_the_tree_stay(tied: TestClient) -> None:

@@ -10,7 +10,7 @@ also ``request``, the body of its endpoint. Pointers of a problem are relative t
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import lru_cache
 from typing import Any
@@ -22,7 +22,7 @@ from service.jobs.kinds.items import Packed, Written, members
 from service.jobs.kinds.kind import Blobs, ItemProgress, Kind, inside, known_part, known_tree
 from service.jobs.kinds.library import Library
 from service.jobs.kinds.trees import pinned, source_of
-from service.messages.refusals import Refused
+from service.messages.refusals import moved
 from service.models.binding import DEFAULTS, bindings, unit_faults
 from service.models.exporting import (
     WITH_PARTS,
@@ -52,7 +52,7 @@ from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import pointer_step, read_model
 from substructures.documents.fields import Quantity, quantity_of
-from substructures.errors import Fault, InvalidDocument, InvalidInput, TooLarge, among, meant
+from substructures.errors import Fault, InvalidDocument, TooLarge, among, meant
 from substructures.export import FORMATS, Interface, interface_of_model
 from substructures.expr.graph import Graph
 from substructures.expr.parse import parse
@@ -148,19 +148,16 @@ def _run(item: ItemDocument, blobs: Blobs, _progress: ItemProgress) -> Outcome:
     source, quantity = source_of(item, blobs, {"program_nodes": item["nodes"]}), item["quantity"]
     style = Style(item["format"], item["form"], item["bind"], item["name"]).of(item["tree"].partition("@")[0], quantity)
     is_stored = quantity not in (*QUANTITIES, *WITH_DOCUMENT)
-    try:
+    with moved(_place):
         write = _grouped if item.get("group") else _stored if is_stored else _followed
         text = write(source, item, style).encode()
-    except InvalidInput as error:
-        raise error.moved(_place) from None
-    except Refused as error:
-        raise Refused(error.status, error.code, error.detail, _moved(error.faults), **error.members) from None
     summary = {"tree": item["tree"], "quantity": quantity, "media_type": FORMATS[style.format], "bytes": len(text)}
     return Outcome(summary, {"text": text})
 
 
 def _exported(item: ItemDocument, blobs: Blobs) -> Outcome:
-    made = _part_package(item, blobs) if PART in item else _tree_package(item, blobs)
+    with moved(_place):
+        made = _part_package(item, blobs) if PART in item else _tree_package(item, blobs)
     of = PART if PART in item else "tree"
     summary = {of: item[of], "target": item["target"], "name": made.name, "media_type": made.media}
     kind = "archive" if made.media == ZIP else "text"
@@ -189,12 +186,8 @@ def _tree_package(item: ItemDocument, blobs: Blobs) -> Package:
     )
 
 
-def _moved(faults: Iterable[Fault]) -> list[Fault]:
-    """Faults in a query as faults in the item."""
-    return [replace(fault, pointer=_place(fault.pointer)) for fault in faults]
-
-
 def _place(pointer: str) -> str:
+    """A pointer into a query as one into the item."""
     if pointer in ("/query/bind", "/query/group"):
         return pointer.removeprefix("/query")
     return "/options" + pointer.removeprefix("/query") if pointer.startswith("/query") else pointer
