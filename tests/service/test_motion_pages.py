@@ -135,6 +135,25 @@ def test_a_motion_begins_in_the_state_of_the_page_before(browser: Any, address: 
 
 
 @in_browser
+@pytest.mark.usefixtures("trees")
+def test_warnings_are_no_green_and_power_has_a_unit(browser: Any, address: str) -> None:
+    tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=0")
+    ran(tab)
+    assert "power [W]" in tab.page.locator(".curves summary").all_inner_texts()
+    assert tab.page.get_attribute("#verdict", "class") == "right"
+
+    def warned(route: Any) -> None:
+        answer = route.fetch()
+        route.fulfill(response=answer, json={**answer.json(), "warnings": [{"message": "mind the step"}]})
+
+    tab.page.route("**/simulations", warned)
+    tab.page.click("#run")
+    tab.until(TELLS.format("mind the step"))
+    assert tab.page.get_attribute("#verdict", "class") == "warn"
+    tab.close()
+
+
+@in_browser
 def test_the_cursor_of_plots_is_the_pose(browser: Any, address: str, trees: TestClient) -> None:
     tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=0")
     request = ran(tab)

@@ -173,6 +173,18 @@ def test_nothing_else_is_said_of_a_load_whose_end_is_not_known(load: dict[str, A
     assert fault["message"] == "'arm' has no port or body 'tp'; it has base, rod, tip; did you mean 'tip'?"
 
 
+@pytest.mark.parametrize("ports", [([], PENDULUM["ports"]), (PENDULUM["ports"], [])])
+def test_nothing_else_is_said_of_a_host_whose_name_occurs_twice(ports: tuple[Any, Any], filled: TestClient) -> None:
+    twice = [{"name": "arm", "definition": {**PENDULUM, "ports": each}} for each in ports]
+    tree = {"name": "twice", "instances": [*twice, {"name": "hand", "substructure": "pendulum", "at": "arm.tip"}]}
+    for answer in (
+        filled.post("/v1/trees", json=tree),
+        filled.post("/v1/jobs", json={"kind": "assemble", "items": [tree]}),
+    ):
+        (fault,) = answer.json()["errors"]
+        assert fault["message"].endswith("duplicate instance 'arm'")
+
+
 def test_names_of_aliases(filled: TestClient) -> None:
     told = said(filled.put("/v1/substructures/pendulum/aliases/new", json={"version": 7}))
     assert "there is no substructure 'pendulum@7'; the last version is pendulum@1" in told

@@ -287,3 +287,23 @@ def test_the_longest_names_and_deep_trees_fit_a_phone(
         tab.page.click("#start summary")
         assert tab.page.is_visible("[data-rate='0']")
     tab.close()
+
+
+@in_browser
+def test_what_the_address_keeps_is_of_the_revision_shown(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    tab, motion = Tab(browser, address, f"/trees/{bench}"), Tab(browser, address, f"/trees/{bench}/motion")
+    assert tab.until(READY) == "3d"
+    motion.until("document.getElementById('place').dataset.ready")
+    for each in (tab, motion):
+        assert "@" not in each.page.url, "nothing is kept: the newest revision is shown"
+        each.page.fill("[data-number='0']", "0.4")
+        each.until("location.search.includes('pose=0.4')")
+    other = {"name": "hand", "substructure": "pendulum", "at": "arm.tip"}
+    assert filled.post(f"/v1/trees/{bench}/couplings", json=other).status_code == 201
+    for each, path in ((tab, f"/trees/{bench}@1"), (motion, f"/trees/{bench}@1/motion")):
+        assert each.page.reload().status == 200
+        assert each.page.evaluate("location.pathname") == path
+        assert each.page.input_value("[data-number='0']") == "0.4"
+        each.close()

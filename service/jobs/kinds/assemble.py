@@ -98,22 +98,24 @@ def _faults(spec: TreeSpec, definitions: Sequence[Definition | None]) -> Iterato
     the instances that have one.
     """
     first: dict[str, Instance] = {}
+    doubled = set[str]()
     for k, instance in enumerate(spec.instances):
         if first.setdefault(instance.name, instance) is not instance:
+            doubled.add(instance.name)
             yield Fault(f"/instances/{k}/name", "duplicate-name", f"duplicate instance '{instance.name}'")
     frames = {
         instance.name: ["base", *(body.name for body in each.bodies), *(port.name for port in each.ports)]
         for instance, each in zip(spec.instances, definitions, strict=True)
         if each is not None and first[instance.name] is instance
     }
-    unread = first.keys() - frames.keys()
+    unread = (first.keys() - frames.keys()) | doubled
     for k, (instance, definition) in enumerate(zip(spec.instances, definitions, strict=True)):
         if definition is not None:
             for name in instance.parameters:
                 if name not in definition.parameters:
                     message = f"'{definition.name}' has no parameter '{name}'{among(name, definition.parameters)}"
                     yield Fault(f"/instances/{k}/parameters/{name}", "unknown-parameter", message)
-        # of a host that cannot be read this is told elsewhere
+        # of a host that cannot be read this is told elsewhere, and of two of one name it is not known which is meant
         found = misplaced(instance.at, frames) if instance.at.partition(".")[0] not in unread else None
         if found is not None:
             yield Fault(f"/instances/{k}/at", *found)

@@ -5,9 +5,18 @@ export function kept(name) {
     return new URL(location.href).searchParams.get(name) ?? "";
 }
 
+/** The address, with the revision or version that is shown: another one may have no such pose, entry or parameter. */
+export function pinned() {
+    const address = new URL(location.href);
+    const { kind, reference } = JSON.parse(document.getElementById("place").dataset.model);
+    const [, , , ...rest] = address.pathname.split("/");
+    address.pathname = ["", kind, reference, ...rest].join("/");
+    return address;
+}
+
 /** Keeps a value, or forgets the name where there is none. */
 export function keep(name, value) {
-    const address = new URL(location.href);
+    const address = value === "" ? new URL(location.href) : pinned();
     if (value === "") address.searchParams.delete(name);
     else address.searchParams.set(name, value);
     history.replaceState(null, "", address);

@@ -1,5 +1,5 @@
 // Sliders and parameters: what the user changes becomes the state of the page, and its address.
-import { keep, kept } from "./address.js";
+import { keep, kept, pinned } from "./address.js";
 
 export class Sliders {
     /** chart: what sliders are of states; changed() is called when a value has changed, rested() when none has for a
@@ -60,26 +60,29 @@ export class Sliders {
         this.tell();
     }
 
-    set(pose) {
+    /** keeps: whether the address holds the pose, which somebody has chosen. */
+    set(pose, keeps = true) {
         this.chart.values(pose).forEach((value, k) => {
             this.ranged[k].value = String(value);
             this.numbers[k].value = String(Number(value.toPrecision(6)));
             this.values[k] = Number(this.numbers[k].value);
         });
         this.state.q.set(this.chart.state(this.values));
-        this.tell();
+        this.tell(keeps);
     }
 
-    tell() {
+    tell(keeps = true) {
         this.changed();
         clearTimeout(this.waiting);
         const [pose, qd] = [this.state.q, this.state.qd].map((values) => values.join(","));
         this.waiting = setTimeout(() => {
-            const address = new URL(location.href);
-            address.searchParams.delete("q");
-            address.searchParams.set("pose", pose);
-            history.replaceState(null, "", address);
-            keep("qd", /[1-9]/.test(qd) ? qd : "");
+            if (keeps) {
+                const address = pinned();
+                address.searchParams.delete("q");
+                address.searchParams.set("pose", pose);
+                history.replaceState(null, "", address);
+                keep("qd", /[1-9]/.test(qd) ? qd : "");
+            }
             this.rested();
         }, 150);
     }

@@ -19,7 +19,7 @@ export async function shown(kind, reference, sliders) {
         const view = await drawn(scene);
         sliders.offer({ ...scene.poses, ...limits(scene) });
         if (!new URL(location.href).searchParams.has("pose")) {
-            sliders.set(scene.poses.home);
+            sliders.set(scene.poses.home, false);
         }
         return view;
     } catch {

@@ -2,11 +2,11 @@
 import { element } from "../fragments.js";
 import { short } from "../numbers.js";
 
-/** The sentence, and whether it is a good one. */
+/** The sentence, and whether it is a good one, without warnings. */
 export function verdict({ is_right: right, status, message, warnings }) {
     const words = right === null ? "not judged" : right ? "right" : "not right";
     const more = [message, ...(warnings ?? []).map((each) => each.message ?? each)].filter(Boolean);
-    return [[`${status}, ${words}`, ...more].join("; "), right ? "right" : "warn"];
+    return [[`${status}, ${words}`, ...more].join("; "), right && !warnings?.length ? "right" : "warn"];
 }
 
 /** All checks as a table that is folded where all hold. */

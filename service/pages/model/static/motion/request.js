@@ -1,4 +1,5 @@
 // What is asked for on the page of motions: the fields of its form, and the same in the address.
+import { pinned } from "../address.js";
 import { changedParameters } from "../sliders.js";
 
 const COUNT = 600; // times of a motion
@@ -32,7 +33,7 @@ export function request([q, qd]) {
 
 /** The address holds all of a motion, and the time that is shown. */
 export function keep(t, body = null) {
-    const address = new URL(location.href);
+    const address = pinned();
     address.searchParams.set("t", String(Number(t.toFixed(4))));
     if (body) {
         const { q, qd, span, inputs, reactions } = body; // parameters stand there already

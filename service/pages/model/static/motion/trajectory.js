@@ -26,6 +26,9 @@ export function index(times, t) {
     return times[high] <= t ? high : low;
 }
 
+/** Of series that are plotted as they are. */
+const UNITS = { power: "W", powers: "W" };
+
 /** What is plotted: titles with unit and columns by name; small: folded at first. */
 export function groups(found, { vectors }, program) {
     const rest = new Map(Object.entries(found.series));
@@ -47,7 +50,7 @@ export function groups(found, { vectors }, program) {
     const further = [...rest].map(([name, values]) => {
         const many = Array.isArray(values[0]);
         const columns = many ? listed(values[0].map((_, k) => String(k + 1)), values) : { [name]: values };
-        return { title: name.replaceAll("_", " "), unit: "", columns, small: many || name.endsWith("residual") };
+        return { title: name.replaceAll("_", " "), unit: UNITS[name] ?? "", columns, small: many || name.endsWith("residual") };
     });
     return [...told, ...further].filter(({ columns }) => Object.keys(columns).length);
 }
