@@ -169,7 +169,7 @@ def test_one_server_a_file(tmp_path: Path) -> None:
         ("mysql://x/y", "kind 'mysql' are not supported"),
         ("nonsense", "'nonsense' is no database URL"),
         ("sqlite://", "needs a file"),
-        ("sqlite:////nowhere/at/all.db", "unable to open database file|there is no database"),
+        ("sqlite:////nowhere/at/all.db", "there is no folder /nowhere/at|there is no database"),
         ("postgresql://x@127.0.0.1:9/x", "cannot use the database postgresql"),
         ("postgresql://x:port/y", "is no database URL"),
     ],
