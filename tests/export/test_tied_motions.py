@@ -181,7 +181,7 @@ def test_what_the_choice_of_velocities_may_not_be() -> None:
     for given, pointer in (
         ({"target": "fmu", "independent": ("s.z", "s.f")}, "/independent/0"),
         ({"target": "fmu", "independent": ("s.f",)}, "/independent"),
-        ({"target": "simulink"}, ""),
+        ({"target": "simulink"}, "/target"),
     ):
         with pytest.raises(InvalidInput) as caught:
             package("sleigh", **given)
