@@ -112,12 +112,12 @@ def test_work_that_is_given_up_acts_once(
     set_limit(store, 0.2)
     before, prepare, answered, ended = rows(), trees.prepare, Event(), Event()
 
-    def slow(*arguments: Any) -> Any:
+    def slow(*arguments: Any, **options: Any) -> Any:
         answered.wait(10)
         ended.set()
         if fails:
             raise InvalidDocument.at("", "late", "too late to be told")
-        return prepare(*arguments)
+        return prepare(*arguments, **options)
 
     monkeypatch.setattr(trees, "prepare", slow)
     tree = {"name": "other", "instances": [{"name": "a", "substructure": "slider"}]}
