@@ -130,6 +130,16 @@ def test_what_does_not_bounce_at_all_does_not_fall_through(ball: Model) -> None:
     assert (motion.status, len(motion.events)) == ("finished", 1)
 
 
+@pytest.mark.parametrize(("gravity", "height"), [("9.81e-8", 1e-3), ("9.81e9", 1e-6)])
+def test_what_does_not_bounce_is_seen_however_slow_or_quick_it_is(gravity: str, height: float) -> None:
+    falling = of("b", BALL, [0, 0, f"-{gravity}"])
+    first = math.sqrt(2 * height / float(gravity))
+    stays = replace(FLOOR, reset={"b.z'": "0"})
+    motion = simulate(falling, [height], (0, 9 * first), outputs=Outputs(events=[stays]))
+    assert (motion.status, len(motion.events)) == ("stopped", 1)
+    assert motion.t[-1] == pytest.approx(first, rel=1e-8)
+
+
 def test_positions_jump_and_other_events_are_noted_on_the_way(ball: Model) -> None:
     up = Event("half", "b.z", level=0.5, action="record")
     gate = Event("gate", "b.z", direction="falling", reset={"b.z": "b.z + 1", "b.z'": "b.z' - 0.1*t"})

@@ -10,34 +10,42 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import cached_property
 from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from substructures.analysis.equations.expressions import Given, read_expressions
+from substructures.analysis.arguments import exact, require_read
+from substructures.analysis.equations.expressions import Given, names, read_expressions, vector
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.integrators.progress import ProgressReport
-from substructures.analysis.motion.problems.events import Event
+from substructures.analysis.motion.problems.events import DIRECTIONS, Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import MotionProblem, Start
-from substructures.analysis.motion.right_hand_side import ACCELERATION, forward_dynamics
+from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument, among
+from substructures.expr.differentiate import directional
+from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret, interpret_in_blocks
+from substructures.expr.program import Program, program
+from substructures.loads.scope import Scope
 from substructures.quantities.numbers.quaternions import quaternions_in
+from substructures.tree.model import Model
 
 #: so many events one after the other, each within this share of the span from the one before: they accumulate
 MANY, SOON = 10, 1e-6
 #: most events that act in a motion
 MOST = 10_000
-#: step of differences [s], and what of a rate is none beside that before an event
-STEP, NONE = 1e-4, 1e-6
+#: part of a rate before an event that is none after it
+NONE = 1e-6
 Status = Literal["finished", "stopped", "failed"]
 Problem = TypeVar("Problem", bound=MotionProblem)
 ENERGY = ("metric", "potential_energy")
+GAPS = ("g", "g'", "g''")
 
 
 def acting(events: Sequence[Event]) -> bool:
@@ -46,15 +54,17 @@ def acting(events: Sequence[Event]) -> bool:
 
 
 class Resets:
-    """What events make of states. Raises InvalidArgument for names that are no coordinates or velocities, and for
-    events without a direction, which would happen again where they have happened."""
+    """What events make of states; ``dynamics``: gives the accelerations, where what is brought to rest is looked for.
 
-    def __init__(self, problem: MotionProblem, conditions: Conditions) -> None:
+    Raises InvalidArgument for names that are no coordinates or velocities, and for events without a direction, which
+    would happen again where they have happened."""
+
+    def __init__(
+        self, problem: MotionProblem, conditions: Conditions, dynamics: Callable[[], RightHandSide] | None = None
+    ) -> None:
         self.conditions, self.events = conditions, problem.events
-        kind = getattr(problem, "kind", None)
-        #: whether accelerations are those of forward_dynamics, without joints that stick
-        self._is_plain = not problem.model.balls and getattr(kind, "friction", "regularised") == "regularised"
-        names = state_names(problem.model)
+        self._dynamics = dynamics
+        known = state_names(problem.model)
         self._places: dict[int, list[int]] = {}
         given: list[Given] = []
         for i, event in enumerate(problem.events):
@@ -62,12 +72,12 @@ class Resets:
                 message = "an event that acts needs its direction, rising or falling: else it happens where it left off"
                 raise InvalidArgument.at(f"/events/{i}/direction", "direction-needed", message)
             for name in event.reset:
-                if name not in names:
-                    message = f"'{name[:80]}' is no coordinate or velocity{among(name, names)}"
+                if name not in known:
+                    message = f"'{name[:80]}' is no coordinate or velocity{among(name, known)}"
                     raise InvalidArgument.at(f"/events/{i}/reset/{escape(name)}", "unknown-coordinate", message)
             if any(other.name == event.name for other in problem.events[:i]):
                 raise InvalidArgument.at(f"/events/{i}/name", "duplicate-name", f"a second event '{event.name}'")
-            self._places[i] = [names.index(name) for name in event.reset]
+            self._places[i] = [known.index(name) for name in event.reset]
             pointers = (f"/events/{i}/reset/{escape(name)}" for name in event.reset)
             given.append(list(zip(event.reset.values(), pointers, strict=True)))
         groups = {str(i): group for i, group in enumerate(given) if group}
@@ -94,40 +104,60 @@ class Resets:
         inputs = {name: float(u[0]) for name, u in self.conditions.inputs_at(np.array([t]), x[None]).items()}
         return {**self.conditions.values, **inputs, **dict(zip(state_names(self.conditions.model), x, strict=True))}
 
-    def draw_across(self, event: int, t: float, x: Array, y: Array) -> bool:
-        """Whether the state y that an event makes of x stays at its level but for the accelerations, and these carry it
-        across once more: a ball that does not bounce.
+    def draws_across(self, event: int, t: float, x: Array, y: Array, span: float) -> bool:
+        """Whether the state y that an event makes of x stays at its level, g' = 0 beside that at x, and g'' carries it
+        across once more: a ball that does not bounce. ``span``: of the motion [s].
         """
-        conditions, n = self.conditions, len(x) // 2
-        source = conditions.expressions
-
-        def at(h: float, start: Array, second: Array) -> float:
-            """quantity - level a time h from a state."""
-            moved = np.concatenate([start[:n] + h * start[n:] + h * h / 2 * second, start[n:] + h * second])
-            when = np.full(1, t + h)
-            with np.errstate(all="ignore"):
-                return float(conditions.followed(when, moved[None], ["events"])["events"][0, event] - level)
-
-        level, still = self.events[event].level, np.zeros(n)
-        if not self._is_plain or "events" not in source.outputs:
+        if self._dynamics is None:
             return False
-        before, after = ((at(STEP, z, still) - at(-STEP, z, still)) / (2 * STEP) for z in (x, y))
-        here, noise = at(0, y, still), 1e-12 * (1 + float(np.abs(y[:n]).max(initial=0)))
-        if not (abs(here) <= abs(at(0, x, still)) + noise and abs(after) <= NONE * abs(before)):
-            return False
-        program = forward_dynamics(conditions.model, conditions.zero)
-        values = self._values(t, y) | {"t": t}
-        second = interpret_in_blocks(program, values, [ACCELERATION], 1)[ACCELERATION][0]
-        bent = (at(STEP, y, second) + at(-STEP, y, second)) / 2 - here
-        return bool((bent if self.events[event].direction == "rising" else -bent) > noise)
+        (here, before, _), (there, after, bend) = self._gap(event, t, x), self._gap(event, t, y)
+        is_held = abs(there) <= abs(here) + NONE**2 * abs(before) * span and abs(after) <= NONE * abs(before)
+        return is_held and DIRECTIONS[self.events[event].direction] * bend * span > NONE * abs(before)
+
+    def _gap(self, event: int, t: float, x: Array) -> tuple[float, float, float]:
+        """What the quantity of an event is from its level at a state, and the first two derivatives by the time."""
+        model, (source, rates) = self.conditions.model, self._gaps
+        second, _, _ = source.evaluate(t, x)
+        values = self._values(t, x) | {"t": t} | {f"{q}''": a for q, a in zip(model.coordinates, second, strict=True)}
+        found = interpret(rates, values)
+        g, by_t, by_tt = (float(found[name][event]) for name in GAPS)
+        return g, by_t, by_tt
+
+    @cached_property
+    def _gaps(self) -> tuple[RightHandSide, Program]:
+        assert self._dynamics is not None  # noqa: S101 -- asked before
+        return self._dynamics(), _event_rates(self.conditions.model, self.events)
 
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
         n, model = len(self.conditions.model.positions), self.conditions.model
-        names = [*ENERGY, "T_0"] if model.given else list(ENERGY)
-        found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, names, 1)
-        metric, potential, *drives = (found[name][0] for name in names)
+        needed = [*ENERGY, "T_0"] if model.given else list(ENERGY)
+        found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, needed, 1)
+        metric, potential, *drives = (found[name][0] for name in needed)
         return float(0.5 * x[n:] @ metric @ x[n:] + potential - sum(drives))
+
+
+def read_gaps(scope: Scope, lookup: Callable[[str], Expr | None], events: Sequence[Event]) -> list[Expr]:
+    """g = quantity - level of events; faults are those of ``scope``."""
+    return [
+        scope.read(exact(event.quantity, pointer), pointer, lookup) - scope.graph.lift(exact(event.level, pointer))
+        for event, pointer in ((event, f"/events/{i}/quantity") for i, event in enumerate(events))
+    ]
+
+
+def _event_rates(model: Model, events: Sequence[Event]) -> Program:
+    """Outputs ``g``, ``g'`` and ``g''`` of events, (k,) each, in q, q', t and the accelerations ``q''``, which count as
+    constant. Of trees whose velocities are the rates of their coordinates.
+    """
+    scope, q = Scope(Graph()), model.coordinates
+    gaps = read_gaps(scope, names(model, scope, False), events)
+    require_read(scope)
+    # d/dt = q' d/dq + q'' d/dq' + d/dt
+    seeds = {name: scope.declare(f"{name}'", "velocity", "") for name in q} | {"t": scope.graph.one}
+    seeds |= {f"{name}'": scope.declare(f"{name}''", "input", "") for name in q}
+    rates = directional(gaps, seeds)
+    some = dict(zip(GAPS, (gaps, rates, directional(rates, seeds)), strict=True))
+    return program(scope.graph, {name: vector(entries) for name, entries in some.items()}, scope.symbols)
 
 
 def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Problem], Trajectory]) -> Trajectory:
@@ -154,7 +184,7 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
         told = replace(last, after=(y[:n], y[n:]), energy_change=change)
         piece = replace(piece, events=(*piece.events[:-1], told))
         soon = soon + 1 if last.t - t <= SOON * (span[1] - span[0]) else 0
-        if np.isfinite(y).all() and resets.draw_across(k, last.t, x, y):
+        if np.isfinite(y).all() and resets.draws_across(k, last.t, x, y, span[1] - span[0]):
             soon = MANY
         why = ("finished", "") if last.t >= span[1] else _why_not(last, y, soon, len(pieces) + 1)
         if why is not None:  # the state before the event is the last result

@@ -86,7 +86,13 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     conditions = tree_conditions(problem)
     _check_method(conditions, problem)
     if acting(problem.events):
-        return simulate_with_resets(problem, Resets(problem, conditions), lambda p: _simulate(p, tree_conditions(p)))
+
+        def dynamics() -> RightHandSide:
+            """Without joints that stick, whose friction is exact."""
+            return _right_hand_side(conditions, problem, problem.integrator.folder)
+
+        resets = Resets(problem, conditions, None if problem.kind.friction == "exact" else dynamics)
+        return simulate_with_resets(problem, resets, lambda p: _simulate(p, tree_conditions(p)))
     return _simulate(problem, conditions)
 
 

@@ -18,7 +18,7 @@ from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.resets import Resets
+from substructures.analysis.motion.resets import Resets, read_gaps
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
@@ -140,12 +140,12 @@ def _slopes(problem: TreeProblem) -> Program:
     those of what it makes of m components of the state, row by row, ``gap.k`` (1,), what it is from its level."""
     scope = Scope(Graph())
     lookup, outputs, by = names(problem.model, scope, False), {}, [*state_names(problem.model), "t"]
-    for i, event in enumerate(problem.events):
+    gaps = read_gaps(scope, lookup, problem.events)
+    for i, (event, gap) in enumerate(zip(problem.events, gaps, strict=True)):
         pointer = f"/events/{i}/quantity"
-        quantity = scope.read(exact(event.quantity, pointer), pointer, lookup)
         resets = [scope.read(exact(x, pointer), pointer, lookup) for x in event.reset.values()]
-        outputs[f"event.{i}"] = vector(gradient([quantity], by)[0])
+        outputs[f"event.{i}"] = vector(gradient([gap], by)[0])
         outputs[f"reset.{i}"] = vector([x for row in gradient(resets, by) for x in row])
-        outputs[f"gap.{i}"] = vector([quantity - scope.graph.lift(exact(event.level, pointer))])
+        outputs[f"gap.{i}"] = vector([gap])
     require_read(scope)
     return program(scope.graph, outputs, scope.symbols)
