@@ -40,7 +40,7 @@ def motion_checks(
     finer = shooting.refined()
     two = finer.run(start[None], run.controls)
     kept = () if path is None else _kept(finer, two, path, limit)
-    return (*_motion(shooting, run, two, limit, limit * least), *_closed(shooting, run, limit), *kept)
+    return (*_motion(shooting, run, two, limit, least), *_closed(shooting, run, limit), *kept)
 
 
 def _kept(finer: Shooting, two: Rollout, path: PathLimits, limit: float) -> Iterator[Check]:
@@ -76,10 +76,10 @@ def gradient_checks(shooting: Shooting, run: Rollout, slope: Slope, limit: float
     return (*_motion(shooting, run, two, limit), *_closed(shooting, run, limit), *derivatives)
 
 
-def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float, noise: float = 0.0) -> Iterator[Check]:
+def _motion(shooting: Shooting, run: Rollout, two: Rollout, limit: float, least: float = 0.0) -> Iterator[Check]:
     m, problem = shooting.m, shooting.problem
     end = np.full(1, problem.t + problem.horizon)
-    yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit, noise)
+    yield _compared("cost", "", end, np.full((1, 1), run.cost), np.full((1, 1), two.cost), limit, limit * least)
     one, other = run.states, two.states[::2]
     noise = ROUNDING * float(np.abs(other).max(initial=0))
     t = np.asarray(problem.t + shooting.h * np.arange(len(one)), dtype=np.float64)
