@@ -15,10 +15,10 @@ from typing import Any, Literal, TypeVar
 
 import numpy as np
 
-from substructures.analysis.arguments import exact, require_read
-from substructures.analysis.equations.expressions import Given, names, read_expressions, vector
+from substructures.analysis.equations.expressions import Given, read_expressions
 from substructures.analysis.motion.conditions import Conditions, state_names
 from substructures.analysis.motion.integrators.progress import ProgressReport
+from substructures.analysis.motion.problems.event_gaps import GAPS, gap_rates
 from substructures.analysis.motion.problems.events import DIRECTIONS, Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import MotionProblem, Start
@@ -28,13 +28,9 @@ from substructures.analysis.verdict import Check
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import InvalidArgument, among
-from substructures.expr.differentiate import directional
-from substructures.expr.graph import Expr, Graph
 from substructures.expr.interpret import interpret, interpret_in_blocks
-from substructures.expr.program import Program, program
-from substructures.loads.scope import Scope
+from substructures.expr.program import Program
 from substructures.quantities.numbers.quaternions import quaternions_in
-from substructures.tree.model import Model
 
 #: so many events one after the other, each within this share of the span from the one before: they accumulate
 MANY, SOON = 10, 1e-6
@@ -45,7 +41,6 @@ NONE = 1e-6
 Status = Literal["finished", "stopped", "failed"]
 Problem = TypeVar("Problem", bound=MotionProblem)
 ENERGY = ("metric", "potential_energy")
-GAPS = ("g", "g'", "g''")
 
 
 def acting(events: Sequence[Event]) -> bool:
@@ -54,7 +49,8 @@ def acting(events: Sequence[Event]) -> bool:
 
 
 class Resets:
-    """What events make of states; ``dynamics``: gives the accelerations, where what is brought to rest is looked for.
+    """What events make of states; ``dynamics``: gives the accelerations, by which it is looked whether they bring
+    something to rest; none where joints stick (exact friction), and with ball joints.
 
     Raises InvalidArgument for names that are no coordinates or velocities, and for events without a direction, which
     would happen again where they have happened."""
@@ -126,7 +122,7 @@ class Resets:
     @cached_property
     def _gaps(self) -> tuple[RightHandSide, Program]:
         assert self._dynamics is not None  # noqa: S101 -- asked before
-        return self._dynamics(), _event_rates(self.conditions.model, self.events)
+        return self._dynamics(), gap_rates(self.conditions.model, self.events)
 
     def energy(self, t: float, x: Array) -> float:
         """H = 1/2 g_ab q'^a q'^b + V [J]."""
@@ -135,29 +131,6 @@ class Resets:
         found = interpret_in_blocks(model.program, {**self._values(t, x), "t": t}, needed, 1)
         metric, potential, *drives = (found[name][0] for name in needed)
         return float(0.5 * x[n:] @ metric @ x[n:] + potential - sum(drives))
-
-
-def read_gaps(scope: Scope, lookup: Callable[[str], Expr | None], events: Sequence[Event]) -> list[Expr]:
-    """g = quantity - level of events; faults are those of ``scope``."""
-    return [
-        scope.read(exact(event.quantity, pointer), pointer, lookup) - scope.graph.lift(exact(event.level, pointer))
-        for event, pointer in ((event, f"/events/{i}/quantity") for i, event in enumerate(events))
-    ]
-
-
-def _event_rates(model: Model, events: Sequence[Event]) -> Program:
-    """Outputs ``g``, ``g'`` and ``g''`` of events, (k,) each, in q, q', t and the accelerations ``q''``, which count as
-    constant. Of trees whose velocities are the rates of their coordinates.
-    """
-    scope, q = Scope(Graph()), model.coordinates
-    gaps = read_gaps(scope, names(model, scope, False), events)
-    require_read(scope)
-    # d/dt = q' d/dq + q'' d/dq' + d/dt
-    seeds = {name: scope.declare(f"{name}'", "velocity", "") for name in q} | {"t": scope.graph.one}
-    seeds |= {f"{name}'": scope.declare(f"{name}''", "input", "") for name in q}
-    rates = directional(gaps, seeds)
-    some = dict(zip(GAPS, (gaps, rates, directional(rates, seeds)), strict=True))
-    return program(scope.graph, {name: vector(entries) for name, entries in some.items()}, scope.symbols)
 
 
 def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Problem], Trajectory]) -> Trajectory:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from pathlib import Path
 from time import perf_counter
 
@@ -86,12 +87,8 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     conditions = tree_conditions(problem)
     _check_method(conditions, problem)
     if acting(problem.events):
-
-        def dynamics() -> RightHandSide:
-            """Without joints that stick, whose friction is exact."""
-            return _right_hand_side(conditions, problem, problem.integrator.folder)
-
-        resets = Resets(problem, conditions, None if problem.kind.friction == "exact" else dynamics)
+        dynamics = None if problem.kind.friction == "exact" else partial(_right_hand_side, conditions, problem)
+        resets = Resets(problem, conditions, dynamics)
         return simulate_with_resets(problem, resets, lambda p: _simulate(p, tree_conditions(p)))
     return _simulate(problem, conditions)
 
@@ -100,7 +97,7 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
     """Without events that act."""
     progress, folder = problem.integrator.progress, problem.integrator.folder
     try:
-        f = _right_hand_side(conditions, problem, folder)
+        f = _right_hand_side(conditions, problem)
     except InvalidInput as error:
         if any(fault.code == "singular-metric" for fault in error.faults):
             return _failed(conditions, problem, str(error))
@@ -128,9 +125,9 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
     return replace(found, checks=(*found.checks, *instead, *again))
 
 
-def _right_hand_side(conditions: Conditions, problem: TreeProblem, folder: Path | None) -> RightHandSide:
+def _right_hand_side(conditions: Conditions, problem: TreeProblem) -> RightHandSide:
     """x' = f(t, x), with friction by the load of joints where that is asked for."""
-    given = problem.model, conditions.values, conditions.zero, conditions
+    given, folder = (problem.model, conditions.values, conditions.zero, conditions), problem.integrator.folder
     if problem.kind.contacts:
         found = DecidedContacts(*given, problem.kind.contacts, folder)
         found.require_above(problem.span[0], conditions.start)

@@ -17,8 +17,9 @@ import numpy as np
 from substructures.analysis.arguments import exact, require_read
 from substructures.analysis.equations.expressions import names, vector
 from substructures.analysis.motion.conditions import state_names
+from substructures.analysis.motion.problems.event_gaps import read_gaps
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.resets import Resets, read_gaps
+from substructures.analysis.motion.resets import Resets
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.orbits.flow import EndsEarlyError, Flow
