@@ -183,10 +183,19 @@ def _postgres(url: URL, key: bytes) -> Engine:
     limits = {"connect_timeout": CONNECT_SECONDS, **TCP}
     given = {name: value for name, value in limits.items() if name not in url.query}
     engine = create_engine(url, pool_size=READERS, pool_pre_ping=True, connect_args=given)
+    event.listen(engine, "connect", _require_unicode, insert=True)  # before SQLAlchemy reads texts
     event.listen(engine, "connect", _watch_client)
     event.listen(engine, "connect", _set_clock)
     event.listen(engine, "connect", lambda _, record: record.info.update({KEY: key}))
     return engine
+
+
+def _require_unicode(connection: Any, _record: object) -> None:
+    """Texts have any characters. Raises DatabaseError."""
+    found = connection.info.parameter_status("server_encoding")
+    if found != "UTF8":
+        how = "make it anew with CREATE DATABASE ... ENCODING 'UTF8' TEMPLATE template0"
+        raise DatabaseError(f"the database has the encoding {found}, which not all characters can be kept in: {how}")
 
 
 def _watch_client(connection: Any, _record: object) -> None:

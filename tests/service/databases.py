@@ -33,11 +33,12 @@ class Server:
     def address(self, name: str) -> str:
         return self.engine.url.set(database=name).render_as_string(hide_password=False)
 
-    def create(self, template: str) -> str:
-        """The name of a new database."""
+    def create(self, template: str, encoding: str = "") -> str:
+        """The name of a new database; ``encoding``: another than that of the template."""
         name = f"substructures_test_{secrets.token_hex(6)}"
         with self.engine.connect() as connection:
-            connection.exec_driver_sql(f'CREATE DATABASE "{name}" TEMPLATE "{template}"')
+            how = f"ENCODING '{encoding}' LOCALE 'C'" if encoding else ""
+            connection.exec_driver_sql(f'CREATE DATABASE "{name}" TEMPLATE "{template}" {how}')
         return name
 
     def migrated(self) -> str:
@@ -86,9 +87,9 @@ def close() -> None:
 
 
 @contextmanager
-def fresh(kind: str, folder: Path, *, is_migrated: bool = True) -> Iterator[str]:
+def fresh(kind: str, folder: Path, *, is_migrated: bool = True, encoding: str = "") -> Iterator[str]:
     """The address of a database; ``kind``: sqlite, a file in the folder that is not there yet, or postgresql, without
-    tables unless ``is_migrated``.
+    tables unless ``is_migrated``, or empty in another encoding than the server's.
     """
     if kind == "sqlite":
         yield f"sqlite:///{folder / 'store.db'}"
@@ -96,7 +97,8 @@ def fresh(kind: str, folder: Path, *, is_migrated: bool = True) -> Iterator[str]
     opened = server()
     if opened is None:
         pytest.skip("no PostgreSQL server answers at TEST_POSTGRES_URL or 127.0.0.1:5432")
-    name = opened.create(opened.migrated() if is_migrated else "template1")
+    template = "template0" if encoding else opened.migrated() if is_migrated else "template1"
+    name = opened.create(template, encoding)
     try:
         yield opened.address(name)
     finally:

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from datetime import UTC, datetime, timedelta, tzinfo
+from pathlib import Path
 
 import pytest
 from fastapi.testclient import TestClient
 
 from service.app import open_store
 from service.database import clock
+from service.database.connections import Database, DatabaseError
 from service.settings import Settings
 
 from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once, make_client
@@ -50,6 +52,13 @@ def test_main_flow(client: TestClient) -> None:
     assert client.get("/v1/substructures/pendulum@a").json()["aliases"] == ["a"]
     assert client.post("/v1/substructures/pendulum@a/withdraw").json()["is_withdrawn"] is True
     assert client.post("/v1/trees", json={"name": "x", "instances": [{"name": "1"}]}).status_code == 422
+
+
+@pytest.mark.parametrize("encoding", ["SQL_ASCII", "LATIN1"])
+def test_a_database_that_cannot_keep_all_characters_is_refused(encoding: str) -> None:
+    told = f"encoding {encoding}, .* ENCODING 'UTF8' TEMPLATE template0"
+    with fresh("postgresql", Path(), encoding=encoding) as found, pytest.raises(DatabaseError, match=told):
+        Database(found)
 
 
 def test_nul_is_harmless(client: TestClient) -> None:
