@@ -17,9 +17,7 @@ from substructures.documents import read_json, write_json
 from substructures.part.definition import Definition
 from substructures.part.derive import derive
 from substructures.part.part import MAX_NODES, Part
-from substructures.tree.couple import couple
 from substructures.tree.document import TreeSpec, with_levels
-from substructures.tree.model import Model
 from substructures.tree.publishing.published import Publication, published
 from substructures.tree.publishing.published_formulas import published_part
 
@@ -75,7 +73,7 @@ def _published(wanted: Definition, recipe: Mapping[str, Any], max_nodes: int) ->
         name: derived_part(write_json(each["definition"]), each.get("recipe"), max_nodes)
         for name, each in recipe["parts"].items()
     }
-    spec = _stored_tree(recipe["tree"], parts)
+    spec = with_levels(TreeSpec.stored(recipe["tree"]), {name: part.definition for name, part in parts.items()})
     how = Publication(recipe["about"], recipe["ports"], tuple(recipe["free"]), recipe["defaults"])
     found = published(spec, parts, how)
     return published_part(found, parts, max_nodes) if found.definition.digest == wanted.digest else None
@@ -92,13 +90,3 @@ def recipe_of(spec: TreeSpec, parts: Mapping[str, Part], recipes: Mapping[str, s
     ports = None if how.ports is None else dict(how.ports)
     asked = {"about": dict(how.about), "ports": ports, "free": list(how.free), "defaults": dict(how.defaults)}
     return write_json({"tree": read_json(spec.canonical()), "parts": told, **asked}).decode()
-
-
-def coupled_tree(document: bytes, parts: Mapping[str, Part], max_nodes: int = MAX_NODES) -> tuple[TreeSpec, Model]:
-    """A stored tree and its model; ``parts``: by instance. Raises as :func:`substructures.tree.couple.couple`."""
-    spec = _stored_tree(read_json(document), parts)
-    return spec, couple(spec, parts, max_nodes)
-
-
-def _stored_tree(document: Any, parts: Mapping[str, Part]) -> TreeSpec:
-    return with_levels(TreeSpec.stored(document), {name: part.definition for name, part in parts.items()})

@@ -1,4 +1,4 @@
-"""Trajectories as files: npz (numpy arrays, no pickled objects) and CSV."""
+"""Trajectories as CSV."""
 
 from __future__ import annotations
 
@@ -10,14 +10,6 @@ import numpy as np
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
 from substructures.certificate.derived.powers import OUTPUT as POWERS
-
-
-def to_npz(trajectory: Trajectory) -> bytes:
-    """Arrays t, q, qd and all series by name, and ``coordinates``, of q."""
-    buffer = io.BytesIO()
-    names = np.array(trajectory.positions or trajectory.coordinates, dtype=np.str_)
-    np.savez_compressed(buffer, allow_pickle=False, coordinates=names, **trajectory.arrays())
-    return buffer.getvalue()
 
 
 def to_csv(trajectory: Trajectory) -> str:
