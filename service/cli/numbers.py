@@ -53,12 +53,15 @@ Out = Annotated[
 ]
 
 
-def numbers(wanted: Wanted, name: str, given: Path | None, log: Path | None = None) -> int:
-    """Compute, write and tell the result of an analysis; the exit code. ``log``: the file of a measured motion.
+def numbers(
+    wanted: Wanted, name: str, given: Path | None, log: Path | None = None, members: Mapping[str, Any] = {}
+) -> int:
+    """Compute, write and tell the result of an analysis; the exit code. ``given``: the file of its request; ``log``:
+    that of a measured motion; ``members``: of the request, in place of those in the file.
 
     Raises InvalidInput, ProblemError, ValueError, OSError.
     """
-    request = {} if given is None else read_document(given)
+    request = {**({} if given is None else read_document(given)), **members}
     if log is not None:
         request = {**request, "log": log_of(log)}
     media = _media(wanted.out, name)

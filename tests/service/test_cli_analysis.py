@@ -40,6 +40,24 @@ def test_simulate_a_document(folder: Path, capsys: pytest.CaptureFixture[str]) -
     assert ".npz, .csv" in capsys.readouterr().err
 
 
+def test_simulate_by_options(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Alone, and in place of members of a request."""
+    command = ["simulate", str(folder / "cell.yaml"), "--json"]
+    request = {"qd": [0.1], "span": [0, 1], "parameters": {"arm.l": 0.5}, "inputs": {"tau.arm.q": 2}}
+    options = ["--qd", "0.1", "--until", "1", "--set", "arm.l=500 mm", "--input", "tau.arm.q=2 N*m"]
+    for q, given in (([np.pi / 6], ["--q", "30 deg"]), ([0.5], [str(folder / "swing.yaml")])):
+        (folder / "all.json").write_text(json.dumps({**request, "q": q, "count": 21}))
+        assert main([*command, str(folder / "all.json")]) == 0
+        wanted = json.loads(capsys.readouterr().out)
+        assert main([*command, *given, *options]) == 0
+        told = json.loads(capsys.readouterr().out)
+        assert told["t"][-1] == 1
+        assert told["q"][-1] == pytest.approx(wanted["q"][-1], rel=1e-12)
+    for missing in ([], ["--q", "1"], ["--until", "1"]):
+        assert main([*command, *missing]) == 2
+        assert "--q and --until" in capsys.readouterr().err
+
+
 def test_members_are_told(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     columns = "columns: {top: {expression: arm.q, take: largest}}\n"
     (folder / "many.yaml").write_text(f"q: [[0.1], [0.2]]\nspan: [0, 1]\n{columns}")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -15,7 +15,7 @@ from service.cli.documents import is_document
 from service.cli.options import Json, Server, with_server
 from service.cli.output import print_json, tell_warnings, waiting
 from service.cli.tree_files import local_source
-from service.cli.values import number, pairs
+from service.cli.values import Inputs, Numbers, Parameters, numbers_by_name, numbers_in
 from substructures.client.steps import step
 from substructures.documents.grouped import take
 from substructures.mechanics.state_names import BallRow, positions_of, resting_state
@@ -23,10 +23,6 @@ from substructures.quantities.numbers.evaluation import EvaluationOptions
 from substructures.quantities.numbers.evaluation import evaluate as evaluated
 from substructures.quantities.numbers.states import STATE, wrong_length
 from substructures.quantities.quantity import QUANTITIES, TABLE, labels_of
-
-Numbers = Annotated[
-    str | None, typer.Option(metavar="X,Y,...", help="In the order of the coordinates, also '30 deg' (zeros).")
-]
 
 
 @with_server
@@ -48,20 +44,15 @@ def evaluate(
     qd: Numbers = None,
     qdd: Numbers = None,
     t: Annotated[float, typer.Option(help="Time, s.")] = 0.0,
-    set: Annotated[  # noqa: A002 -- name of the option
-        list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="A parameter, also '500 mm'; may be repeated."),
-    ] = None,
-    input: Annotated[  # noqa: A002 -- name of the option
-        list[str] | None, typer.Option("--input", metavar="NAME=VALUE", help="An input, also '5 N'; may be repeated.")
-    ] = None,
+    set: Parameters = None,  # noqa: A002 -- name of the option
+    input: Inputs = None,  # noqa: A002 -- name of the option
     json: Json = False,
 ) -> int:
     """Numbers at a state: metric, christoffel, forces, inverse dynamics, ..."""
     given = {"q": q, "qd": qd, "qdd": qdd}
-    states = {name: _numbers(f"--{name}", text) for name, text in given.items() if text is not None}
+    states = {name: numbers_in(f"--{name}", text) for name, text in given.items() if text is not None}
     request: dict[str, Any] = {"quantities": quantities, "t": t, **states}
-    request |= {"parameters": _by_name(set), "inputs": _by_name(input)}
+    request |= {"parameters": numbers_by_name(set), "inputs": numbers_by_name(input)}
     with waiting("evaluating"):
         found = _here(Path(tree), request) if is_document(tree) else _there(server, tree, request)
     if json:
@@ -113,26 +104,6 @@ def _resting(request: Mapping[str, Any], coordinates: Sequence[str], balls: Sequ
         if name in request and len(request[name]) != len(names):
             raise typer.BadParameter(f"--{name}: {wrong_length(len(request[name]), names)}")
     return resting_state(positions, balls)
-
-
-def _numbers(option: str, text: str) -> list[Any]:
-    try:
-        return [number(each) for each in text.split(",")]
-    except ValueError:
-        message = "numbers between commas are needed, in SI units or with their units, as in '30 deg,0.2'"
-        raise typer.BadParameter(f"{option}: {message}; found '{text}'") from None
-
-
-def _by_name(given: Iterable[str] | None) -> dict[str, Any]:
-    """Numbers, and those that have one with their units."""
-    found: dict[str, Any] = {}
-    for name, text in pairs(given).items():
-        try:
-            found[name] = number(text)
-        except ValueError:
-            message = f"a number is needed for '{name}', in SI units or with its unit, as in {name}='500 mm'"
-            raise typer.BadParameter(f"{message}; found '{text}'") from None
-    return found
 
 
 def _print(name: str, value: Any, told: Mapping[str, Any]) -> None:
