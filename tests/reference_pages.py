@@ -1,6 +1,6 @@
 """The reference pages that are made of the program: the command line, the settings, what goes together.
 
-``python tests/reference_pages.py`` writes them; a test compares them with what is there.
+``PYTHONPATH=tests/tools python tests/reference_pages.py`` writes them; a test compares them with what is there.
 """
 
 from __future__ import annotations

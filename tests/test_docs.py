@@ -145,7 +145,7 @@ def test_the_readme_is_read_in_two_minutes() -> None:
 
 @pytest.mark.parametrize("name", reference_pages.PAGES)
 def test_reference_pages_are_true(name: str) -> None:
-    """``python tests/reference_pages.py`` writes them."""
+    """``PYTHONPATH=tests/tools python tests/reference_pages.py`` writes them."""
     assert (reference_pages.FOLDER / name).read_text() == reference_pages.PAGES[name]()
 
 
