@@ -87,7 +87,8 @@ def test_one_position_as_a_row(staged: Program) -> None:
             np.testing.assert_array_equal(found[name], array)
 
 
-ORDER = ("f", "x", "m", "v", "t", "a", "I")
+#: neighbours of one stage and of two
+ORDER = ("f", "a", "x", "m", "I", "t", "v")
 
 
 def columns_of(kind: str, whole: Any) -> list[Any]:
