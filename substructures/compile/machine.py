@@ -21,9 +21,9 @@ from substructures.compile.stages import Arguments, PreparedStages, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
 
-#: bytes of scratch for the vectors that go through every function together: half of a core's second-level cache
-GROUP_BYTES = 256 * 1024
-MAX_GROUP = 16
+#: bytes of scratch for the vectors that go through every function together: about the first-level cache of a core
+GROUP_BYTES = 48 * 1024
+MAX_GROUP = 4
 #: below this many states a second thread costs more than it gives
 THREADED = 1024
 #: scratch arrays kept for the next call
