@@ -2,26 +2,37 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
+from itertools import chain
+from typing import NamedTuple
 
 from substructures.compile.assembler import attributes, literal, vector
 from substructures.compile.lowering import Lowered, Place, StageFunction
 from substructures.compile.order import REGIONS
-from substructures.expr.program import Operation
+from substructures.expr.program import Operation, operands
 
 BINARY = {"add": "fadd", "sub": "fsub", "mul": "fmul", "div": "fdiv"}
 #: a product may be contracted with the sum or difference that it goes into (fused multiply-add where the host has it)
 CONTRACTED = frozenset(("add", "sub", "mul"))
 INTRINSICS = {"sqrt": "sqrt", "abs": "fabs"}
+#: doubles in a vector of AVX-512, of which it has 32 registers; storing one takes two cycles
+WIDE = 8
+#: values that stay in registers there; the others are left for what one instruction needs
+KEPT = 30
+#: beside the regions: the array of a function for values that wait
+WAITING = "w"
+NEVER = 2**62
 
 
 def assembly(lowered: Lowered, ops: Sequence[Operation], width: int) -> str:
     """A module with the functions part0, part1, ... of the scratch arrays of the stages and of the outputs."""
-    emitters = (_Emitter(lowered, part, ops, width) for part in lowered.parts)
+    kind = _Sparing if width == WIDE else _Emitter
+    emitters = (kind(lowered, part, ops, width) for part in lowered.parts)
     given = ", ".join(f"ptr %{region}" for region in (*REGIONS, "o"))
     bodies = [f"define void @part{k}({given}) #0 {{\n{e.text()}\n}}\n" for k, e in enumerate(emitters)]
-    kind = vector(width)
-    declared = [f"declare {kind} @llvm.{name}.v{width}f64({kind})\n" for name in INTRINSICS.values()]
+    value = vector(width)
+    declared = [f"declare {value} @llvm.{name}.v{width}f64({value})\n" for name in INTRINSICS.values()]
     return "".join([*declared, *bodies, attributes(width)])
 
 
@@ -43,9 +54,7 @@ class _Emitter:
 
     def text(self) -> str:
         """All instructions; results are stored where they arise, copies at the end."""
-        stores: dict[int, list[Place]] = {}
-        for i, place in self.part.stores:
-            stores.setdefault(i, []).append(place)
+        stores = self._stores()
         for i in self.part.operations:
             self.name[i] = self._operation(i, self.ops[i])
             for place in stores.pop(i, ()):
@@ -55,6 +64,13 @@ class _Emitter:
                 self._store(i, place)
         self.lines.append("ret void")
         return "\n".join(self.lines)
+
+    def _stores(self) -> dict[int, list[Place]]:
+        """Where values go to."""
+        stores: dict[int, list[Place]] = {}
+        for i, place in self.part.stores:
+            stores.setdefault(i, []).append(place)
+        return stores
 
     def _new(self, text: str) -> str:
         """The value of an instruction. The block itself has the number 0."""
@@ -127,16 +143,138 @@ class _Emitter:
             if i in self.lowered.literals:
                 found = literal(self.lowered.literals[i], self.width)
             else:
-                pointer = self._pointer(self.part.loads[i])
-                found = self._new(f"load {self.kind}, ptr {pointer}, align {8 * self.width}")
+                found = self._load(self.part.loads[i])
             self.name[i] = found
         return found
 
+    def _load(self, place: Place) -> str:
+        return self._new(f"load {self.kind}, ptr {self._pointer(place)}, align {self._alignment(place)}")
+
     def _store(self, i: int, place: Place) -> None:
         value, pointer = self._value(i), self._pointer(place)
-        # results may go straight to an array of the caller
-        align = 8 if place[0] == "o" else 8 * self.width
-        self.lines.append(f"store {self.kind} {value}, ptr {pointer}, align {align}")
+        self.lines.append(f"store {self.kind} {value}, ptr {pointer}, align {self._alignment(place)}")
+
+    def _alignment(self, place: Place) -> int:
+        """Of a vector; results may go straight to an array of the caller."""
+        return 8 if place[0] == "o" else 8 * self.width
 
     def _pointer(self, place: Place) -> str:
         return self._new(f"getelementptr i8, ptr %{place[0]}, i64 {8 * self.width * place[1]}")
+
+
+class _Instruction(NamedTuple):
+    """An operation with the products that go into one instruction with it, the values that it reads, when its result
+    is needed first, and when these are needed again.
+    """
+
+    operation: int
+    products: list[int]
+    reads: list[int]
+    first: int
+    again: list[int]
+
+
+class _Sparing(_Emitter):
+    """The same with KEPT values in registers: of more the one waits in memory that is needed again last (L. A. Belady,
+    A study of replacement algorithms for a virtual-storage computer, IBM Systems Journal 5, 1966). It is stored unless
+    memory has it, and loaded where it is needed. LLVM, left alone, stores twice as often.
+    """
+
+    def __init__(self, lowered: Lowered, part: StageFunction, ops: Sequence[Operation], width: int) -> None:
+        super().__init__(lowered, part, ops, width)
+        self.same = dict[int, int]()
+        #: values in registers, and when they are needed again
+        self.held: dict[int, int] = {}
+        # kept as their negatives: another operation has their value
+        for i in part.operations:
+            x: int = ops[i][1] if ops[i][0] == "neg" else -1
+            if x in lowered.minus:
+                self.same[i] = self.same.get(x, x)
+        #: where values lie in memory
+        self.home = {self.same.get(i, i): place for i, place in part.loads.items()}
+        self.waiting, self.free = 0, list[Place]()
+
+    def text(self) -> str:
+        """All instructions; results are stored where they arise, copies at the end."""
+        stores = self._stores()
+        for instruction in self._instructions(stores):
+            self._write(instruction, stores.pop(instruction.operation, ()))
+        for i, places in stores.items():
+            for place in places:
+                self._store(i, place)
+        array = f"%{WAITING} = alloca [{self.waiting} x {self.kind}], align {8 * self.width}"
+        return "\n".join([*([array] if self.waiting else []), *self.lines, "ret void"])
+
+    def _stores(self) -> dict[int, list[Place]]:
+        stores: dict[int, list[Place]] = {}
+        for i, place in self.part.stores:
+            stores.setdefault(self.same.get(i, i), []).append(place)
+        return stores
+
+    def _write(self, instruction: _Instruction, places: Iterable[Place]) -> None:
+        """What it reads from memory, itself, its result where it belongs, and what cannot stay."""
+        i, products, reads, first, again = instruction
+        for x in reads:
+            if x not in self.held:
+                self.name[x] = self._load(self.home[x])
+        for x in (*products, i):
+            self.name[x] = self._operation(x, self.ops[x])
+        for place in places:
+            self._store(i, place)
+            self.home[i] = place
+        for x, needed in zip((*reads, i), (*again, first), strict=True):
+            self._hold(x, needed)
+        while len(self.held) > KEPT:
+            self._put_off()
+
+    def _instructions(self, stores: Collection[int]) -> list[_Instruction]:
+        """In their order, a product where the sum or difference is that it goes into."""
+        mine = [i for i in self.part.operations if i not in self.same]
+        values = {i: [self.same.get(x, x) for x in operands(self.ops[i])] for i in mine}
+        products = self._products(values, stores)
+        within = set(products.values())
+        order = [i for i in mine if i not in within]
+        found, needed = list[_Instruction](), dict[int, int]()
+        for t, i in zip(range(len(order) - 1, -1, -1), reversed(order), strict=True):
+            own = [products[i]] if i in products else []
+            every = chain(*(values[x] for x in own), values[i])
+            reads = [x for x in dict.fromkeys(every) if x not in own and x not in self.lowered.literals]
+            again = [needed.get(x, NEVER) for x in reads]
+            found.append(_Instruction(i, own, reads, needed.pop(i, NEVER), again))
+            needed.update(dict.fromkeys(reads, t))
+        return found[::-1]
+
+    def _products(self, values: Mapping[int, list[int]], stores: Collection[int]) -> dict[int, int]:
+        """Of sums and differences the product that becomes one instruction with them: nothing else needs it."""
+        users, found, sharp = Counter(chain.from_iterable(values.values())), dict[int, int](), self.lowered.sharp
+        for i, some in values.items():
+            if self.ops[i][0] in ("add", "sub") and i not in sharp:
+                for x in some:
+                    if x in values and self.ops[x][0] == "mul" and users[x] == 1 and x not in stores and x not in sharp:
+                        found[i] = x
+                        break
+        return found
+
+    def _hold(self, x: int, needed: int) -> None:
+        """Keep a value in its register until it is needed, or no longer."""
+        if needed < NEVER:
+            self.held[x] = needed
+            return
+        self.held.pop(x, None)
+        place = self.home.get(x)
+        if place is not None and place[0] == WAITING:
+            self.free.append(self.home.pop(x))
+
+    def _put_off(self) -> None:
+        """The value that is needed last is not held any more."""
+        x = max(self.held, key=self.held.__getitem__)
+        del self.held[x]
+        if x not in self.home:
+            if not self.free:
+                self.free.append((WAITING, self.waiting))
+                self.waiting += 1
+            self.home[x] = self.free.pop()
+            self._store(x, self.home[x])
+
+    def _value(self, i: int) -> str:
+        return super()._value(self.same.get(i, i))

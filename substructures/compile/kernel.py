@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from substructures.array import Array
-from substructures.compile.arguments import ArgumentColumn, NamedColumns, batch_shape, merged
+from substructures.compile.arguments import NamedColumns, batch_shape, merged
 from substructures.compile.recipe import needed_symbols
 from substructures.expr.interpret import interpret
 from substructures.expr.program import Output, Program
@@ -41,7 +41,9 @@ def is_packed(name: str, packed: Packed) -> bool:
 
 
 class KernelCall(NamedTuple):
-    """What :meth:`Kernel.evaluate` is asked, checked; ``clean``: ``out`` holds zeros or earlier results."""
+    """What :meth:`Kernel.evaluate` is asked, checked; ``clean``: ``out`` holds zeros or earlier results; ``is_told``:
+    whether results are finite is asked.
+    """
 
     values: Mapping[str, Any]
     batch: tuple[int, ...]
@@ -50,6 +52,8 @@ class KernelCall(NamedTuple):
     threads: int = 1
     clean: bool = True
     places: Places = NO_PLACES
+    columns: Sequence[NamedColumns] = ()
+    is_told: bool = False
 
 
 @dataclass(frozen=True)
@@ -118,7 +122,7 @@ class Kernel(ABC):
         for n in self.names if names is None else names:
             shape = (len(places[n]),) if n in places else self.shape(n, is_packed(n, packed))
             out[n] = np.empty(batch + shape)
-        request = KernelCall(merged(values, columns, batch), batch, out, packed, threads, clean=False, places=places)
+        request = KernelCall(values, batch, out, packed, threads, False, places, columns, is_told=True)
         out.finite = self._run(request)
         return out
 
@@ -139,7 +143,7 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        self._run(KernelCall(merged(values, columns, batch), batch, out, packed, threads, clean))
+        self._run(KernelCall(values, batch, out, packed, threads, clean, columns=columns))
 
     def bind(
         self,
@@ -156,7 +160,7 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         self._check(out, batch, packed)
-        return self._bound(KernelCall(merged(values, columns, batch), batch, out, packed, clean=False))
+        return self._bound(KernelCall(values, batch, out, packed, clean=False, columns=columns))
 
     @abstractmethod
     def blocks(
@@ -199,12 +203,12 @@ class Kernel(ABC):
                 held = prod(batch)
                 memory = {n: np.zeros((held, *self.shape(n, is_packed(n, packed)))) for n in wanted}
             out = {n: array[: prod(batch)].reshape(batch + array.shape[1:]) for n, array in memory.items()}
-            self._run(KernelCall(merged(values, given, batch), batch, out, packed, threads))
+            self._run(KernelCall(values, batch, out, packed, threads, columns=given))
             yield out
 
     @abstractmethod
     def _run(self, request: KernelCall) -> bool:
-        """Fills ``out``; whether it was seen that all results are finite."""
+        """Fills ``out``; whether it was seen that all results are finite, where this is asked."""
 
     @abstractmethod
     def _bound(self, request: KernelCall) -> Callable[[], None]:
@@ -254,7 +258,8 @@ class InterpretedKernel(Kernel):
         return Blocks(count, array if out is None else out, places)
 
     def _run(self, request: KernelCall) -> bool:
-        values = {n: _array(v) for n, v in request.values.items() if n in self.symbols}
+        given = merged(request.values, request.columns)
+        values = {n: v for n, v in given.items() if n in self.symbols}
         for name, result in interpret(self.program, values, list(request.out)).items():
             if name in request.places:
                 result = elements(result, request.places[name], len(request.batch))
@@ -280,14 +285,6 @@ def elements(dense: Array, places: NDArray[np.int64], axes: int = 1) -> Array:
 def with_elements(found: Mapping[str, Array], places: Places) -> dict[str, Array]:
     """Arrays (N, ...) with the elements at places alone of those outputs that are named."""
     return {name: elements(x, places[name]) if name in places else x for name, x in found.items()}
-
-
-def _array(value: Any) -> Any:
-    """A value as the interpreter takes it."""
-    if type(value) is not ArgumentColumn:
-        return value
-    _, _, array, number = value
-    return array[:, number]
 
 
 def _independent(output: Output, result: Array) -> Array:

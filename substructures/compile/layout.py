@@ -9,7 +9,7 @@ from math import prod
 import numpy as np
 from numpy.typing import NDArray
 
-from substructures.compile.scatter import TILE
+from substructures.compile.transposition import TILE
 from substructures.expr.program import Output
 
 Words = NDArray[np.int64]

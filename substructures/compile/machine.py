@@ -12,29 +12,30 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.compile import layout, target
-from substructures.compile.arguments import Arguments, NamedColumns, batch_shape, merged
+from substructures.compile.arguments import NamedColumns, batch_shape, merged
 from substructures.compile.engine import WORDS, Counter, Scratch, VectorRuntime, WordTable, address, workers
 from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.recipe import Recipe
-from substructures.compile.stages import PreparedStages, Stages
+from substructures.compile.stages import Arguments, PreparedStages, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
 
-#: bytes of scratch for the vectors that go through every function together: half of a core's second-level cache
-GROUP_BYTES = 256 * 1024
-MAX_GROUP = 16
+#: bytes of scratch for the vectors that go through every function together: about the first-level cache of a core
+GROUP_BYTES = 48 * 1024
+MAX_GROUP = 4
 #: below this many states a second thread costs more than it gives
 THREADED = 1024
 #: scratch arrays kept for the next call
 KEPT = 4
 #: bytes of an engine of LLVM with its target machine and pages, as measured
 ENGINE_BYTES = 50_000
-NO_OUTPUTS = WordTable.written(())
 
 
 class _Job(NamedTuple):
-    """A batch: number of states, leading stages, inputs of all stages, tables for the driver."""
+    """A batch: number of states, leading stages, inputs of all stages, tables for the driver; ``is_told``: whether
+    results are finite is asked.
+    """
 
     states: int
     once: PreparedStages
@@ -42,6 +43,7 @@ class _Job(NamedTuple):
     inputs: WordTable
     outputs: WordTable
     counter: ctypes.Array[ctypes.c_int64]
+    is_told: bool
     blocks: Array | None
 
 
@@ -87,9 +89,9 @@ class MachineKernel(Kernel):
     def _run(self, request: KernelCall) -> bool:
         if not prod(request.batch):
             return True
-        job = self._job(request.values, request.batch, self._outputs(request))
+        job = self._job(request)
         self._run_job(job, request.threads)
-        return not job.counter[1]
+        return job.is_told and not job.counter[1]
 
     def blocks(
         self,
@@ -112,7 +114,7 @@ class MachineKernel(Kernel):
         ):
             raise ValueError(f"a writable C-ordered array of doubles of shape {shape} is needed")
         if count:
-            self._run_job(self._job(merged(values, columns, batch), batch, blocks=array), threads)
+            self._run_job(self._job(KernelCall(values, batch, {}, False, columns=columns), blocks=array), threads)
         return Blocks(count, array, self._numbers)
 
     @cached_property
@@ -122,28 +124,23 @@ class MachineKernel(Kernel):
         return {name: np.array(some, dtype=np.int64) for name, some in places.items()}
 
     def _bound(self, request: KernelCall) -> Callable[[], None]:
-        job = self._job(request.values, request.batch, self._outputs(request), in_place=True)
-        return BoundCall((self, job, request), self.runtime, self._prepared(job, False), job.counter)
+        job = self._job(request, in_place=True)
+        return BoundCall((self, job, request), self.runtime, self._prepared(job), job.counter)
 
-    def _job(
-        self,
-        values: Mapping[str, Any],
-        batch: tuple[int, ...],
-        outputs: WordTable = NO_OUTPUTS,
-        blocks: Array | None = None,
-        in_place: bool = False,
-    ) -> _Job:
+    def _job(self, request: KernelCall, blocks: Array | None = None, in_place: bool = False) -> _Job:
         """Addresses and tables of a batch; the leading stages whose inputs do not vary have run."""
         try:
-            once, arguments = self._stages.begin(values, batch, in_place)
+            once, arguments = self._stages.begin(request.values, request.columns, request.batch, in_place)
         except KeyError:
             # the first one in the order of the program, as the interpreter has it
-            raise MissingValue(next(name for name in self.symbols if name not in values)) from None
+            given = merged(request.values, request.columns)
+            raise MissingValue(next(name for name in self.symbols if name not in given)) from None
         ready = self._stages.results[len(once.scratch)]
         if ready and blocks is not None:
             blocks[:, :ready] = once.results.array[0, self.width :].reshape(ready, self.width)
         inputs = [row for x in arguments for row in x.varying]
-        return _Job(prod(batch), once, arguments, WordTable.written(inputs), outputs, Counter(), blocks)
+        tables = WordTable.written(inputs), self._outputs(request)
+        return _Job(prod(request.batch), once, arguments, *tables, Counter(), request.is_told, blocks)
 
     def _run_job(self, job: _Job, threads: int) -> None:
         if threads > 1 and job.states >= THREADED:
@@ -187,15 +184,13 @@ class MachineKernel(Kernel):
 
     def _work(self, job: _Job) -> None:
         """Runs the driver, with scratch of its own."""
-        prepared = self._prepared(job, job.blocks is None)
+        prepared = self._prepared(job)
         self.runtime.drive(*prepared.words)
         if len(self._scratch) < KEPT:
             self._scratch.append(prepared.scratch)
 
-    def _prepared(self, job: _Job, is_told: bool) -> _Prepared:
-        """Scratch with the numbers of the batch, and the words of the driver's context; ``is_told``: that results are
-        finite is asked.
-        """
+    def _prepared(self, job: _Job) -> _Prepared:
+        """Scratch with the numbers of the batch, and the words of the driver's context."""
         try:
             own = self._scratch.pop()
         except IndexError:
@@ -204,8 +199,9 @@ class MachineKernel(Kernel):
         varying = own[done - 1 : -1] if done else [Scratch.zeros(self.group, self._stages.rows[0]), *own[:-1]]
         rows = [*job.once.scratch, *varying]
         for row, x in zip(varying, job.arguments[done:], strict=True):
-            if len(x.varying) < len(x.numbers):
-                row.array[:, : len(x.numbers) * width] = np.repeat(x.numbers, width)
+            if len(x.numbers):
+                count = len(x.numbers)
+                row.array[:, : count * width].reshape(-1, count, width)[...] = x.numbers[:, None]
         words = [word for row in rows for word in row[:2]]
         if job.blocks is None:
             ready = job.once.results.array
@@ -214,7 +210,7 @@ class MachineKernel(Kernel):
         else:
             # the array has no zero
             words += (address(job.blocks) - 8 * width, job.blocks.strides[0], job.blocks.strides[0])
-        n_results = self._stages.results[-1] if is_told else 0
+        n_results = self._stages.results[-1] if job.is_told else 0
         tables = (*job.inputs[:2], *self._stages.steps(done), *job.outputs[:2])
         return _Prepared(own, rows, (*words, job.states, ctypes.addressof(job.counter), *tables, self.group, n_results))
 

@@ -11,8 +11,8 @@ from contextlib import contextmanager
 
 from substructures.compile.assembler import AssemblyWriter, attributes, literal, vector
 from substructures.compile.order import REGIONS
-from substructures.compile.scatter import scatter, scatter_some
 from substructures.compile.sincos import LIMIT, sincos_body
+from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row
 
 #: words of the driver's context; ``counter`` counts the groups that were taken, and the word behind it is not zero
 #: when a result of any state is not finite
@@ -21,8 +21,7 @@ CONTEXT = (
     *("o", "o_stride", "o_advance", "last", "counter"),
     *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group", "n_results"),
 )
-#: words of the rows of the tables
-INPUT = ("base", "stride", "offset", "stage")
+#: words of a row of the table of steps
 STEP = ("stage", "function", "a", "b", "c", "count", "extra")
 
 
@@ -32,7 +31,7 @@ def runtime(width: int) -> str:
         _sincos(width),
         _library(width, 1),
         _library(width, 2),
-        _load(width),
+        gather(width),
         scatter(width),
         scatter_some(width),
         _look(width),
@@ -85,30 +84,6 @@ def _library(width: int, arguments: int) -> str:
     return w.function(("unary", "binary")[arguments - 1], BATCH)
 
 
-def _load(width: int) -> str:
-    """Inputs of the states first, first + 1, ... into the scratch arrays; the last state fills a vector up.
-
-    Every input is a column of some array of the caller: a base address and a stride.
-    """
-    w = AssemblyWriter(width)
-    lanes = []
-    for lane in range(width):
-        state = w.arithmetic("add", "%first", lane)
-        beyond = w.do(f"icmp sgt i64 {state}, %final")
-        lanes.append(w.do(f"select i1 {beyond}, i64 %final, i64 {state}"))
-    with w.loop("0", "%count") as i:
-        row = w.words(w.offset("%table", w.arithmetic("mul", i, 8 * len(INPUT))), INPUT)
-        base = w.pointer(row["base"])
-        value = "undef"
-        for lane, state in enumerate(lanes):
-            source = w.offset(base, w.arithmetic("mul", state, row["stride"]))
-            one = w.do(f"load double, ptr {source}, align 8")
-            value = w.do(f"insertelement {w.kind} {value}, double {one}, i32 {lane}")
-        target = w.offset(_scratch(w, row["stage"], "%block"), row["offset"])
-        w.put(f"store {w.kind} {value}, ptr {target}, align {8 * width}")
-    return w.function("load", "ptr %table, i64 %count, i64 %first, i64 %final, ptr %context, i64 %block")
-
-
 def _look(width: int) -> str:
     """Sets the word ``seen`` when one of the ``count`` results at o is not finite, for which 0 x is not a number."""
     w = AssemblyWriter(width)
@@ -135,12 +110,6 @@ def _look(width: int) -> str:
     with w.loop(several, end) as i:
         look(i, 1)
     return w.function("look", "ptr %o, i64 %count, ptr %seen")
-
-
-def _scratch(w: AssemblyWriter, stage: str, block: str) -> str:
-    """Scratch row of a stage for a vector of the group."""
-    row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))
-    return w.offset(w.pointer(row["base"]), w.arithmetic("mul", block, row["stride"]))
 
 
 def _drive(width: int) -> str:
@@ -174,7 +143,7 @@ def _drive(width: int) -> str:
         with w.loop("0", blocks) as block:
             state = w.arithmetic("add", start, w.arithmetic("mul", block, width))
             arguments = f"ptr {tables['inputs']}, i64 {c['n_inputs']}, i64 {state}, i64 {final}"
-            w.put(f"call void @load({arguments}, ptr %context, i64 {block})")
+            w.put(f"call void @gather({arguments}, ptr %context, i64 {block})")
         _steps(w, tables["steps"], c["n_steps"], blocks, rows)
         with w.loop("0", blocks) as block:
             results = row(moved, "o", block)
@@ -201,7 +170,7 @@ def _steps(w: AssemblyWriter, table: str, count: str, blocks: str, rows: Callabl
         with w.when(is_part), w.loop("0", blocks) as block:
             w.put(f"call void {function}({', '.join(f'ptr {x}' for x in rows(block))})")
         with w.when(w.do(f"xor i1 {is_part}, true")), w.loop("0", blocks) as block:
-            base = _scratch(w, row["stage"], block)
+            base = scratch_row(w, row["stage"], block)
             a, b, c = (w.offset(base, row[n]) for n in "abc")
             w.put(f"call void {function}(ptr {a}, ptr {b}, ptr {c}, i64 {row['count']}, ptr {extra})")
 

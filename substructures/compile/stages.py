@@ -3,19 +3,162 @@
 from __future__ import annotations
 
 import ctypes
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from itertools import accumulate
 from math import prod
-from operator import is_
+from operator import is_, itemgetter
 from typing import Any, NamedTuple
 
 import numpy as np
 
-from substructures.compile.arguments import NOTHING, Arguments, Inputs
-from substructures.compile.engine import Counter, Scratch, VectorRuntime, WordTable
+from substructures.array import Array
+from substructures.compile.arguments import NamedColumns
+from substructures.compile.engine import Counter, Scratch, VectorRuntime, WordTable, address
 from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
 from substructures.compile.runtime import STEP
+
+
+class Arguments(NamedTuple):
+    """Inputs of one stage: numbers for all states, NaN where they vary (none where all do), and rows of the table INPUT
+    of those that vary; ``alive`` owns the memory of these.
+    """
+
+    numbers: Array
+    varying: list[tuple[int, ...]]
+    alive: list[Any]
+
+
+#: kinds of columns whose tables are remembered
+REMEMBERED = 8
+#: of a stage without inputs
+NOTHING = Arguments(np.zeros(0), [], [])
+
+
+class Columns(NamedTuple):
+    """An array of doubles with a row for every state; ``is_fixed``: with one row for all of them."""
+
+    array: Array
+    is_fixed: bool
+
+    @classmethod
+    def of(cls, given: Array, batch: tuple[int, ...], in_place: bool) -> Columns:
+        """Without a copy where it has that form. ``in_place``: see :meth:`Inputs.read`."""
+        if type(given) is np.ndarray and given.dtype == np.float64 and given.ndim == 2 and given.shape[:1] == batch:
+            return cls(given, not in_place and not given.strides[0])
+        array = np.asarray(given, dtype=np.float64)
+        if array.ndim == 1:
+            return cls(array[None], True)
+        if not in_place and (prod(array.shape[:-1]) == 1 or not any(array.strides[:-1])):
+            return cls(array[(0,) * (array.ndim - 1)][None], True)
+        return cls(np.broadcast_to(array, (*batch, array.shape[-1])).reshape(prod(batch), array.shape[-1]), False)
+
+
+class ColumnTable(NamedTuple):
+    """Which columns of an array, by its number, are which inputs of a stage, as numbers and as tables of INPUT."""
+
+    number: int
+    columns: list[int]
+    places: list[int]
+    words: tuple[int, int, int, int]
+    alive: tuple[WordTable, WordTable]
+
+    @classmethod
+    def of(cls, number: int, step: int, found: Mapping[int, int], size: int) -> ColumnTable:
+        """``found``: inputs by columns, which are ``step`` bytes apart; ``size`` of an input in bytes."""
+        columns, pairs, singles = sorted(found), list[tuple[int, ...]](), list[tuple[int, ...]]()
+        paired = False
+        for k, column in enumerate(columns):
+            place = size * found[column]
+            paired = step == 8 and k > 0 and columns[k - 1] == column - 1 and not paired
+            if paired:
+                pairs.append((*singles.pop(), place))
+            else:
+                singles.append((step * column, place))
+        tables = WordTable.written(pairs), WordTable.written(singles)
+        return cls(number, columns, [found[x] for x in columns], (*tables[0][:2], *tables[1][:2]), tables)
+
+
+class Sources(NamedTuple):
+    """Where the inputs of a stage come from: those that are values by name, their places, and all from columns."""
+
+    by_name: Callable[[Mapping[str, Any]], tuple[Any, ...]]
+    places: list[int]
+    tables: list[ColumnTable]
+
+
+class Inputs:
+    """The inputs of a stage by name; ``size`` of a vector in bytes."""
+
+    def __init__(self, names: Sequence[str], stage: int, size: int) -> None:
+        self.names, self.stage, self.size = tuple(names), stage, size
+        self._single = WordTable.written([(0, size * k) for k in range(len(names))])
+
+    def sources(self, columns: Sequence[tuple[Sequence[str], int]]) -> Sources:
+        """From columns of these names and so many bytes apart: of those that come twice from the last ones."""
+        where = {name: (number, k) for number, (names, _) in enumerate(columns) for k, name in enumerate(names)}
+        own, found = list[int](), [dict[int, int]() for _ in columns]
+        for place, name in enumerate(self.names):
+            if name in where:
+                number, column = where[name]
+                found[number][column] = place
+            else:
+                own.append(place)
+        names = [self.names[place] for place in own]
+        # a getter of two names and more answers with a tuple
+        getter = itemgetter(*names, *names[:1]) if names else None
+        tables = [ColumnTable.of(k, columns[k][1], some, self.size) for k, some in enumerate(found) if some]
+        return Sources(lambda values: getter(values)[:-1] if getter else (), own, tables)
+
+    def read(
+        self,
+        found: tuple[Any, ...],
+        sources: Sources,
+        columns: Sequence[Columns],
+        batch: tuple[int, ...],
+        in_place: bool = False,
+    ) -> Arguments:
+        """Arguments from what was found by name, and columns. ``in_place``: arrays of one element and rows that are the
+        same for all states are read anew by every run.
+        """
+        if not self.names:
+            return NOTHING
+        fixed, rows, alive = list[ColumnTable](), list[tuple[int, ...]](), list[Any]([sources])
+        for table in sources.tables:
+            array, is_fixed = columns[table.number]
+            if is_fixed:
+                fixed.append(table)
+            else:
+                rows.append((address(array), array.strides[0], self.stage, *table.words))
+                alive.append(array)
+        if not found and not fixed:
+            return Arguments(NOTHING.numbers, rows, alive)
+        if not rows and not fixed and set(map(type, found)) == {float}:
+            return Arguments(np.array(found), rows, alive)
+        result = Arguments(np.full(len(self.names), np.nan), rows, alive)
+        for table in fixed:
+            result.numbers[table.places] = columns[table.number].array[0, table.columns]
+        if set(map(type, found)) == {float}:
+            result.numbers[sources.places] = found
+        else:
+            for place, value in zip(sources.places, found, strict=True):
+                result.numbers[place] = self._number(result, place, value, batch, in_place)
+        return result
+
+    def _number(self, result: Arguments, place: int, value: Any, batch: tuple[int, ...], in_place: bool) -> float:
+        """A value when it is the same for all states; arrays are noted in the result."""
+        if type(value) is float:
+            return value
+        array = np.asarray(value, dtype=np.float64)
+        if not array.ndim or not (in_place or (array.size != 1 and any(array.strides))):
+            return float(array.reshape(-1)[0])
+        if array.shape != batch:
+            array = np.broadcast_to(array, batch)
+        array = array if array.ndim == 1 else array.reshape(prod(batch))
+        single = self._single.address + 16 * place, 1
+        result.varying.append((address(array), array.strides[0], self.stage, 0, 0, *single))
+        result.alive.append(array)
+        return np.nan
 
 
 class PreparedStages(NamedTuple):
@@ -38,29 +181,44 @@ class Stages:
         self._first = [0, *accumulate(map(len, steps))]
         self._none = PreparedStages((), Scratch.zeros(1, self.width))
         self._last: tuple[tuple[float, ...], PreparedStages] | None = None
+        self._sources: dict[tuple[tuple[tuple[str, ...], int], ...], list[Sources]] = {}
 
     def begin(
-        self, values: Mapping[str, Any], batch: tuple[int, ...], in_place: bool
+        self, values: Mapping[str, Any], given: Sequence[NamedColumns], batch: tuple[int, ...], in_place: bool
     ) -> tuple[PreparedStages, list[Arguments]]:
         """Runs the leading stages whose inputs do not vary; the inputs of all others. Raises KeyError.
 
         The last set of parameters is remembered. ``in_place``: see :meth:`Inputs.read`.
         """
-        found = [stage.find(values) for stage in self.inputs]
-        last = self._last
-        once = last[1] if last is not None and all(map(is_, found[0], last[0])) else self._none
+        columns = [Columns.of(array, batch, in_place) for _, array in given]
+        sources = self._sources_of(given, columns)
+        found = [x.by_name(values) for x in sources]
+        last, is_by_name = self._last, not sources[0].tables
+        once = last[1] if last is not None and is_by_name and all(map(is_, found[0], last[0])) else self._none
         done = len(once.scratch)
         arguments = [NOTHING] * done
-        arguments += [x.read(f, batch, in_place) for x, f in zip(self.inputs[done:], found[done:], strict=True)]
+        arguments += [
+            self.inputs[k].read(found[k], sources[k], columns, batch, in_place) for k in range(done, len(found))
+        ]
         if not done and not arguments[0].varying:
             once = self._continued(once, arguments[:1])
-            if set(map(type, found[0])) <= {float}:
+            if is_by_name and set(map(type, found[0])) <= {float}:
                 self._last = found[0], once
         fixed = next((k for k, x in enumerate(arguments) if x.varying), len(arguments))
         # for one vector another call of the driver would not pay
         if fixed > 1 and prod(batch) > self.width:
             once = self._continued(once, arguments[1:fixed])
         return once, arguments
+
+    def _sources_of(self, given: Sequence[NamedColumns], columns: Sequence[Columns]) -> list[Sources]:
+        """Those of all stages; of the last few kinds of columns they are remembered."""
+        key = tuple((tuple(names), x.array.strides[-1]) for (names, _), x in zip(given, columns, strict=True))
+        found = self._sources.get(key)
+        if found is None:
+            if len(self._sources) >= REMEMBERED:
+                self._sources.clear()
+            found = self._sources[key] = [stage.sources(key) for stage in self.inputs]
+        return found
 
     def steps(self, start: int, stop: int = len(REGIONS)) -> tuple[int, int]:
         """Address and number of the steps of the stages start, ..., stop - 1."""

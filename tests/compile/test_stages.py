@@ -87,6 +87,55 @@ def test_one_position_as_a_row(staged: Program) -> None:
             np.testing.assert_array_equal(found[name], array)
 
 
+#: neighbours of one stage and of two
+ORDER = ("f", "a", "x", "m", "I", "t", "v")
+
+
+def columns_of(kind: str, whole: Any) -> list[Any]:
+    """The columns ORDER of (COUNT, 7) in other arrays."""
+    if kind == "two arrays":
+        return [(ORDER[:5], whole[:, :5]), (ORDER[5:], whole[:, 5:])]
+    if kind == "the last ones count":
+        return [(("x", "a"), np.ones((COUNT, 2))), (ORDER, whole)]
+    if kind == "three axes":
+        return [(ORDER, whole.reshape(3, COUNT // 3, 7))]
+    made = {
+        "rows": whole,
+        "columns": np.asfortranarray(whole),
+        "wider": np.concatenate([whole, whole], axis=1)[:, :7],
+        "every second": np.repeat(whole, 2, axis=1)[:, ::2],
+        "backwards": whole[::-1].copy()[::-1],
+        "read-only": np.frombuffer(whole.tobytes()).reshape(COUNT, 7),
+        "list": whole.tolist(),
+    }
+    return [(ORDER, made[kind])]
+
+
+KINDS_OF_COLUMNS = (
+    *("rows", "columns", "wider", "every second", "backwards", "read-only", "list"),
+    *("two arrays", "the last ones count", "three axes"),
+)
+
+
+@pytest.mark.parametrize("width", [2, 4, 8])
+@pytest.mark.parametrize("kind", KINDS_OF_COLUMNS)
+def test_columns_give_the_bits_of_values_by_name(staged: Program, kind: str, width: int) -> None:
+    """Neighbouring columns are read in pairs, wherever they go: pairs and single ones, in all arrays."""
+    kernel = compile_program(staged, list(staged.outputs), width=width)
+    whole = np.random.default_rng(2).uniform(0.5, 1, (COUNT, len(ORDER)))
+    expected = kernel.evaluate({name: whole[:, k].copy() for k, name in enumerate(ORDER)})
+    for threads in (1, 2):
+        found = kernel.evaluate({}, columns=columns_of(kind, whole), threads=threads)
+        for name, array in expected.items():
+            np.testing.assert_array_equal(found[name].reshape(array.shape), array)
+    half = kernel.evaluate(
+        dict(zip(ORDER[3:], whole[0, 3:].tolist(), strict=True)), columns=[(ORDER[:3], whole[:, :3])]
+    )
+    fixed = kernel.evaluate({}, columns=[(ORDER[:3], whole[:, :3]), (ORDER[3:], whole[0, 3:])])
+    for name, array in half.items():
+        np.testing.assert_array_equal(fixed[name], array)
+
+
 def test_operations_stand_in_the_stage_of_their_latest_operand(staged: Program) -> None:
     stages = lower(staged, list(staged.outputs)).stages
     assert [stage.region for stage in stages] == list(REGIONS)

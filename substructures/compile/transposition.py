@@ -1,15 +1,83 @@
-"""LLVM assembly that writes results, (vectors of states) by (places), to arrays of rows, (states) by (elements)."""
+"""LLVM assembly between arrays of rows, (states) by (elements), and vectors of states by their places: inputs from
+rows to vectors, results from vectors to rows.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from functools import partial
+
 from substructures.compile.assembler import AssemblyWriter
 
+#: words of a row of the table of inputs; its array's columns in pairs (byte offsets: of the first in a row of the
+#: array, of both among the inputs of the stage), and single ones
+INPUT = ("base", "stride", "stage", "pairs", "n_pairs", "singles", "n_singles")
 #: elements of a row written at once
 TILE = 4
 #: words of a row of the table of outputs
 OUTPUT = ("base", "stride", "groups", "n_groups", "singles", "n_singles")
 
+COLUMNS = "ptr %table, i64 %count, i64 %first, i64 %final, ptr %context, i64 %block"
 ROWS = "ptr %table, i64 %count, i64 %first, ptr %o"
+
+
+def gather(width: int) -> str:
+    """Inputs of the states first, first + 1, ... into the scratch arrays; the last state fills a vector up."""
+    w = AssemblyWriter(width)
+    ahead = list[str]()
+    for lane in range(1, width):
+        beyond = w.do(f"icmp sgt i64 {w.arithmetic('add', '%first', lane)}, %final")
+        ahead.append(w.do(f"select i1 {beyond}, i64 0, i64 -1"))
+    with w.loop("0", "%count") as i:
+        row = w.words(w.offset("%table", w.arithmetic("mul", i, 8 * len(INPUT))), INPUT)
+        starts = [w.offset(w.pointer(row["base"]), w.arithmetic("mul", "%first", row["stride"]))]
+        for mask in ahead:
+            starts.append(w.offset(starts[-1], w.arithmetic("and", row["stride"], mask)))
+        target = scratch_row(w, row["stage"], "%block")
+        with w.loop("0", row["n_pairs"]) as g:
+            at, *targets = _column(w, row["pairs"], g, target, 2)
+            _pair(w, [w.offset(start, at) for start in starts], targets)
+        with w.loop("0", row["n_singles"]) as g:
+            at, to = _column(w, row["singles"], g, target, 1)
+            value = "undef"
+            for lane, start in enumerate(starts):
+                one = w.do(f"load double, ptr {w.offset(start, at)}, align 8")
+                value = w.do(f"insertelement {w.kind} {value}, double {one}, i32 {lane}")
+            w.put(f"store {w.kind} {value}, ptr {to}, align {8 * width}")
+    return w.function("gather", COLUMNS)
+
+
+def scratch_row(w: AssemblyWriter, stage: str, block: str) -> str:
+    """Scratch row of a stage for a vector of the group."""
+    row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))
+    return w.offset(w.pointer(row["base"]), w.arithmetic("mul", block, row["stride"]))
+
+
+def _column(w: AssemblyWriter, table: str, g: str, target: str, count: int) -> list[str]:
+    """Offset of a column, or the first of a pair, in a row of the array, and the addresses of their vectors."""
+    row = w.offset(w.pointer(table), w.arithmetic("mul", g, 8 * (count + 1)))
+    at, *places = (w.do(f"load i64, ptr {w.offset(row, k, 'i64')}, align 8") for k in range(count + 1))
+    return [at, *(w.offset(target, place) for place in places)]
+
+
+def _pair(w: AssemblyWriter, sources: list[str], targets: list[str]) -> None:
+    """Two neighbouring columns: pairs of even and of odd lanes in a vector each, from which every second one is one."""
+    pairs = [w.do(f"load <2 x double>, ptr {source}, align 8") for source in sources]
+    sides, size = [pairs[::2], pairs[1::2]], 2
+    while len(sides[0]) > 1:
+        whole = range(2 * size)
+        sides = [[_mixed(w, f"<{size} x double>", *x, whole) for x in zip(s[::2], s[1::2], strict=True)] for s in sides]
+        size *= 2
+    for k, target in enumerate(targets):
+        order = [lane + k + odd for lane in range(0, w.width, 2) for odd in (0, w.width)]
+        value = _mixed(w, w.kind, sides[0][0], sides[1][0], order)
+        w.put(f"store {w.kind} {value}, ptr {target}, align {8 * w.width}")
+
+
+def _mixed(w: AssemblyWriter, kind: str, a: str, b: str, order: Sequence[int]) -> str:
+    """A shuffle of the elements of two vectors."""
+    indices = ", ".join(f"i32 {k}" for k in order)
+    return w.do(f"shufflevector {kind} {a}, {kind} {b}, <{len(order)} x i32> <{indices}>")
 
 
 def scatter(width: int) -> str:
@@ -88,10 +156,7 @@ def _transposed(w: AssemblyWriter, rows: list[str]) -> list[str]:
     """A square of 2 or 4 vectors, by exchanging blocks."""
     kind = f"<{len(rows)} x i64>"
 
-    def mixed(a: str, b: str, order: tuple[int, ...]) -> str:
-        """A shuffle of the elements of two vectors."""
-        indices = ", ".join(f"i32 {k}" for k in order)
-        return w.do(f"shufflevector {kind} {a}, {kind} {b}, <{len(order)} x i32> <{indices}>")
+    mixed = partial(_mixed, w, kind)
 
     if len(rows) == 2:
         return [mixed(rows[0], rows[1], (0, 2)), mixed(rows[0], rows[1], (1, 3))]
