@@ -97,11 +97,7 @@ def in_momenta(f: ModelFormulas, degree: int) -> Ansatz:
     f.symbols.setdefault("t", Symbol("t", "time", "s"))
     t, slides = f.graph.symbol("t"), [q for q, joint in zip(f.q, f.model.joints, strict=True) if joint == "P"]
     squares = [x * y for x, y in combinations_with_replacement(slides, 2)]
-    V = f.scalar("potential_energy")
-    by = slides if len(slides) > 1 and _is_polynomial(f, V) else []
-    slopes = zip(by, gradient([V], [str(q.value) for q in by])[0], strict=True)
-    # of constant K: d_a U = K_ab d_b V, and k U = q_a d_a U where U is homogeneous of degree k: terms of q_a d_b V
-    potential = _functions(f, [V, *(x * slope for y, slope in slopes for x in slides if x is not y)])
+    potential = _of_potential(f, slides)
     ansatz.add([t, t * t, *f.q, *(x * y for x, y in combinations_with_replacement(f.q, 2))], 0)
     ansatz.add([*potential, *(x * y for x in potential for y in slides)], 0)
     ansatz.add([f.graph.one, t, *slides], 1)
@@ -116,6 +112,15 @@ def in_momenta(f: ModelFormulas, degree: int) -> Ansatz:
         ansatz.add(some, 2)
         ansatz.told = f"quadratic in the momenta with coefficients of degree {power} in slides"
     return ansatz
+
+
+def _of_potential(f: ModelFormulas, slides: Sequence[Expr]) -> list[Expr]:
+    """The functions that V consists of; of a polynomial also what these become in other axes."""
+    V = f.scalar("potential_energy")
+    by = slides if len(slides) > 1 and _is_polynomial(f, V) else []
+    slopes = zip(by, gradient([V], [str(q.value) for q in by])[0], strict=True)
+    # of constant K: d_a U = K_ab d_b V, and k U = q_a d_a U where U is homogeneous of degree k: terms of q_a d_b V
+    return _functions(f, [V, *(x * slope for y, slope in slopes for x in slides if x is not y)])
 
 
 def in_velocities(f: ModelFormulas) -> Ansatz | None:
