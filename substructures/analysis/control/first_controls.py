@@ -42,6 +42,7 @@ def first_variables(search: ShootingProgram) -> Iterator[Array]:
 
 def unmet(search: ShootingProgram, z: Array) -> Array:
     """Which of the equations (rows,) no change of z meets to first order."""
-    residual, by = search.residual(z), search.jacobian(z) * search.units[0]
+    sizes = search.row_sizes
+    residual, by = search.residual(z) / sizes, search.jacobian(z) * search.units[0] / sizes[:, None]
     change = np.linalg.lstsq(by, -residual, rcond=RANK)[0] if len(residual) else np.zeros(len(z))
     return np.asarray(np.abs(by @ change + residual) > MET * np.abs(residual).max(initial=0))

@@ -74,8 +74,9 @@ class Optimum:
     were unknown.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost or, where it
     is larger, to the cost (at least a millionth of what the search took off it) over the largest variable;
-    ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
-    where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
+    ``violation``: largest violation of a demand, over the largest change that is demanded where this is less than 1
+    [rad, m]; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None where H need not be constant.
+    ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
     series of substructures.analysis.control.cost_gradient, and the demands as its checks.
     """
 
@@ -162,7 +163,9 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
 
     options, conditions = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}, list[dict[str, Any]]()
     if search.rows:
-        conditions.append(_scaled("eq", search.residual, search.jacobian, unit))
+        sizes = search.row_sizes
+        left, by_left = (lambda z: search.residual(z) / sizes), (lambda z: search.jacobian(z) / sizes[:, None])
+        conditions.append(_scaled("eq", left, by_left, unit))
     if search.limits_on_path is not None:
         one, by = (lambda z: search.on_path(z)[0]), (lambda z: search.on_path(z)[1])
         conditions.append(_scaled("ineq", one, by, unit))
