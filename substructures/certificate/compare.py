@@ -28,6 +28,10 @@ PRECISIONS = (128, 1024)
 TOLERANCE = 2.0**-40
 #: what needs no closer look
 PRECISE, SMALL, LARGE = 2.0**-80, 1e-200, 1e200
+NOT_FINITE = (
+    "has no finite value where the documents give one; if a law has a root of what is cut off at zero, which has an "
+    "infinite slope there, as max(0, x)^0.5, take sqrt(max(0, x) + 1e-6)"
+)
 
 Expected = Callable[[State], Outputs]
 Index = tuple[int, ...]
@@ -169,9 +173,7 @@ class _Comparison:
             outside.setdefault(name, set()).add(index)
         elif not a.is_finite():
             if last and self._is_inside():
-                raise VerificationFailed(
-                    f"{_place(name, index, values)} has no finite value where the documents give one"
-                )
+                raise VerificationFailed(f"{_place(name, index, values)} {NOT_FINITE}")
             (outside if last else wide).setdefault(name, set()).add(index)
             self.given.setdefault(name, set()).add(index)
         elif not a.overlaps(b):

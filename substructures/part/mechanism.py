@@ -207,7 +207,7 @@ class _Builder:
         if joint.axis is None:
             return IDENTITY
         if joint.placement is None or joint.type not in ("revolute", "prismatic"):
-            message = "'axis' goes with a placement and a revolute or prismatic joint"
+            message = "'axis' goes with a placement, {} where nothing is moved, and a revolute or prismatic joint"
             self.scope.fault(f"{pointer}/axis", "axis-without-placement", message)
             return IDENTITY
         return axis_rotation(self.scope, joint.axis, f"{pointer}/axis")

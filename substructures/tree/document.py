@@ -32,7 +32,11 @@ MOUNT = r"^[A-Za-z][A-Za-z0-9_]{0,63}(\.[A-Za-z][A-Za-z0-9_]{0,63})?$"
 PATTERNS[AT] = lambda text: f"{PLACE}{_example(text)}"
 PATTERNS[MOUNT] = PATTERNS[AT]
 #: the same text as that of coordinates of loads
-PATTERNS[FRAME] = lambda text: f"a name with its instance is needed, as 'instance.name'{_example(text)}"
+PATTERNS[FRAME] = lambda text: (
+    f"a name with its instance is needed, as 'instance.name'{_example(text)}"
+    if text != "world"
+    else "a frame of an instance is needed, as 'instance.port'; of closures 'to' may be the 'world'"
+)
 PATTERNS[REFERENCE] = lambda _: "a reference is a name with its version, as in arm@2, or a name alone"
 
 

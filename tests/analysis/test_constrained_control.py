@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,9 @@ from scipy.integrate import solve_ivp
 from substructures import ControlProblem, Cost, Demands, End, Model, cost_gradient, couple, derive, optimal_control
 from substructures.analysis.control.adjoint import adjoint_equations
 from substructures.analysis.control.closed_start import start_state
+from substructures.analysis.control.first_controls import first_variables, unmet
+from substructures.analysis.control.nonlinear_program import ShootingProgram
+from substructures.analysis.control.optimal_control import Optimum
 from substructures.analysis.control.shooting import Shooting
 from substructures.analysis.equations.nonholonomic.constrained_formulas import ConstrainedFormulas, rows_expected
 from substructures.certificate.derived.adjoint import adjoint
@@ -61,6 +65,35 @@ def test_a_sleigh_is_parked_sideways(model: Model) -> None:
     turn = [1, 0.5, 0, -0.5, -1, -0.5, 0, 0, -0.5, -1, 0, 0.5, 1]
     guess = {"s.u": [1] * 6 + [-1] * 7, "tau.s.f": turn}
     found = optimal_control(model, problem(3, 12), Demands(End([0, 1, 0], [0, 0, 0]), segments=4, guess=guess))
+    assert_parked_sideways(found)
+
+
+def test_a_sleigh_is_parked_sideways_without_a_guess(model: Model) -> None:
+    """At least effort, which the search with a guess does not better."""
+    found = optimal_control(model, problem(3, 12), Demands(End([0, 1, 0], [0, 0, 0]), segments=4))
+    assert_parked_sideways(found)
+    assert found.cost < 10.9
+
+
+def test_where_nothing_goes_to_first_order_controls_swing(model: Model) -> None:
+    """At rest a blade goes sideways by brackets alone: x and f are met to first order, y is not. A
+    guess that is given is the start.
+    """
+    aside, ahead = (Demands(End(end, [0, 0, 0]), segments=1) for end in ([0, 1, 0], [1, 0, 0.5]))
+    search = ShootingProgram(model, problem(3, 6), aside)
+    assert unmet(search, search.guess()).tolist() == [False, True, False, False, False]
+    starts = list(first_variables(search))
+    assert len(starts) > 1
+    assert not unmet(search, starts[0]).any()
+    straight = ShootingProgram(model, problem(3, 6), ahead)
+    (only,) = first_variables(straight)
+    assert not only.any()
+    given = ShootingProgram(model, problem(3, 6), replace(aside, guess={"s.u": 2}))
+    (only,) = first_variables(given)
+    assert only.tolist() == given.guess().tolist()
+
+
+def assert_parked_sideways(found: Optimum) -> None:
     assert found.status == "optimal"
     assert found.is_right
     nodes = np.linspace(0, 3, 13)

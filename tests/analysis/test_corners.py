@@ -100,6 +100,32 @@ def test_what_slides_goes_on() -> None:
     np.testing.assert_allclose(found.q[1:, 0], 0.2, atol=1e-3)
 
 
+#: whose motion stays at a corner: from when on, and where. x'' = -5 from 1 until x + x' = 0; half a swing of
+#: x'' = -2 sign x' - 4 x, which friction ends at -0.3; at rest from the start
+SLIDES = {
+    "-5*sign(x + x')": (1.0, 1 - 5 / 2 * ((35**0.5 - 5) / 5) ** 2, (35**0.5 - 5) / 5),
+    "-2*sign(x') - 4*x": (1.3, -0.3, np.pi / 2),
+    "3*t - 4*sign(x')": (0.0, 0.0, 0.0),
+}
+
+
+@pytest.mark.parametrize("method", ["DOP853", "Radau"])
+@pytest.mark.parametrize(("law", "where"), SLIDES.items())
+def test_what_a_jump_throws_back_from_both_sides_says_so_soon(
+    law: str, where: tuple[float, float, float], method: str
+) -> None:
+    start, end, t = where
+    found = moved(cart(law), 5, start, times=[5], method=method)
+    assert (found.status, found.is_right, found.steps < 2500) == ("failed", None, True)
+    assert "sliding mode" in found.message
+    assert "tanh(x/w)" in found.message
+    np.testing.assert_allclose([found.t[-1], found.q[-1, 0]], [t, end], atol=1e-6)
+    # the way out: from there it slides as x' = -x
+    if law == "-5*sign(x + x')":
+        smooth = moved(cart("-5*tanh(1e5*(x + x'))"), 3, times=[3], method="Radau")
+        np.testing.assert_allclose(smooth.q[-1, 0], end * np.exp(t - 3), rtol=1e-4)
+
+
 def test_from_a_corner_on() -> None:
     """A start in a corner leaves it to a side, or stays in it."""
     thrown = moved(cart("-1*sign(x)"), 4.0, 0.0, 1.0, times=[1.0, 3.0, 4.0])

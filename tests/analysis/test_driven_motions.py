@@ -160,6 +160,36 @@ def test_driven_is_prescribed(lift: Model) -> None:
     assert np.abs(work).max() > 0.1
 
 
+def ramp(t: float, power: int) -> float:
+    """x at a time t of x'' + 4 x = -s'' with s = max(0, t)^power, at rest before."""
+    t = max(0.0, t)
+    return float(np.cos(2 * t) - 1) / 2 if power == 2 else 0.75 * float(np.sin(2 * t)) - 1.5 * t
+
+
+@pytest.mark.parametrize(
+    ("law", "expected"),
+    [
+        ("max(t, 0)^3", ramp(2, 3)),
+        ("max(0, t - p)^3 - max(0, t - 1)^3", ramp(1.5, 3) - ramp(1, 3)),
+        ("max(0, t)*t - max(t - p, 0)^2", ramp(2, 2) - ramp(1.5, 2)),
+        ("(abs(t)*t^2 + t^3)/2", ramp(2, 3)),
+    ],
+)
+def test_powers_of_max_drive_without_a_jump_of_the_velocity(law: str, expected: float) -> None:
+    slide = {"type": "prismatic", "coordinate": "s"}
+    hung = {"type": "prismatic", "coordinate": "x", "stiffness": 4}
+    bodies = [
+        {"name": "a", "parent": "base", "joint": slide, "mass": 1},
+        {"name": "b", "parent": "a", "joint": hung, "mass": 1},
+    ]
+    instance = {"name": "c", "substructure": "carts"}
+    tree = {"gravity": [0, 0, 0], "parameters": {"p": {"value": 0.5}}, "instances": [instance]}
+    model = tree_model({**tree, "driven": {"c.s": law}}, {"carts": {"name": "carts", "bodies": bodies}})
+    motion = simulate(model, [0], (-1, 2))
+    assert motion.is_right
+    np.testing.assert_allclose(motion.q[-1], expected, rtol=1e-9)
+
+
 def test_an_input_drives_as_its_law_does(lift: Model) -> None:
     given = on(LIFT, {"base.z": {"input": True}})
     laws = {"base.z": "A*cos(w*t)", "base.z'": "-A*w*sin(w*t)", "base.z''": "-A*w^2*cos(w*t)"}

@@ -34,6 +34,12 @@ def test_all_four_of_the_double_pendulum() -> None:
     assert list(verdicts.values()).count("unstable") == 3
 
 
+def test_what_is_found_is_gone_through_by_itself() -> None:
+    found = equilibria(catalogue_model("double-pendulum"))
+    assert [*found] == [*found.found]
+    assert (len(found), found[-1]) == (4, found.found[3])
+
+
 @pytest.mark.parametrize("number", seeds(3, 5))
 def test_forces_vanish_on_random_trees(number: int) -> None:
     """What is found is an equilibrium by the independent way over evaluate."""

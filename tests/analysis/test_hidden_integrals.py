@@ -134,6 +134,38 @@ def on_a_sphere(text: str = NEUMANN) -> Model:
     return with_parameters(bodies, text, m=1.5, k1=1.0, k2=2.5, k3=4.0)
 
 
+def on_a_plane(text: str, **values: float) -> Model:
+    """A mass of 1.2 kg on two slides that are normal to each other."""
+    return with_parameters([slide("x", None), slide("y", "m", "on_x", **ACROSS)], text, m=1.2, **values)
+
+
+#: potentials that are separable in other axes, and the integral beside the energy: of x + y and x - y
+#: p_x p_y + m U with U_x = V_y; of x^4 + 12 x^2 y^2 + 16 y^4, the case 1 : 12 : 16 of J. Hietarinta (Physics Reports
+#: 147, 1987, 87-154), that of parabolic coordinates
+SEPARABLE = {
+    "x^4 + 6*x^2*y^2 + y^4": lambda x, y, px, py: px * py + 1.2 * (4 * x**3 * y + 4 * x * y**3),
+    "x^2*y + y^3/3 + x^2 + y^2": lambda x, y, px, py: px * py + 1.2 * (x**3 / 3 + x * y**2 + 2 * x * y),
+    "(x*cos(w) + y*sin(w))^4 + (y*cos(w) - x*sin(w))^2": lambda x, y, px, py: (
+        (px * np.cos(0.3) + py * np.sin(0.3)) ** 2 / 2.4 + (x * np.cos(0.3) + y * np.sin(0.3)) ** 4
+    ),
+    "x^4 + 12*x^2*y^2 + 16*y^4": lambda x, y, px, py: y * px**2 - x * px * py - 1.2 * (4 * x**4 * y + 8 * x**2 * y**3),
+}
+
+
+@pytest.mark.parametrize("text", SEPARABLE)
+def test_potentials_that_are_separable_in_turned_axes_have_a_second_integral(text: str) -> None:
+    model = on_a_plane(text, **({"w": 0.3} if "w" in text else {}))
+    found = [i.name for i in first_integrals(model).integrals if i.rule == "constant"]
+    assert found == ["energy", "quadratic.1"]
+    x, columns = values_of(model, *found)
+    (a, b), (u, v) = x["q"].T, 1.2 * x["qd"].T
+    known = SEPARABLE[text](a, b, u, v)
+    # the published one is a combination of the two that are found
+    _, left, _, _ = np.linalg.lstsq(columns, known, rcond=None)
+    assert left[0] < 1e-20 * np.square(known).sum()
+    assert_held(model)
+
+
 def shaft(damping: float | str = "b") -> Model:
     """A pendulum on a vertical shaft with friction."""
     turned = {"placement": {"rpy": ["pi/2", 0, 0]}}

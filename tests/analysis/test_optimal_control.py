@@ -14,6 +14,7 @@ from scipy.integrate import solve_ivp
 from substructures import InvalidInput, Model
 from substructures.analysis.control.demands import Demands, End
 from substructures.analysis.control.from_fields import control_arguments
+from substructures.analysis.control.motion_sizes import motion_sizes
 from substructures.analysis.control.nonlinear_program import ShootingProgram
 from substructures.analysis.control.optimal_control import Optimum, optimal_control
 from substructures.analysis.control.problem import ControlProblem, Cost
@@ -229,6 +230,27 @@ def test_a_nanokilogram_is_moved_as_well_as_a_kilogram(segments: int) -> None:
     found = optimal_control(nanokilogram(), problem, Demands(End([1], [0]), segments=segments))
     assert found.status == "optimal"
     assert found.cost == pytest.approx(12e-18, rel=1e-6)
+
+
+@pytest.mark.parametrize(("q", "way"), [(0, 1e-9), (0.3, 1e-6)])
+@pytest.mark.parametrize("segments", [1, 4])
+def test_a_nanometre_is_a_way_as_a_metre_is(q: float, way: float, segments: int) -> None:
+    """12 m^2 d^2/T^3 over d in T; a demand that is met by staying is none."""
+    problem = ControlProblem(controls=["tau.x.s"], horizon=2, intervals=8, q=[q], cost=Cost("tau.x.s^2"))
+    found = optimal_control(nanokilogram(), problem, Demands(End([q + way], [0]), segments=segments))
+    assert found.status == "optimal"
+    assert found.is_right
+    assert found.cost == pytest.approx(12e-18 * way**2 / 8, rel=1e-4)
+    assert found.trajectory.q[-1, 0] - q == pytest.approx(way, rel=1e-5)
+
+
+def test_what_rounding_demands_is_no_size() -> None:
+    """0.1 + 0.2 is no move from 0.3: the motion of the rates alone is what counts."""
+    model, start = slider(), np.array([0.3, 0.0])
+    assert motion_sizes(model, start, [(0, 0.1 + 0.2), (1, 0.0)], 2).tolist() == [1, 1]
+    assert motion_sizes(model, start, [(0, 0.3 + 2.0**-10)], 2).tolist() == [2.0**-10, 2.0**-11]
+    assert motion_sizes(model, start, [(0, 0.3), (1, 2.0**-9)], 2).tolist() == [2.0**-8, 2.0**-9]
+    assert motion_sizes(model, start, [(0, 5.0)], 2).tolist() == [1, 1]
 
 
 def test_of_a_nanokilogram_a_free_end_is_as_good() -> None:

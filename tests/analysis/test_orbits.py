@@ -57,7 +57,8 @@ def test_periods_of_a_pendulum(pendulum: Model) -> None:
     amplitudes = [0.5, 1.0, 2.0, 2.6]
     shooting = Shooting(2.1, hold=("p.q1'",))
     found = periodic_orbits(pendulum, [0.5], shooting, vary="p.q1", values=amplitudes)
-    for orbit, amplitude in zip(found.found, amplitudes, strict=True):
+    assert (len(found), found[0]) == (4, found.found[0])
+    for orbit, amplitude in zip(found, amplitudes, strict=True):
         expected = 4 * np.sqrt(1 / G) * ellipk(np.sin(amplitude / 2) ** 2)
         assert (orbit.status, orbit.stability, orbit.is_right) == ("finished", "neutral", True), orbit
         assert orbit.period == pytest.approx(expected, rel=1e-9)

@@ -281,3 +281,46 @@ def test_an_event_that_acts_has_its_name_alone(ball: Model) -> None:
     for events in ([FLOOR, half], [half, FLOOR]):
         with pytest.raises(InvalidArgument, match="/events/1/name: a second event 'floor'"):
             simulate(ball, [1], (0, 3), outputs=Outputs(events=events))
+
+
+#: a block on the flat that needs 2 N to slip
+ROUGH = {**BALL["bodies"][0]["joint"], "friction": {"coulomb": 2, "velocity": 0.001}}
+
+
+def test_what_friction_holds_at_a_wall_stays_there() -> None:
+    """On the flat with mu g = 1 N/kg from 2 m/s to a wall at 1 m that takes its speed: pushed by less than 2 N it stays
+    there, by more the motion ends there, at the wall or where the push has grown.
+    """
+    block = {**BALL, "bodies": [{**BALL["bodies"][0], "joint": ROUGH}]}
+    model, stays = of("b", block, [0, 0, 0]), {"b.z'": 0}
+    wall = Event("wall", "b.z", level=1, direction="rising", reset=stays)
+    given: dict[str, Any] = {"qd": [2], "kind": TreeMotion(friction="exact"), "outputs": Outputs(events=[wall])}
+    held = simulate(model, [0], (0, 3), inputs={"tau.b.z": 1}, **given)
+    # 4 - 2 (2 - tau)/m = v^2 at the wall
+    assert (held.status, len(held.events), held.events[0].qd) == ("finished", 1, pytest.approx([math.sqrt(3)]))
+    assert held.q[-1] == pytest.approx([1], abs=1e-12)
+    pushed = simulate(model, [0], (0, 3), inputs={"tau.b.z": 3}, **given)
+    assert (pushed.status, len(pushed.events)) == ("stopped", 1)
+    later = simulate(model, [0], (0, 3), inputs={"tau.b.z": "t"}, **given)
+    assert (later.status, [each.name for each in later.events]) == ("stopped", ["wall", "b.z", "wall"])
+    assert (later.t[-1], later.q[-1, 0]) == (pytest.approx(2, abs=1e-3), pytest.approx(1, abs=1e-9))
+    assert later.is_right
+
+
+@pytest.mark.parametrize("turn", [(1, 0, 0, 0), (0.8, 0, 0.6, 0)])
+def test_what_floats_does_not_fall_through_either(turn: tuple[float, ...]) -> None:
+    """Its centre comes to rest on the floor at any attitude: v = 0 in the axes of the body."""
+    v, w = [f"v{k}" for k in "xyz"], [f"w{k}" for k in "xyz"]
+    joint = {"type": "floating", "velocities": [*v, *w]}
+    body = {**BALL["bodies"][0], "joint": joint, "inertia": {"xx": 1, "yy": 1, "zz": 1}}
+    model = of("b", {**BALL, "bodies": [body]}, [0, 0, -G])
+    height = model.positions[2]
+    floor = Event("floor", height, direction="falling", reset={f"b.{name}'": 0 for name in v})
+    motion = simulate(model, [0, 0, 1, *turn], (0, 1), outputs=Outputs(events=[floor]))
+    assert (motion.status, len(motion.events), motion.is_right) == ("stopped", 1, True)
+    assert motion.t[-1] == pytest.approx(math.sqrt(2 / G), abs=1e-10)
+    # thrown up instead, at a share of the speed along its own axes
+    thrown = replace(floor, reset={f"b.{name}'": f"-b.{name}'/2" for name in v})
+    back = simulate(model, [0, 0, 1, *turn], (0, 0.7), outputs=Outputs(events=[thrown], times=[0.7]))
+    left = 0.7 - math.sqrt(2 / G)
+    assert back.q[-1, 2] == pytest.approx(math.sqrt(2 * G) / 2 * left - G * left**2 / 2, abs=1e-10)

@@ -84,7 +84,7 @@ DEFINITIONS: list[tuple[str, Path, Any, str, str]] = [
     ("zero joint axis", ("bodies", 2, "joint", "axis"), [0, 0, 0], "bad-axis", ""),
     ("joint axis without a value", ("bodies", 2, "joint", "axis"), ["log(0)", 0, 1], "bad-axis", ""),
     ("joint axis with a parameter", ("bodies", 2, "joint", "axis"), ["l", 0, 0], "unknown-name", "l"),
-    ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "placement"),
+    ("axis without a placement", (*J, "axis"), [1, 0, 0], "axis-without-placement", "a placement, {} where"),
     ("row and placement", (*J, "placement"), {"position": [0, 0, 0]}, "row-and-placement", "placement"),
     ("offset of a compound joint", (*B, "joint", "phi"), 1, "offset-of-compound", "planar"),
     ("stops without limits", (*B, "joint", "limits_act"), {"stiffness": 1}, "stops-without-limits", "limits"),

@@ -18,6 +18,7 @@ from substructures.quantities.numbers.evaluation import EvaluationOptions, evalu
 from substructures.quantities.regressor import regressor
 from substructures.quantities.sources import Sources
 
+LOOP: Plain = {"name": "loop", "type": "pin", "from": "world", "to": "two.tip"}
 INSTANCE: Path = ("instances", 1)
 TREES: list[tuple[str, Path, Any, str, str]] = [
     ("unknown host", (*INSTANCE, "at"), "three.tip", "unknown-instance", "three"),
@@ -42,6 +43,7 @@ TREES: list[tuple[str, Path, Any, str, str]] = [
     ("gravity of two", ("gravity",), [0, 0], "missing", ""),
     ("division by a constant zero", ("gravity", 0), "g/0", "bad-expression", "division by zero"),
     ("no substructure", (*INSTANCE, "substructure"), ..., "one-source", "definition"),
+    ("closure from the world", ("closures",), [LOOP], "string-pattern-mismatch", "'to' may be the 'world'"),
     ("malformed reference", (*INSTANCE, "substructure"), "../etc", "string-pattern-mismatch", "../etc"),
 ]
 

@@ -280,6 +280,9 @@ def test_inputs_may_drive() -> None:
         ({"x.b": "t"}, "/driven/x.b", "unknown-coordinate", "no coordinate 'x.b'; did you mean 'x.a'"),
         ({"a": "t"}, "/driven/a", "string-pattern-mismatch", "a name with its instance"),
         ({"x.a": "abs(t)"}, "/driven/x.a", "kink", "must not jump, .* take step"),
+        ({"x.a": "max(0, t)*(t - 1)"}, "/driven/x.a", "kink", r"as max\(0, t - 1\)\^2"),
+        ({"x.a": "max(0, sin(t))^2"}, "/driven/x.a", "kink", "must not jump"),
+        ({"x.a": "max(0, t)^2*sign(t - 1)"}, "/driven/x.a", "kink", "must not jump"),
         ({"x.a": "table(t; 0:0, 1:1)"}, "/driven/x.a", "kink", "linear tables"),
         ({"x.a": "table(t; 0:0, 1:1, 2:0.5; monotone)"}, "/driven/x.a", "kink", "monotone ones that do not end flat"),
         (

@@ -17,6 +17,7 @@ from substructures.analysis.simulate import simulate
 from substructures.analysis.stability.equilibria import equilibria
 from substructures.analysis.stability.linearise import linearise
 from substructures.certificate.compare import TOLERANCE
+from substructures.errors import VerificationFailed
 from substructures.pictures.tree import picture
 from substructures.quantities.numbers.evaluation import evaluate
 
@@ -327,3 +328,15 @@ def test_zero_distance_is_told() -> None:
     answer = evaluate(model, ["forces"], q=[[0, 0], [1, 0]])
     assert np.isfinite(answer["forces"][0]).all()
     assert [(f.state, f.code) for f in answer.failures] == [(1, "not-finite")]
+
+
+def test_a_root_of_what_is_cut_off_says_what_to_take_instead() -> None:
+    """Its force is infinite at the edge; with a small number below the root it has energy to lose."""
+    spec, parts = tree("cart", {"type": "potential", "name": "edge", "potential": "max(0, a.x)^0.5"})
+    with pytest.raises(VerificationFailed, match=r"infinite slope there, .* take sqrt\(max\(0, x\) \+ 1e-6\)"):
+        couple(spec, parts)
+    spec, parts = tree("cart", {"type": "potential", "name": "edge", "potential": "sqrt(max(0, a.x) + 1e-6)"})
+    motion = simulate(couple(spec, parts), [0.5, 0], (0, 3))
+    assert motion.is_right
+    # m v^2/2 = V(0.5) - V(0), m = 2 kg
+    np.testing.assert_allclose(motion.qd[-1, 0] ** 2, (0.5 + 1e-6) ** 0.5 - 1e-3, rtol=1e-8)

@@ -51,9 +51,10 @@ class Demands:
     interval is a segment then). Unknown beside the controls: ``free_parameters``, between two values each, from
     those of the problem on; with ``free_horizon`` [s], least and largest, the horizon, from that of the problem on.
 
-    ``guess``: controls to begin with, by name one number or one for each node; ``warm_start``: an earlier Optimum, or
-    its JSON, whose motion, controls, parameters and horizon the search begins with. ``segments``: divides the intervals
-    (default: the largest such up to 10); ``tolerance``: change of the cost at which the search ends, after
+    ``guess``: controls to begin with, by name one number or one for each node (default: 0, or waves, where no change of
+    0 meets the demands to first order, as with a blade at rest); ``warm_start``: an earlier Optimum, or its JSON, whose
+    motion, controls, parameters and horizon the search begins with. ``segments``: divides the intervals (default: the
+    largest such up to 10); ``tolerance``: change of the cost at which the search ends, after
     ``iterations`` at the latest. Raises InvalidArgument.
     """
 

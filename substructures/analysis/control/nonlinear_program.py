@@ -15,6 +15,7 @@ import numpy as np
 from substructures.analysis.control.adjoint import HORIZON
 from substructures.analysis.control.closed_start import independent_demands, start_state
 from substructures.analysis.control.demands import Demands, bounds_of, demanded, ranges_of, rows_of, segments_of
+from substructures.analysis.control.motion_sizes import motion_sizes, power_of_2
 from substructures.analysis.control.path_limits import PathLimits
 from substructures.analysis.control.problem import ControlProblem, per_node
 from substructures.analysis.control.rollout import Rollout, Slope
@@ -53,6 +54,7 @@ class ShootingProgram:
         start = start_state(model, problem, named)
         self.first, self.demands = start.x, independent_demands(start, demands)
         self.wanted_rows, self.wanted_values = rows_of(model, self.demands)
+        self.sizes = motion_sizes(model, self.first, self.demands, problem.horizon)
         self.bounds = bounds_of(problem.controls, wanted)
         self.ranges = ranges_of(wanted)
         self.m = len(problem.controls)
@@ -239,34 +241,38 @@ class ShootingProgram:
 
     @cached_property
     def units(self) -> tuple[Array, float]:
-        """What variables (size,) and the cost are measured in: a control in what moves the end by 1 [rad, m; s], all
-        others in 1; the cost in what such controls change it by, at most in 1. Powers of 2: nothing is rounded.
+        """What variables (size,) and the cost are measured in: a control in what moves the end by the size of the
+        motion, states in that, all others in 1; the cost in what such controls change it by, at most in 1. Powers of 2:
+        nothing is rounded.
         """
         z = self.guess()
         unit = np.ones(len(z))
+        unit[self.split : self.own] = np.tile(self.sizes, self.S - 1)
         if not self.m:
             return unit, 1.0
         shooting, ends = self.shooting_at(z), np.repeat(np.eye(self.size)[:, None], self.S, axis=1)
         run = shooting.run(*self.parts(z))
         # sum over nodes of |d end/d u|
-        effect = np.abs(shooting.pullback(run, ends, np.zeros(self.size)).parts).sum(axis=(1, 2)).max(axis=0)
-        unit[: self.split] = np.tile([_power(1 / x) if x > 0 else 1.0 for x in effect], self.problem.nodes)
+        effects = np.abs(shooting.pullback(run, ends, np.zeros(self.size)).parts).sum(axis=(1, 2))
+        effect = (effects / self.sizes[:, None]).max(axis=0)
+        unit[: self.split] = np.tile([power_of_2(1 / x) if x > 0 else 1.0 for x in effect], self.problem.nodes)
         z[: self.split] += unit[: self.split]
-        return unit, _power(min(abs(self.cost(z)[0] - run.cost), 1.0))
+        return unit, power_of_2(min(abs(self.cost(z)[0] - run.cost), 1.0))
+
+    @cached_property
+    def row_sizes(self) -> Array:
+        """Of the residual (rows,)."""
+        demanded = np.abs(self.wanted_rows) @ self.sizes
+        return np.concatenate([np.tile(self.sizes, self.S - 1), np.where(demanded > 0, demanded, 1.0)])
 
     def violation(self, z: Array) -> float:
-        """The largest violation of a demand."""
+        """The largest violation of a demand, relative to the size of the motion where this is small."""
         outside = -float(self.on_path(z)[0].min(initial=0))
-        return max(float(np.abs(self.residual(z)).max(initial=0)), outside)
+        return max(float(np.abs(self.residual(z) / self.row_sizes).max(initial=0)), outside)
 
     def progress(self, z: Array) -> tuple[float, float]:
         """Cost, and the largest violation."""
         return self.cost(z)[0], self.violation(z)
-
-
-def _power(x: float) -> float:
-    """The power of 2 next to a positive number; 1 where it is none."""
-    return float(np.exp2(np.round(np.log2(x)))) if 0 < x < np.inf else 1.0
 
 
 def _warm(problem: ControlProblem, earlier: WarmStart, controls: Array) -> None:

@@ -31,6 +31,7 @@ import scipy
 from substructures.analysis.arguments import positive
 from substructures.analysis.control.cost_gradient import trajectory
 from substructures.analysis.control.demands import Demands
+from substructures.analysis.control.first_controls import first_variables
 from substructures.analysis.control.nonlinear_program import BEYOND, ShootingProgram
 from substructures.analysis.control.problem import ERROR_LIMIT, ControlProblem, require_solvable
 from substructures.analysis.control.rollout import Rollout
@@ -73,8 +74,9 @@ class Optimum:
     were unknown.
     ``stationarity``: largest derivative of the Lagrangian by a free variable, relative to that of the cost or, where it
     is larger, to the cost (at least a millionth of what the search took off it) over the largest variable;
-    ``violation``: largest violation of a demand; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None
-    where H need not be constant. ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
+    ``violation``: largest violation of a demand, over the largest change that is demanded where this is less than 1
+    [rad, m]; ``hamiltonian_drift``: (max H - min H)/max |H| along the motion, None where H need not be constant.
+    ``history``: (cost, violation) after every iteration (K, 2). ``trajectory`` has the
     series of substructures.analysis.control.cost_gradient, and the demands as its checks.
     """
 
@@ -130,9 +132,8 @@ def optimal_control(
 
 
 def _searched(search: ShootingProgram, limit: float, progress: IterationReport | None) -> Optimum:
-    """The result of the search from the guess."""
-    z = search.guess()
-    history = [search.progress(z)]
+    """The result of the search from the guess, or from where one can start."""
+    history, iterations, met = list[tuple[float, float]](), 0, max(1e-6, 10 * search.wanted.tolerance)
 
     def note(x: Array) -> None:
         """Keep cost and violation of an iterate, and tell them."""
@@ -140,8 +141,13 @@ def _searched(search: ShootingProgram, limit: float, progress: IterationReport |
         if progress is not None:
             progress(len(history) - 1, *history[-1])
 
-    found = _solve(search, z, note)
-    return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), int(found.nit), limit)
+    for z in first_variables(search):
+        history.append(search.progress(z))
+        found = _solve(search, z, note)
+        iterations += int(found.nit)
+        if search.violation(found.x) <= met:
+            break
+    return _judged(search, np.asarray(found.x, dtype=np.float64), np.array(history), iterations, limit, met)
 
 
 def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> Any:
@@ -157,7 +163,9 @@ def _solve(search: ShootingProgram, z: Array, note: Callable[[Array], None]) -> 
 
     options, conditions = {"maxiter": wanted.iterations, "ftol": wanted.tolerance}, list[dict[str, Any]]()
     if search.rows:
-        conditions.append(_scaled("eq", search.residual, search.jacobian, unit))
+        sizes = search.row_sizes
+        left, by_left = (lambda z: search.residual(z) / sizes), (lambda z: search.jacobian(z) / sizes[:, None])
+        conditions.append(_scaled("eq", left, by_left, unit))
     if search.limits_on_path is not None:
         one, by = (lambda z: search.on_path(z)[0]), (lambda z: search.on_path(z)[1])
         conditions.append(_scaled("ineq", one, by, unit))
@@ -175,14 +183,15 @@ def _scaled(kind: str, one: Callable[[Array], Array], by: Callable[[Array], Arra
     return {"type": kind, "fun": lambda y: one(y * unit), "jac": lambda y: by(y * unit) * unit}
 
 
-def _judged(search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float) -> Optimum:
+def _judged(
+    search: ShootingProgram, z: Array, history: Array, iterations: int, error_limit: float, limit: float
+) -> Optimum:
     """The necessary conditions at z."""
     cost, _ = search.cost(z)
     costs = history[:, 0][history[:, 0] < BEYOND]
     least = NONE * float(costs.max(initial=cost) - cost)
     nu, stationarity = _multipliers(search, z, least)
     violation = search.violation(z)
-    limit = max(1e-6, 10 * search.wanted.tolerance)
     status: Literal["optimal", "feasible", "failed"] = "failed"
     if violation <= limit and cost < BEYOND:
         status = "optimal" if stationarity <= STATIONARY else "feasible"

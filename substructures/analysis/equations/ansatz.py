@@ -16,6 +16,7 @@ from typing import Any
 from substructures.analysis.equations.formulas import ModelFormulas
 from substructures.errors import TooLarge
 from substructures.expr.calculus.integrate import symbols_of
+from substructures.expr.differentiate import gradient
 from substructures.expr.graph import Expr
 from substructures.expr.program import Program, Symbol, array, program
 from substructures.expr.rings.expand import Expanded, Term, expand
@@ -96,7 +97,7 @@ def in_momenta(f: ModelFormulas, degree: int) -> Ansatz:
     f.symbols.setdefault("t", Symbol("t", "time", "s"))
     t, slides = f.graph.symbol("t"), [q for q, joint in zip(f.q, f.model.joints, strict=True) if joint == "P"]
     squares = [x * y for x, y in combinations_with_replacement(slides, 2)]
-    potential = _functions(f, [f.scalar("potential_energy")])
+    potential = _of_potential(f, slides)
     ansatz.add([t, t * t, *f.q, *(x * y for x, y in combinations_with_replacement(f.q, 2))], 0)
     ansatz.add([*potential, *(x * y for x in potential for y in slides)], 0)
     ansatz.add([f.graph.one, t, *slides], 1)
@@ -111,6 +112,15 @@ def in_momenta(f: ModelFormulas, degree: int) -> Ansatz:
         ansatz.add(some, 2)
         ansatz.told = f"quadratic in the momenta with coefficients of degree {power} in slides"
     return ansatz
+
+
+def _of_potential(f: ModelFormulas, slides: Sequence[Expr]) -> list[Expr]:
+    """The functions that V consists of; of a polynomial also what these become in other axes."""
+    V = f.scalar("potential_energy")
+    by = slides if len(slides) > 1 and _is_polynomial(f, V) else []
+    slopes = zip(by, gradient([V], [str(q.value) for q in by])[0], strict=True)
+    # of constant K: d_a U = K_ab d_b V, and k U = q_a d_a U where U is homogeneous of degree k: terms of q_a d_b V
+    return _functions(f, [V, *(x * slope for y, slope in slopes for x in slides if x is not y)])
 
 
 def in_velocities(f: ModelFormulas) -> Ansatz | None:
@@ -146,13 +156,27 @@ def _functions(f: ModelFormulas, exprs: Iterable[Expr]) -> list[Expr]:
     return list(dict.fromkeys(x for x in found if not symbols_of([x]) <= fixed and not symbols_of([x]) & inputs))
 
 
+def _is_polynomial(f: ModelFormulas, x: Expr) -> bool:
+    """Whether a formula is a polynomial in coordinates, with parameters in its coefficients."""
+    fixed = {name for name, s in f.symbols.items() if s.kind == "parameter"}
+    for form in _forms([x]):
+        atoms = [atom for term in form.denominator for atom in term.atoms()]
+        atoms += [a for term in form.terms for a, _ in term.angle]
+        powers = [
+            (atom, power) for term in form.terms for atom, power in term.powers if not symbols_of([atom]) <= fixed
+        ]
+        return symbols_of(atoms) <= fixed and all(atom.op == "sym" and power > 0 for atom, power in powers)
+    return False
+
+
 def _of_state(term: Term, f: ModelFormulas, fixed: set[str]) -> Expr:
     """A term without its number and parameters."""
     result = f.graph.one
     for x, power in term.powers:
         if not symbols_of([x]) <= fixed:
             result = times_power(result, x, power)
-    return result * _wave(term.trig, term.angle, f) if term.trig else result
+    is_moving = not symbols_of(a for a, _ in term.angle) <= fixed
+    return result * _wave(term.trig, term.angle, f) if is_moving else result
 
 
 def _wave(trig: str, angle: Iterable[tuple[Expr, Any]], f: ModelFormulas) -> Expr:

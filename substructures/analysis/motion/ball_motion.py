@@ -39,7 +39,7 @@ from substructures.analysis.motion.judges.states import (
 )
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import MotionProblem
-from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
+from substructures.analysis.motion.resets import Accelerations, Resets, acting, simulate_with_resets
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
 from substructures.analysis.motion.trajectory import Trajectory, crossings
@@ -141,12 +141,19 @@ def simulate_balls(problem: MotionProblem, kind: TreeMotion) -> Trajectory:
     _require_known(problem, kind)
     conditions = _conditions(problem)
     if acting(problem.events):
-        return simulate_with_resets(problem, Resets(problem, conditions), lambda p: _simulate(p, _conditions(p)))
+        resets = Resets(problem, conditions, partial(_accelerations, conditions, problem))
+        return simulate_with_resets(problem, resets, lambda p: _simulate(p, _conditions(p)))
     return _simulate(problem, conditions)
 
 
 def _conditions(problem: MotionProblem) -> Conditions:
     return read_conditions(problem.model, problem.start, problem.span, NEEDS, problem.events, problem.series)
+
+
+def _accelerations(conditions: Conditions, problem: MotionProblem) -> Accelerations:
+    """The function (t, x) -> v'."""
+    f = BallRates(conditions, problem.integrator.folder)
+    return lambda t, x: f(t, np.append(x, 0.0))[f.m : -1]
 
 
 def _simulate(problem: MotionProblem, conditions: Conditions) -> Trajectory:

@@ -32,6 +32,8 @@ CORNERS = "corners"
 MOST = 64
 #: how far one looks ahead to see on which side of a corner a motion is, as a part of the time that it takes to change
 AHEAD = 1e-6
+#: so much of x' jumps at least where a motion slides
+JUMPS = 1e-9
 
 
 @dataclass(frozen=True)
@@ -167,7 +169,7 @@ def follow(
             law.plain()
 
     corners = Corners(places, levels, rates, leave)
-    if corners.begin(*start):
+    if corners.begin(*start) or any(corners.slides(k, *start) for k in np.flatnonzero(levels(*start) == 0).tolist()):
         return corners.watches
     leave()
     return []
@@ -228,6 +230,15 @@ class Corners:
         middle = x + h / 2 * rates
         return float(np.sign(self.places(t + h, x + h * self._rates(t + h / 2, middle))[k]))
 
+    def slides(self, k: int, t: float, x: Array) -> bool:
+        """Whether a motion at a corner comes back from both sides, as x' is another one there."""
+        kept, found = self.side(k), list[Array]()
+        for side in (1.0, -1.0):
+            self.take(k, side)
+            found += [self._rates(t, x)] if self.ahead(k, t, x) == -side else []
+        self.take(k, kept)
+        return len(found) > 1 and bool(np.abs(found[0] - found[1]).max() > JUMPS * np.abs(found).max())
+
     def _place(self, k: int) -> Callable[[float, Array], float]:
         return lambda t, x: float(self.places(t, x)[k])
 
@@ -247,8 +258,13 @@ class _Side:
         self.corners.take(self.number, side)
 
     def stays(self, t: float, x: Array) -> bool:
-        """Whether the motion goes on at that side; if not, no corner has one any more."""
-        found = self.corners.ahead(self.number, t, x) == self.side
-        if not found:
-            self.corners.leave()
-        return found
+        """Whether the motion goes on at that side."""
+        return self.corners.ahead(self.number, t, x) == self.side
+
+    def slides(self, t: float, x: Array) -> bool:
+        """Whether it comes back from both sides."""
+        return self.corners.slides(self.number, t, x)
+
+    def leave(self) -> None:
+        """No corner has a side any more."""
+        self.corners.leave()

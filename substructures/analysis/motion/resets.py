@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any, Literal, TypeVar
 
@@ -22,7 +22,6 @@ from substructures.analysis.motion.problems.event_gaps import GAPS, gap_rates
 from substructures.analysis.motion.problems.events import DIRECTIONS, Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import MotionProblem, Start
-from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.verdict import Check
 from substructures.array import Array
@@ -40,6 +39,8 @@ MOST = 10_000
 NONE = 1e-6
 Status = Literal["finished", "stopped", "failed"]
 Problem = TypeVar("Problem", bound=MotionProblem)
+#: the accelerations (n,) at a time and a state
+Accelerations = Callable[[float, Array], Array]
 ENERGY = ("metric", "potential_energy")
 
 
@@ -48,15 +49,28 @@ def acting(events: Sequence[Event]) -> bool:
     return any(event.reset for event in events)
 
 
+@dataclass(frozen=True)
+class Rest:
+    """What rests at the level of an event: it is carried ``across``, or held there by what has a limit (friction), so
+    that the event is to act again where it goes this ``depth`` beyond.
+    """
+
+    depth: float
+    across: bool
+
+
+NOT_AT_REST = Rest(0.0, across=False)
+
+
 class Resets:
-    """What events make of states; ``dynamics``: gives the accelerations, by which it is looked whether they bring
-    something to rest; none where joints stick (exact friction), and with ball joints.
+    """What events make of states; ``dynamics``: makes the function (t, x) -> accelerations (n,), by which it is looked
+    whether they bring something to rest; None where nobody asks.
 
     Raises InvalidArgument for names that are no coordinates or velocities, and for events without a direction, which
     would happen again where they have happened."""
 
     def __init__(
-        self, problem: MotionProblem, conditions: Conditions, dynamics: Callable[[], RightHandSide] | None = None
+        self, problem: MotionProblem, conditions: Conditions, dynamics: Callable[[], Accelerations] | None = None
     ) -> None:
         self.conditions, self.events = conditions, problem.events
         self._dynamics = dynamics
@@ -100,27 +114,29 @@ class Resets:
         inputs = {name: float(u[0]) for name, u in self.conditions.inputs_at(np.array([t]), x[None]).items()}
         return {**self.conditions.values, **inputs, **dict(zip(state_names(self.conditions.model), x, strict=True))}
 
-    def draws_across(self, event: int, t: float, x: Array, y: Array, span: float) -> bool:
-        """Whether the state y that an event makes of x stays at its level, g' = 0 beside that at x, and g'' carries it
-        across once more: a ball that does not bounce. ``span``: of the motion [s].
+    def at_rest(self, event: int, t: float, x: Array, y: Array, span: float) -> Rest:
+        """Whether the state y that an event makes of x stays at its level, g' = 0 beside that at x, and whether g''
+        carries it across once more: a ball that does not bounce. ``span``: of the motion [s].
         """
         if self._dynamics is None:
-            return False
+            return NOT_AT_REST
         (here, before, _), (there, after, bend) = self._gap(event, t, x), self._gap(event, t, y)
-        is_held = abs(there) <= abs(here) + NONE**2 * abs(before) * span and abs(after) <= NONE * abs(before)
-        return is_held and DIRECTIONS[self.events[event].direction] * bend * span > NONE * abs(before)
+        depth, carried = NONE**2 * abs(before) * span, DIRECTIONS[self.events[event].direction] * bend * span
+        if abs(there) > abs(here) + depth or abs(after) > NONE * abs(before):
+            return NOT_AT_REST
+        is_held = abs(carried) <= NONE * abs(before)
+        return Rest(depth if is_held else 0.0, not is_held and carried > 0)
 
     def _gap(self, event: int, t: float, x: Array) -> tuple[float, float, float]:
         """What the quantity of an event is from its level at a state, and the first two derivatives by the time."""
-        model, (source, rates) = self.conditions.model, self._gaps
-        second, _, _ = source.evaluate(t, x)
-        values = self._values(t, x) | {"t": t} | {f"{q}''": a for q, a in zip(model.coordinates, second, strict=True)}
-        found = interpret(rates, values)
+        model, (second, rates) = self.conditions.model, self._gaps
+        accelerations = {f"{q}''": a for q, a in zip(model.coordinates, second(t, x).tolist(), strict=True)}
+        found = interpret(rates, self._values(t, x) | {"t": t} | accelerations)
         g, by_t, by_tt = (float(found[name][event]) for name in GAPS)
         return g, by_t, by_tt
 
     @cached_property
-    def _gaps(self) -> tuple[RightHandSide, Program]:
+    def _gaps(self) -> tuple[Accelerations, Program]:
         assert self._dynamics is not None  # noqa: S101 -- asked before
         return self._dynamics(), gap_rates(self.conditions.model, self.events)
 
@@ -157,13 +173,13 @@ def simulate_with_resets(problem: Problem, resets: Resets, move: Callable[[Probl
         told = replace(last, after=(y[:n], y[n:]), energy_change=change)
         piece = replace(piece, events=(*piece.events[:-1], told))
         soon = soon + 1 if last.t - t <= SOON * (span[1] - span[0]) else 0
-        if np.isfinite(y).all() and resets.draws_across(k, last.t, x, y, span[1] - span[0]):
-            soon = MANY
+        rest = resets.at_rest(k, last.t, x, y, span[1] - span[0]) if np.isfinite(y).all() else NOT_AT_REST
+        soon = MANY if rest.across else soon
         why = ("finished", "") if last.t >= span[1] else _why_not(last, y, soon, len(pieces) + 1)
         if why is not None:  # the state before the event is the last result
             return replace(_joined([*pieces, piece]), status=why[0], message=why[1])
         pieces.append(_without_its_end(piece, due))
-        whole = replace(whole, events=_to_come(whole.events, piece))
+        whole = replace(whole, events=_to_come(problem.events, whole.events, piece, rest.depth))
         start, t = replace(start, q=y[:n].tolist(), qd=y[n:].tolist()), last.t
 
 
@@ -183,10 +199,15 @@ def _from(whole: Problem, start: Start, t: float, due: Array, steps: int) -> Pro
     return replace(whole, start=start, times=times, integrator=left)
 
 
-def _to_come(events: Sequence[Event], piece: Trajectory) -> list[Event]:
-    """What is left of the counts of events that do not act."""
-    met = Counter(event.name for event in piece.events)
-    return [event if event.reset else replace(event, count=max(1, event.count - met[event.name])) for event in events]
+def _to_come(given: Sequence[Event], events: Sequence[Event], piece: Trajectory, depth: float) -> list[Event]:
+    """What is left of the counts of events that do not act; the one that acted last has its level so much deeper."""
+    met, acted = Counter(event.name for event in piece.events), piece.events[-1].name
+    return [
+        replace(event, level=first.level + (DIRECTIONS[event.direction] * depth if event.name == acted else 0.0))
+        if event.reset
+        else replace(event, count=max(1, event.count - met[event.name]))
+        for first, event in zip(given, events, strict=True)
+    ]
 
 
 def _forwards(report: ProgressReport | None) -> ProgressReport | None:

@@ -27,7 +27,7 @@ from substructures.analysis.motion.judges.integrals import AlongMotion, integral
 from substructures.analysis.motion.judges.states import MotionStates, unbalanced
 from substructures.analysis.motion.problems.kinds import TreeMotion
 from substructures.analysis.motion.problems.problem import TAYLOR, MotionProblem
-from substructures.analysis.motion.resets import Resets, acting, simulate_with_resets
+from substructures.analysis.motion.resets import Accelerations, Resets, acting, simulate_with_resets
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
@@ -85,10 +85,12 @@ def simulate_tree(problem: TreeProblem) -> Trajectory:
     and MissingValue.
     """
     conditions = tree_conditions(problem)
-    _check_method(conditions, problem)
+    if problem.integrator.fixed_step is not None:
+        require_no_stops(problem.events)
+    elif problem.integrator.method == TAYLOR:
+        require_taylor(list(conditions.curves), problem.integrator.max_step)
     if acting(problem.events):
-        dynamics = None if problem.kind.friction == "exact" else partial(_right_hand_side, conditions, problem)
-        resets = Resets(problem, conditions, dynamics)
+        resets = Resets(problem, conditions, partial(_accelerations, conditions, problem))
         return simulate_with_resets(problem, resets, lambda p: _simulate(p, tree_conditions(p)))
     return _simulate(problem, conditions)
 
@@ -137,6 +139,12 @@ def _right_hand_side(conditions: Conditions, problem: TreeProblem) -> RightHandS
     return RightHandSide(*given, folder)
 
 
+def _accelerations(conditions: Conditions, problem: TreeProblem) -> Accelerations:
+    """The function (t, x) -> q'', with what sticks at rest."""
+    f = _right_hand_side(conditions, problem)
+    return _dry(conditions, f).settled if problem.kind.friction == "exact" else lambda t, x: f.evaluate(t, x)[0]
+
+
 def _unfit(conditions: Conditions, problem: TreeProblem, f: RightHandSide, x: Array) -> str:
     """Why there are no accelerations at the start that formulas of them can be trusted with."""
     try:
@@ -164,14 +172,6 @@ def tree_conditions(problem: MotionProblem) -> Conditions:
     """Check a problem against its model, which has no closures. Raises InvalidInput and MissingValue."""
     require_tree(problem.model, "TreeMotion")
     return read_conditions(problem.model, problem.start, problem.span, DYNAMICS, problem.events, problem.series)
-
-
-def _check_method(conditions: Conditions, problem: TreeProblem) -> None:
-    if problem.integrator.fixed_step is None:
-        if problem.integrator.method == TAYLOR:
-            require_taylor(list(conditions.curves), problem.integrator.max_step)
-    else:
-        require_no_stops(problem.events)
 
 
 def _moved(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -106,6 +106,15 @@ class Family:
     found: tuple[Orbit, ...]
     bifurcations: tuple[OrbitBifurcation, ...] = ()
     message: str = ""
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def __iter__(self) -> Iterator[Orbit]:
+        return iter(self.found)
+
+    def __getitem__(self, k: int) -> Orbit:
+        return self.found[k]
 
     @property
     def is_right(self) -> bool | None:

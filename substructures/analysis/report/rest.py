@@ -32,7 +32,7 @@ class Rest:
     @property
     def places(self) -> list[Equilibrium]:
         """All that were found, stable ones first."""
-        return sorted(self.found.found if self.found else (), key=lambda place: VERDICTS.index(place.verdict))
+        return sorted(self.found or (), key=lambda place: VERDICTS.index(place.verdict))
 
 
 def rest_of(model: Model) -> Rest:

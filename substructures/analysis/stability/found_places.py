@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol, TypeVar
 
@@ -30,12 +30,22 @@ P = TypeVar("P", bound=Place, covariant=True)
 
 @dataclass(frozen=True, repr=False)
 class FoundPlaces(Generic[P]):
-    """All that were found, in the order of their coordinates; ``message``: advice when nothing was found, and what was
-    left out. Each place has a check, and a verdict, of its own; there is none that a check contradicts.
+    """All that were ``found``, one after the other, in the order of their coordinates; ``message``: advice when nothing
+    was found, and what was left out. Each place has a check, and a verdict, of its own; there is none that a check
+    contradicts.
     """
 
     found: tuple[P, ...]
     message: str = field(default="", kw_only=True)
+
+    def __len__(self) -> int:
+        return len(self.found)
+
+    def __iter__(self) -> Iterator[P]:
+        return iter(self.found)
+
+    def __getitem__(self, k: int) -> P:
+        return self.found[k]
 
     @property
     def checks(self) -> tuple[Check, ...]:

@@ -109,6 +109,34 @@ def between_corners(exprs: Sequence[Expr], work: Callable[[list[Expr]], list[Exp
     return transfer(work(smooth), graph, signs)
 
 
+def has_smooth_rate(expr: Expr, name: str) -> bool:
+    """Whether it is shown that neither a formula nor its derivative by a symbol jumps at corners |a t + b|, or their
+    signs: on both sides of each the two have one value at t = -b/a, whatever the sides of other corners.
+    """
+    graph, vanishes = expr.graph, VanishingOnAllSides(expr.graph)
+    for x in dict.fromkeys(map(inner, corners([expr]))):
+        a = derivative(x, name)
+        if corners([x]) or _names([a], name):
+            return False
+        if a.is_zero:
+            continue
+        own = [node for node in corners([expr]) if inner(node) is x]
+        one, other = (on_side([expr], dict.fromkeys(own, side))[0] for side in (1, -1))
+        rate, _ = between_corners([one - other], lambda some: [derivative(some[0], name), some[0]])
+        try:
+            zero = -transfer([x], graph, {name: graph.zero})[0] / a
+            left = transfer([one - other, rate], graph, {name: zero})
+        except ZeroDivisionError:
+            return False
+        if not all(map(vanishes, left)):
+            return False
+    return True
+
+
+def _names(exprs: Sequence[Expr], name: str) -> bool:
+    return any(node.op == "sym" and node.value == name for node in reachable(exprs))
+
+
 class VanishingOnAllSides:
     """The test of :class:`~substructures.expr.calculus.vanish.Vanishing` for formulas of one graph with corners."""
 

@@ -33,7 +33,7 @@ from typing import Any
 from substructures.documents import escape
 from substructures.documents.fields import in_si
 from substructures.errors import among
-from substructures.expr.calculus.corners import corners, rates
+from substructures.expr.calculus.corners import corners, has_smooth_rate, rates
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.laws.formulas import SLOPES
 from substructures.expr.operations import Symbol
@@ -117,8 +117,8 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
             s = scope.read(motion, pointer, lambda word: time if word == "t" else reading.parameter(word))  # noqa: B023
             if _has_kink(motion, s):
                 message = (
-                    "the velocity of a driven coordinate must not jump, as with |x|, sign, min, max, linear tables, "
-                    "and at the ends of monotone ones that do not end flat"
+                    "the velocity of a driven coordinate must not jump, as with |t|, sign, min, max (but in powers, as "
+                    "max(0, t - 1)^2), linear tables, and at the ends of monotone ones that do not end flat"
                 )
                 scope.fault(pointer, "kink", f"{message}: take step, tanh or smooth tables, or give {{'input': true}}")
             else:
@@ -129,10 +129,14 @@ def given_motions(assembly: Assembly) -> dict[str, Given]:
 
 
 def _has_kink(motion: Any, s: Expr) -> bool:
-    """Whether a motion may have one: by the functions in its text, and corners beside those that are smooth there."""
+    """Whether a motion may have one: by the functions in its text, and corners beside those that are smooth there, as
+    max(0, t)^2 is.
+    """
     steps = [step for step in steps_of(str(in_si(motion))) if step.op in ("call", "table")]
-    if any(step.value in JUMPING or (isinstance(step.value, Knots) and not _ends_flat(step.value)) for step in steps):
+    if any(isinstance(step.value, Knots) and not _ends_flat(step.value) for step in steps):
         return True
+    if any(step.value in JUMPING for step in steps):
+        return not has_smooth_rate(s, "t")
     is_smooth = any(step.value in SMOOTH or isinstance(step.value, Knots) for step in steps)
     return not is_smooth and bool(corners([s]))
 

@@ -132,6 +132,11 @@ class DryMotion:
             second[places[stuck]] = 0.0
         return second, force, power + float(force @ v)
 
+    def settled(self, t: float, x: Array) -> Array:
+        """q'' (n,) at a state (q, q') where any joint may have come to rest."""
+        signs, x = self.decided(t, x)
+        return self.moved(t, x, signs)[0]
+
     def decided(self, t: float, x: Array) -> tuple[Signs, Array]:
         """Who slips and who sticks at a state, and the state with those at rest at rest."""
         laws = self.laws

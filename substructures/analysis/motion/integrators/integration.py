@@ -14,7 +14,7 @@ import numpy as np
 
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.steppers import Stepper
-from substructures.analysis.motion.integrators.zeros import Dense, Watch, zeros_of
+from substructures.analysis.motion.integrators.zeros import Corner, Dense, Watch, zeros_of
 from substructures.array import Array
 
 Function = Callable[[float, Array], Array]
@@ -23,11 +23,17 @@ TimeReport = Callable[[float], bool | None]
 
 #: so many steps in a row of less than this share of the span mean that the integrator is stuck
 PATIENCE, TINY = 200, 1e-12
+#: so many steps tell the pace of a motion that stays at a corner
+CHATTER = 1000
 #: the level of a watch that is zero, with a sign
 LEAST = 1e-300
 #: of the largest level so far: what a level that jumps changes by at least
 JUMP = 1e-9
 STIFF = "try the method 'Radau' for stiff equations"
+SLIDES = (
+    "the motion stays where a law jumps ('sign'), thrown back from both sides (a sliding mode): take tanh(x/w) in "
+    "place of sign(x), w small beside x, and the method 'Radau'; for dry friction the joint's 'friction', taken 'exact'"
+)
 NO_ERROR = "an 'absolute_tolerance' of 0 allows no error of what is 0"
 
 
@@ -96,7 +102,9 @@ class _Run:
         self.met = [0] * len(watches)
         #: the largest that they were
         self.sizes: list[float] = []
-        self.span, self.tiny = span[1] - span[0], 0
+        self.span, self.end, self.tiny = span[1] - span[0], span[1], 0
+        #: when, and after how many steps, it began to be thrown back from both sides of a corner
+        self.slid: tuple[float, int] | None = None
         self.motion = IntegratedMotion()
         self.last: tuple[float, Array] | None = None
         #: where the integrator begins anew
@@ -110,6 +118,9 @@ class _Run:
         self.collect(t, lambda _: x)
         self.levels = [w.function(t, x) for w in self.watches]
         self.sizes = np.abs(self.levels).tolist()
+        for watch, level in zip(list(self.watches), list(self.levels), strict=True):
+            if watch.corner is not None and level == 0 and watch.corner.slides(t, x):
+                self._left(watch.corner, t, x)
 
     def keep_last(self) -> None:
         """The last state that was reached, as a result."""
@@ -151,6 +162,8 @@ class _Run:
         return np.asarray(solver.y, dtype=np.float64)
 
     def _advice(self, t: float, message: str) -> str:
+        if self.slid is not None and t - self.slid[0] < JUMP * self.span:
+            return f"at t = {t:.9g} s {SLIDES}"
         return (
             f"the integrator could not go on at t = {t:.9g} s ({message.strip()}): the motion may be singular there; "
             f"look at the state, end the span before it, loosen 'relative_tolerance', or {self.settings.advice}"
@@ -167,6 +180,9 @@ class _Run:
         if self.tiny > PATIENCE:
             motion.end("failed", self._advice(solver.t, f"{PATIENCE} steps brought it no further"))
             return
+        if self._chatters(solver.t):
+            motion.end("failed", f"at t = {solver.t:.9g} s {SLIDES}")
+            return
         dense = Dense(solver, self.settings.stepper)
         last = self._watch(solver, dense)
         self.collect(last, dense)
@@ -180,8 +196,9 @@ class _Run:
         """Results at the wanted times up to ``last``."""
         while self.next < len(self.outputs) and self.outputs[self.next] <= last:
             t = self.outputs[self.next]
+            x = np.array(dense(t), dtype=np.float64)  # or fails
             self.motion.t.append(t)
-            self.motion.x.append(np.array(dense(t), dtype=np.float64))
+            self.motion.x.append(x)
             self.next += 1
 
     def _watch(self, solver: Any, dense: Dense) -> float:
@@ -229,12 +246,27 @@ class _Run:
             turned.take(-turned.side)
             self._jumped(t, x, before)
             if not turned.stays(t, x):
-                kept = [i for i, watch in enumerate(self.watches) if watch.corner is None]
-                self.watches, self.sizes = [self.watches[i] for i in kept], [self.sizes[i] for i in kept]
+                self._left(turned, t, x)
         self.levels = [watch.function(t, x) for watch in self.watches]
         for i, watch in enumerate(self.watches):  # what is zero there is where it has to be, whatever the rounding
             side = signs.get(i, self.levels[i]) if watch.corner is None else watch.corner.side
             self.levels[i] = math.copysign(max(abs(self.levels[i]), LEAST), side)
+
+    def _left(self, corner: Corner, t: float, x: Array) -> None:
+        """No corner is followed any more, as the motion stays at one."""
+        self.slid = (t, self.motion.steps) if corner.slides(t, x) else None
+        corner.leave()
+        kept = [i for i, watch in enumerate(self.watches) if watch.corner is None]
+        self.watches = [self.watches[i] for i in kept]
+        self.sizes, self.levels = ([each[i] for i in kept] for each in (self.sizes, self.levels))
+
+    def _chatters(self, t: float) -> bool:
+        """Whether what is thrown back from both sides of a corner would take far more steps than it may."""
+        if self.slid is None or self.motion.steps < self.slid[1] + CHATTER:
+            return False
+        since, steps = self.slid
+        self.slid = t, self.motion.steps
+        return (self.motion.steps - steps) * (self.end - t) > 2 * self.settings.max_steps * (t - since)
 
     def broken(self, t: float, x: Array) -> None:
         """Go on behind a break, where levels of corners may have jumped."""

@@ -31,7 +31,13 @@ class Corner(Protocol):
         """Take a side."""
 
     def stays(self, t: float, x: Array) -> bool:
-        """Whether the motion goes on at that side; if not, it slides along the corner, and nothing takes sides."""
+        """Whether the motion goes on at that side; if not, it stays at the corner."""
+
+    def slides(self, t: float, x: Array) -> bool:
+        """Whether it is thrown back from both sides, by laws that jump there."""
+
+    def leave(self) -> None:
+        """Take no sides, nor do other corners."""
 
 
 @dataclass(frozen=True)

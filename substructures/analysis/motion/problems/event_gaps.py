@@ -11,6 +11,7 @@ from substructures.expr.differentiate import directional
 from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Program, program
 from substructures.loads.scope import Scope
+from substructures.part.balls import position_rates
 from substructures.tree.model import Model
 
 #: outputs of :func:`gap_rates`
@@ -27,13 +28,19 @@ def read_gaps(scope: Scope, lookup: Callable[[str], Expr | None], events: Sequen
 
 def gap_rates(model: Model, events: Sequence[Event]) -> Program:
     """Outputs ``g``, ``g'`` and ``g''`` of events, (k,) each, in q, q', t and the accelerations ``q''``, which count as
-    constant. Of trees whose velocities are the rates of their coordinates.
+    constant.
     """
     scope, q = Scope(Graph()), model.coordinates
     gaps = read_gaps(scope, names(model, scope, False), events)
     require_read(scope)
-    # d/dt = q' d/dq + q'' d/dq' + d/dt
-    seeds = {name: scope.declare(f"{name}'", "velocity", "") for name in q} | {"t": scope.graph.one}
+    # d/dt = q' d/dq + q'' d/dq' + d/dt; of ball joints their positions move by p' = R v, Q' = 1/2 Q (0, w)
+    moving = {name: scope.declare(f"{name}'", "velocity", "") for name in q}
+    seeds = moving | {"t": scope.graph.one}
+    for ball in model.balls:
+        own, rates = ball["positions"], [moving[name] for name in ball["velocities"]]
+        for name in own:
+            scope.declare(name, "coordinate", "")
+        seeds |= zip(own, position_rates(scope.graph, own, rates), strict=True)
     seeds |= {f"{name}'": scope.declare(f"{name}''", "input", "") for name in q}
     rates = directional(gaps, seeds)
     some = dict(zip(GAPS, (gaps, rates, directional(rates, seeds)), strict=True))
