@@ -223,7 +223,7 @@ class Bodies:
             try:
                 mass_of(geom, self.compiler, self.meshes)
             except UnknownMass:
-                message = "the mass of a mesh needs its file: it is left out, as the body does not move here"
+                message = "the mass of a mesh needs its file, of a shell <inertial>: left out, as this stands still"
                 self.report.lost(geom.place, message, "physics")
                 return geom.place
         return None
