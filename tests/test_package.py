@@ -8,6 +8,7 @@ import subprocess
 import sys
 from importlib import import_module
 from pathlib import Path
+from symtable import Symbol, symtable
 
 import pytest
 
@@ -55,6 +56,23 @@ def test_what_type_checkers_see_is_what_there_is() -> None:
     }
     there = {(module, name) for module, names in substructures._WHERE.items() for name in names}
     assert seen == there | {("substructures", "catalogue")}
+
+
+def test_variables_of_comprehensions_have_no_names_that_others_take_of_the_module() -> None:
+    """With both in one function CPython 3.12.1 raises UnboundLocalError: it looks for the second in the function."""
+    root = Path(__file__).parents[1]
+    files = [path for folder in ("substructures", "service") for path in (root / folder).rglob("*.py")]
+    tables = [(path.name, symtable(path.read_text(), path.name, "exec")) for path in files]
+    for name, table in tables:
+        tables += [(name, child) for child in table.get_children()]
+        symbols = [
+            s
+            for c in table.get_children()
+            if c.get_name() in ("listcomp", "setcomp", "dictcomp")
+            for s in c.get_symbols()
+        ]
+        own, taken = ({s.get_name() for s in symbols if test(s)} for test in (Symbol.is_local, Symbol.is_global))
+        assert not own & taken, f"{name}, line {table.get_lineno()}: {own & taken}"
 
 
 def test_client_beside_a_service_of_ones_own(tmp_path: Path) -> None:

@@ -181,14 +181,26 @@ def tree_package(
 
 def _motion(model: Model, request: ExportRequest) -> tuple[str, ...]:
     """The quantities of the motion, for targets that move. Raises InvalidArgument (``/target``)."""
+    if request.target != FMU and (request.target in MOVING or FORWARD in request.quantities):
+        _require_free(model, request)
     if request.target not in MOVING:
         return ()
-    if request.target != FMU and model.velocity_constraints:
-        message = f"target={request.target} does not take velocity constraints into account: take target={FMU}"
-        raise InvalidArgument.at("/target", "has-velocity-constraints", message)
     # with velocity constraints the motion is one in independent velocities
     motion = VELOCITY_DYNAMICS if model.velocity_constraints else FORWARD
     return (motion, CHANGES) if model.balls else (motion,)
+
+
+def _require_free(model: Model, request: ExportRequest) -> None:
+    """Raises InvalidArgument where accelerations would be without velocity constraints or contacts."""
+    moves = request.target in MOVING
+    pointer, what = ("/target", f"target={request.target}") if moves else ("/quantities", f"'{FORWARD}'")
+    fmu = f"target={FMU}{', which Simulink reads, too' if moves else ''}"
+    function = "" if moves else f"the quantity '{VELOCITY_DYNAMICS}', or "
+    for field, instead in {"velocity_constraints": function, "contacts": ""}.items():
+        if getattr(model, field):
+            kind = field.replace("_", " ")
+            message = f"{what} does not take {kind} into account: take {instead}{fmu}"
+            raise InvalidArgument.at(pointer, f"has-{kind.replace(' ', '-')}", message)
 
 
 def _contacts(

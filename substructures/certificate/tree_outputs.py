@@ -173,7 +173,7 @@ def built(
 ) -> tuple[Numbers, Bodies, list[tuple[str, Numbers, range]], list[Forces]]:
     """The numbers of the tree, its bodies in the world, and what acts on them, by instance."""
     numbers, bodies, loads = _placed(tree, definitions, values)
-    before = {forces.prefix: forces for forces in like}
+    before = {each.prefix: each for each in like}
     acting = [
         forces(bodies, written(definitions[name]), inside, joints, f"{name}.", before.get(f"{name}."))
         for name, inside, joints in loads

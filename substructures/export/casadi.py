@@ -80,6 +80,8 @@ def _use(exported: Exported) -> list[str]:
         f"//   cc -O2 -shared -fPIC -o {name}_casadi.so {name}_casadi.c -lm",
         f'//   {called} = casadi.external("{called}", "./{name}_casadi.so")',
         f"//   {called}({given}) takes numbers or symbols; casadi.jacobian of it has its own formulas.",
+        "// Second derivatives are not among them: solvers take approximate ones, IPOPT with the option",
+        '// "ipopt.hessian_approximation": "limited-memory".',
         "//",
     ]
 

@@ -32,10 +32,9 @@ class PartOfFile:
 
     definition: dict[str, Any]
     names: dict[str, str]
-    bindings: list[dict[str, Any]]
     coordinates: dict[str, str]  #: of every motion
     loop_ports: list[tuple[str, str | None]]  #: of every loop the ports of its ends, None: the world
-    unbound: tuple[Mimic, ...] = ()  #: bindings that are no relations
+    unbound: tuple[Mimic, ...] = ()  #: bindings to joints of other parts
     seats: Mapping[str, tuple[str, Seat]] = field(default_factory=dict)  #: of every link its body, and where in it
 
 
@@ -100,12 +99,11 @@ class _Builder:
             "loads": self.loads,
             "parameters": self.parameters,
             "relations": relations,
-            "left_out": [mimic.left_out(self.joints.given) for mimic in left],
+            "left_out": [mimic.left_out for mimic in left],
         }
         return PartOfFile(
             {key: x for key, x in document.items() if x},
             {**self.links.given, **self._joint_names(), **self.velocities},
-            [self._binding(m) for m in left if {m.joint, m.of} <= self.joints.given.keys()],
             self.joints.given,
             loop_ports,
             tuple(left),
@@ -254,9 +252,6 @@ class _Builder:
         name = self.symbols.new(f"{letter}{part}_{body}")
         self.parameters[name] = {"value": x, "unit": _UNITS[letter]}
         return name
-
-    def _binding(self, mimic: Mimic) -> dict[str, Any]:
-        return mimic.plain(self.joints.of(mimic.joint), self.joints.of(mimic.of))
 
 
 def place_of(seats: Mapping[str, tuple[str, Seat]], link: str | None, at: Triple) -> dict[str, Any]:

@@ -96,7 +96,7 @@ def import_file(
     if tree is None and robot.gravity_place is not None:
         message = f'gravity is that of a tree: give it "gravity": [{", ".join(map(str, gravity or ()))}]'
         report.warning(robot.gravity_place, message)
-    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, part.bindings, gravity)
+    return Imported(found, definition, tree, report.plain(), report.checks(), part.names, [], gravity)
 
 
 def _require_open(robot: Robot, options: Options) -> None:

@@ -135,13 +135,10 @@ class Mimic:
             "the velocity constraint that is told in 'bindings' to simulations and velocity-equations"
         )
 
-    def left_out(self, names: Mapping[str, str]) -> dict[str, object]:
-        """As a field of a definition with the coordinates ``names`` by joints; as words where it has not got both."""
-        told: dict[str, object] = {"message": f"{self.place}: {self.message}"[:LONGEST]}
-        if {self.joint, self.of} <= names.keys():
-            factors = {"multiplier": self.multiplier, "offset": self.offset}
-            told["relation"] = {"coordinate": names[self.joint], "of": names[self.of], **factors}
-        return told
+    @property
+    def left_out(self) -> dict[str, object]:
+        """As a field of a definition."""
+        return {"message": f"{self.place}: {self.message}"[:LONGEST]}
 
     def plain(self, coordinate: str, of: str) -> dict[str, object]:
         """As JSON data, with the names that both coordinates have here, and as a constraint q' - k q_of' = 0."""

@@ -34,7 +34,13 @@ def turning_joint(motion: Motion, rotations: Rotations, new: NewName) -> tuple[d
 
 
 def _with_angles(motion: Motion, new: NewName) -> tuple[dict[str, Any], list[dict[str, object]]]:
-    """Slides along x, y, z of a free joint, then yaw, pitch, roll."""
+    """Slides along x, y, z of a free joint, then yaw, pitch, roll.
+
+    Raises InvalidDocument for rotors of balls, which turn with none of these angles.
+    """
+    if motion.type == "spherical" and not is_zero(motion.armature):
+        message = "the armature of a ball joint on a body that moves needs quaternions: take rotations=quaternions"
+        raise refuse(motion.place, "no-quaternions", message)
     slides = _AXES if motion.type == "free" else ()
     names = [new(f"{motion.name}_{step}") for step in (*slides, *_TURNS)]
     joint: dict[str, Any] = {"type": motion.type, "coordinate": names}
@@ -49,11 +55,11 @@ def _with_quaternion(motion: Motion, new: NewName) -> dict[str, Any]:
 
     Raises InvalidDocument for springs, which need angles, and for rotors of slides.
     """
-    for law in ("stiffness", "armature"):
+    slides = _AXES if motion.type == "free" else ()
+    for law in ("stiffness", "armature") if slides else ("stiffness",):
         if not is_zero(getattr(motion, law)):
             message = f"the {law} of a ball or free joint needs angles: take rotations=angles"
             raise refuse(motion.place, "no-angles", message)
-    slides = _AXES if motion.type == "free" else ()
     positions = [*slides, *(f"q{axis}" for axis in ("w", *_AXES))]
     rates = [*(f"v{axis}" for axis in slides), *(f"w{axis}" for axis in _AXES)]
     joint: dict[str, Any] = {
@@ -61,5 +67,6 @@ def _with_quaternion(motion: Motion, new: NewName) -> dict[str, Any]:
         "coordinate": [new(f"{motion.name}_{step}") for step in positions],
         "velocities": [new(f"{motion.name}_{step}") for step in rates],
     }
-    # -c v and -c omega are the same in all axes
-    return joint if is_zero(motion.damping) else joint | {"damping": motion.damping}
+    # -c v and -c omega are the same in all axes, and so is a |omega|^2 / 2 of a ball
+    laws = {law: getattr(motion, law) for law in ("damping", "armature")}
+    return joint | {law: number for law, number in laws.items() if not is_zero(number)}

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Iterator, Sequence
 from fractions import Fraction
 from typing import Any, Literal, Protocol
 
@@ -20,6 +20,8 @@ BALLS = {"ball": (4, 3), "floating": (7, 6)}
 INSTEAD = {"ball": "spherical", "floating": "free"}
 #: what needs angles
 _OF_ANGLES = ("stiffness", "rest", "armature", "limits", "limits_act", "friction")
+#: and what a ball has where it is one number: a |w|^2 / 2 is the same in all axes
+_OF_ALL_AXES = ("armature",)
 _AXES = ("x", "y", "z")
 
 
@@ -86,12 +88,7 @@ def ball_faults(definition: Defined, rates: Collection[str]) -> list[Fault]:
                 message = f"the velocities of a {joint.type} joint are q' of its coordinates: leave 'velocities' out"
                 faults.append(Fault(f"{pointer}/velocities", "velocities-of-chain", message))
             continue
-        for name in _OF_ANGLES:
-            if getattr(joint, name) not in (0, None):
-                message = f"a {joint.type} joint has no angles, and no {name}: take the type '{INSTEAD[joint.type]}'"
-                spring = ", or for a spring a load of the type 'bushing' between both bodies"
-                message += spring if name == "stiffness" else ""
-                faults.append(Fault(f"{pointer}/{name}", "no-angles", message))
+        faults += _law_faults(joint, pointer)
     for i, each in enumerate(definition.relations):
         for field, name in (("coordinate", each.coordinate), ("of", each.of)):
             if name in rates:
@@ -101,6 +98,21 @@ def ball_faults(definition: Defined, rates: Collection[str]) -> list[Fault]:
         message = "closures do not go with ball and floating joints: take the joint types 'spherical' and 'free'"
         faults.append(Fault("/closures", "has-balls", message))
     return faults
+
+
+def _law_faults(joint: Any, pointer: str) -> Iterator[Fault]:
+    """Of laws that need angles, and of rotors that differ by axis."""
+    for name in _OF_ANGLES:
+        given = getattr(joint, name)
+        if joint.type == "ball" and name in _OF_ALL_AXES:
+            if isinstance(given, tuple):
+                message = f"the {name} of a ball joint is one number, the same about all axes"
+                yield Fault(f"{pointer}/{name}", "wrong-length", message)
+        elif given not in (0, None):
+            message = f"a {joint.type} joint has no angles, and no {name}: take the type '{INSTEAD[joint.type]}'"
+            spring = ", or for a spring a load of the type 'bushing' between both bodies"
+            message += spring if name == "stiffness" else ""
+            yield Fault(f"{pointer}/{name}", "no-angles", message)
 
 
 def quaternion_turn(graph: Graph, names: Sequence[str]) -> Matrix:

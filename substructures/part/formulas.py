@@ -130,12 +130,10 @@ def formulas(m: Mechanism, loads: Loads, large: bool = False, coupled: Coupled |
     places = [_wrench_point(k, wrench) for wrench in loads.wrenches]
     outputs["load.at"] = array((len(places), 3), lambda i, x: places[i][x])
     outputs["load.vector"] = array((len(places), 3), lambda i, x: loads.wrenches[i].vector[x])
-    if m.ratios.is_identity:
-        return of_rates(outputs, m.topology.balls)
-    n = len(m.joints)
-    outputs[MULTIPLIER] = array((n,), lambda a: m.ratios.multipliers[a])
-    outputs[OFFSET] = array((n,), lambda a: m.offsets[a])
-    return of_coordinates(of_rates(outputs, m.topology.balls), m.ratios)
+    if not m.ratios.is_identity:
+        outputs[MULTIPLIER] = array((len(m.joints),), lambda a: m.ratios.multipliers[a])
+        outputs[OFFSET] = array((len(m.joints),), lambda a: m.offsets[a])
+    return of_coordinates(of_rates(outputs, m.topology.balls, lambda c: m.laws[c].armature), m.ratios)
 
 
 def _wrench_point(k: Kinematics, wrench: AppliedWrench) -> Vector:

@@ -6,7 +6,7 @@ become those of the coordinates that are left by :class:`substructures.mechanics
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from fractions import Fraction
 from typing import Any
 
@@ -102,15 +102,23 @@ def of_coordinates(outputs: Mapping[str, Formulas], ratios: Ratios) -> dict[str,
     return {name: _reduced(name, each, ratios) if name in OF_COORDINATES else each for name, each in outputs.items()}
 
 
-def of_rates(outputs: Mapping[str, Formulas], balls: Sequence[BallJoint]) -> dict[str, Formulas]:
-    """The outputs of joints with those that rates multiply twice in the rates of ball joints: christoffel, F, N."""
+def of_rates(
+    outputs: Mapping[str, Formulas], balls: Sequence[BallJoint], rotor: Callable[[int], Any]
+) -> dict[str, Formulas]:
+    """The outputs of joints with those that rates multiply twice in the rates of ball joints: christoffel, F, N.
+
+    ``rotor``: the armature a of a joint; it takes a v', not a q''.
+    """
     result = dict(outputs)
     for name, (linear, place) in BILINEAR.items():
         if balls and name in outputs:
             each = outputs[name]
             # one of (b, c) and (c, b), in which it stays symmetric; Gamma_abc = -Gamma_cba is lost (Boltzmann, Hamel)
             entries: dict[tuple[int, ...], Any] = {i: x for i, x in each.expanded().items() if i[place] <= i[place + 1]}
-            halves = {index: _half(x) for index, x in outputs[linear].expanded().items()}
+            linears = outputs[linear].expanded()
+            for k in (k for ball in balls for k in ball.joints if name == "christoffel"):
+                linears[k, k] = linears[k, k] - rotor(k)
+            halves = {index: _half(x) for index, x in linears.items()}
             # Gamma~_abc = Gamma_abc + 1/2 c_ibc g_ai, F_bc and N_bc with f_i and n_i (section 14)
             for at, term in in_rates(balls, halves, place).items():
                 entries[at] = entries[at] + term if at in entries else term

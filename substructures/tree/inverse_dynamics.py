@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
+from substructures.mechanics.balls import at_constant_rates
 from substructures.mechanics.composite_form import Inertia
 from substructures.mechanics.kinematics import INTERFACE, from_body
 from substructures.mechanics.linear3 import Scalar, exactly, negate
 from substructures.mechanics.newton_euler import BodyMotion, inertial_load
 from substructures.mechanics.wrench import Wrench
 from substructures.tree.grouping import Inertias, on_carriers
-from substructures.tree.mounted_part import WORLD, PlacedPart
+from substructures.tree.mounted_part import WORLD, PlacedPart, balls_in
 
 Motions = dict[int, BodyMotion]
 WrenchesByCarrier = dict[int, Wrench]
@@ -43,7 +44,9 @@ def inverse_dynamics(
     Gravity is a world accelerated upwards; forces and torques act on their bodies, what the joints do by themselves
     (armature, springs, dampers, actuators) on their coordinates.
     """
-    inertias = on_carriers(placed)
+    inertias, derivatives = on_carriers(placed), list(accelerations)
+    for a, turned in enumerate(at_constant_rates(balls_in(placed), rates)):
+        derivatives[a] = derivatives[a] - turned
     loads = inertial_loads(inertias, body_motions(placed, rates, accelerations, inertias))
     subtract_applied(placed, loads)
     result = pass_back(placed, loads, len(rates))
@@ -52,8 +55,8 @@ def inverse_dynamics(
         own = {c: i for i, c in enumerate(here.part.topology.movers)}
         for c in range(len(here.links)):
             a = here.first + c
-            # + armature_a q''^a - Q_a of the joint itself
-            rotor = here.evaluated.own.scalar("armature", c) * accelerations[a]
+            # + armature_a v'^a - Q_a of the joint itself; v' = q'' but of balls
+            rotor = here.evaluated.own.scalar("armature", c) * derivatives[a]
             applied = here.outputs.scalar("applied", own[c]) if c in own else 0
             result[a] = result[a] + rotor - applied
     return result

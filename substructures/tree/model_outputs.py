@@ -87,7 +87,8 @@ def model_outputs(
         outputs["dependent"] = _dependent(assembly)
     outputs |= _kinematics(placed, n) if wanted(*KINEMATICS) else {}
     # by joint up to here: rates of balls for single joints first, then coordinates for joints (section 6)
-    return of_coordinates(of_rates(outputs, balls_in(coupled.placed)), coupled.ratios)
+    rotors = [here.evaluated.own.scalar("armature", c) for here in placed for c in range(len(here.links))]
+    return of_coordinates(of_rates(outputs, balls_in(placed), rotors.__getitem__), coupled.ratios)
 
 
 def _equations(coupled: Coupled, n: int) -> dict[str, Formulas]:

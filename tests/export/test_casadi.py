@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,8 +10,9 @@ import pytest
 from exported_models import exported_of, tree_of, write
 from run_code import STRICT, arguments, shared, state
 
-from substructures.export import Exported, Function
+from substructures.export import Exported, Function, files
 from substructures.expr.interpret import interpret
+from substructures.printers.render import LIMIT
 
 casadi = pytest.importorskip("casadi", reason="the wheel casadi is not installed")
 
@@ -77,3 +79,23 @@ def test_casadi_differentiates_through_it(loaded: tuple[Exported, str]) -> None:
     slope = casadi.Function("slope", [v], [casadi.gradient(external(loaded, energy)(q, v, p), v)])
     metric = np.asarray(interpret(by_name["metric"].program, values)["metric"])
     np.testing.assert_allclose(slope(qd).full().ravel(), metric @ qd, rtol=1e-12, atol=1e-12)
+
+
+def test_ipopt_takes_it_with_the_option_that_the_file_names(loaded: tuple[Exported, str]) -> None:
+    """T - p . v is least where the momentum g v is p; second derivatives are approximated."""
+    exported, _ = loaded
+    by_name = {f.quantity: f for f in exported.functions}
+    energy = by_name["kinetic_energy"]
+    values = state(energy.interface)
+    q, qd, p = arguments(energy, values).values()
+    momentum = np.linspace(1, 2, len(qd))
+    v = casadi.MX.sym("v", len(qd))
+    problem = {"x": v, "f": external(loaded, energy)(q, v, p) - casadi.dot(momentum, v)}
+    ((name, value),) = re.findall(
+        r'"(ipopt\.\w+)": "([\w-]+)"', files(exported, "casadi", LIMIT)["demo_casadi.c"].decode()
+    )
+    quiet = {"print_time": False, "ipopt.print_level": 0, "ipopt.sb": "yes", "ipopt.tol": 1e-11}
+    solver = casadi.nlpsol("solver", "ipopt", problem, {**quiet, name: value})
+    found = solver(x0=0)["x"].full().ravel()
+    metric = np.asarray(interpret(by_name["metric"].program, values)["metric"])
+    np.testing.assert_allclose(metric @ found, momentum, rtol=1e-7)

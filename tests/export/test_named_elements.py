@@ -76,6 +76,8 @@ def test_structures_are_arguments(tmp_path: Path) -> None:
     )
     found = np.array(octave(script, tmp_path)[0].split(), dtype=float).reshape(2, 2)
     np.testing.assert_allclose(found, expected, rtol=1e-14)
+    typo = "p = demo_parameters(); p.i0_M2 = 2; try, demo_parameters(p); catch e, disp(e.message); end"
+    assert octave(typo, tmp_path)[0] == "i0_M2 is none of the parameters"
 
 
 def test_a_mechanism_of_modelica_has_parameters_with_units() -> None:

@@ -100,8 +100,40 @@ def test_a_joint_that_follows_twice_leads_the_second() -> None:
     assert model.coordinates == ("x.j",)
     circle = twice.replace("</equality>", '<joint joint1="l" joint2="j" polycoef="0 3 0 0 0"/></equality>')
     over = read(MJCF.replace("</body></body>", more, 1).replace("</equality>", circle))
-    assert [binding["coordinate"] for binding in over.bindings] == ["l"]
-    assert [r["level"] for r in over.report if "both coordinates are free" in r["message"]] == ["warning"]
+    assert over.bindings == []
+    assert [r["level"] for r in over.report if "this holds joints at numbers" in r["message"]] == ["warning"]
+    assert model_of(over).coordinates == ("x.j",)
+
+
+@pytest.mark.parametrize(
+    ("equalities", "free", "said"),
+    [
+        ("a b 0 1, c d 0.3 1, a c 0.1 2", 1, "moves with"),
+        ("a b 0.1 2, a b 0.1 2", 3, "those before it say the same"),
+        ("a b 0.2 1, b c 0.1 -1, c a 0.3 -1", 2, "those before it say the same"),
+        ("a b 0 3, c d 0 1, a c 0 7", 1, "moves with"),
+    ],
+)
+def test_joints_that_are_bound_several_times_move_as_in_mujoco(
+    equalities: str, free: int, said: str, tmp_path: Path
+) -> None:
+    """Those that both follow others, twice the same, and all round a circle."""
+    pytest.importorskip("mujoco", reason="MuJoCo is in the extra 'bench'")
+    from corpus import compared  # noqa: PLC0415 -- beside this file
+    from with_mujoco import MujocoTwin  # noqa: PLC0415
+
+    joint = '<body pos=".1 .2 .3" euler="10 20 30"><joint name="{}" axis="0 1 1"/><geom size=".1" pos=".3 .1 0"/>'
+    bodies = "".join(map(joint.format, "abcd")) + "</body>" * 4
+    rows = [each.split() for each in equalities.split(", ")]
+    bound = "".join(f'<joint joint1="{a}" joint2="{b}" polycoef="{c} {k} 0 0 0"/>' for a, b, c, k in rows)
+    path = tmp_path / "a.xml"
+    path.write_text(f"<mujoco><worldbody>{bodies}</worldbody><equality>{bound}</equality></mujoco>")
+    found = compared("bound", path, MujocoTwin)
+    assert (found.refused, found.dof) == ("", free)
+    assert found.error < 1e-10
+    last = read(path.read_text()).report[-1]
+    assert said in last["message"]
+    assert last["level"] == "merged"
 
 
 def test_mujoco_holds_its_joint_where_the_binding_says() -> None:

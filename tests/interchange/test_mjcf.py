@@ -41,6 +41,9 @@ FEATURES = {
     "box from to": ("", '<geom type="box" size=".2" fromto="0 0 1 1 2 3"/>'),
     "ellipsoid": ("", '<geom type="ellipsoid" size=".2 .3 .4" quat="1 1 0 0"/>'),
     "ellipsoid from to": ("", '<geom type="ellipsoid" size=".2" fromto="0 0 1 1 2 3"/>'),
+    "shells": ('<default><geom shellinertia="true" density="7"/></default>', '<geom size=".2" pos="1 0 0" density="9"/>'
+               '<geom type="capsule" size=".2 .5" quat="1 1 0 0"/><geom type="box" size=".1 .2 .4" mass="3"/>'
+               '<geom type="cylinder" size=".2" fromto="0 0 1 1 2 3"/><geom size=".3" shellinertia="false"/>'),
     "two geoms": ("", '<geom size=".2" pos="1 0 0"/><geom type="box" size=".1 .1 .4" pos="0 1 0"/>'),
     "groups": ('<compiler inertiagrouprange="0 1"/>', '<geom size=".2"/><geom size=".5" group="2"/>'),
     "inertial": ("", '<inertial pos="1 2 3" mass="2" quat="1 2 0 0" diaginertia="1 2 2.5"/><geom size="1"/>'),
@@ -116,6 +119,14 @@ def test_free_joints_have_armature_and_damping(tmp_path: Path) -> None:
     assert compared("free", path, MujocoTwin).error < 1e-10
 
 
+@pytest.mark.filterwarnings("ignore")
+def test_the_armature_of_a_ball_on_what_stands_still_is_a_moment_of_inertia(tmp_path: Path) -> None:
+    path = tmp_path / "model.xml"
+    head = '<mujoco><worldbody><body euler="10 20 30"><body pos="1 2 3"><joint type="ball" armature="2" pos="0 .1 0"/>'
+    path.write_text(f'{head}<geom size=".3" pos="1 0 0"/></body></body></worldbody></mujoco>')
+    assert compared("ball", path, MujocoTwin).error < 1e-10
+
+
 @pytest.mark.parametrize("given", [".1 2", "1e-9 .5"])
 def test_springdamper_gives_what_mujoco_makes_of_it_with_joints_that_others_move(given: str, tmp_path: Path) -> None:
     """The inertia is that of free joints, whatever equations bind them; numbers are told."""
@@ -162,6 +173,8 @@ BAD = {
              'line 4: <geom name="g">: the mass of a mesh needs its file: \'m.stl\' is not given'),
     "no mesh": (one('<joint/><geom type="mesh" mesh="../etc/passwd"/>', MESH), "there is no mesh '../etc/passwd'; .*m"),
     "fitted": (one('<joint/><geom type="box" mesh="m"/>', MESH), "a box fitted to a mesh is not read: give its size"),
+    "shell of a mesh": (one('<joint/><geom type="mesh" mesh="m" shellinertia="true"/>', MESH), "inertia='shell'"),
+    "shell": (one('<joint/><geom type="ellipsoid" size="1 2 3" shellinertia="true"/>'), "no area in closed form"),
     "inertia": (one('<joint/><geom type="mesh" mesh="m"/>', MESH.replace("/>", ' inertia="all"/>', 1)),
                 "inertia='all' is none of legacy, exact, convex, shell"),
     "flat": (one('<joint/><geom type="mesh" mesh="m"/>', MESH.replace('file="m.stl"', 'vertex="0 0 0 1 0 0 0 1 0"')),
@@ -169,6 +182,8 @@ BAD = {
     "include": (b'<mujoco>\n<include file="/etc/passwd"/></mujoco>', "line 2: <include>: the file '/etc/passwd'"),
     "include in a body": (one('<include file="x.xml"/>'), "line 4: <include>: the file 'x.xml' is not followed"),
     "global": (one("<geom size='1'/>", '<compiler coordinate="global"/>'), "no longer in MJCF"),
+    "rotor of a ball": (one('<joint/><geom size="1"/><body><joint type="ball" armature="1"/><geom size="1"/></body>'),
+                        "needs quaternions: take rotations=quaternions"),
     "class": (one('<geom class="c" size="1"/>'), "no default class 'c'"),
     "zero axis": (one('<joint axis="0 0 0"/>'), "line 4: <joint>: the axis has no direction"),
     "zero quaternion": (one('<geom size="1" quat="0 0 0 0"/>'), "quat has no direction"),

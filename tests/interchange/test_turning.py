@@ -45,6 +45,7 @@ def random_file(rng: np.random.Generator, bodies: int, with_equality: bool) -> s
     for i, kind in enumerate(kinds):
         where = "" if kind == "free" else f' pos="{numbers(rng, 3)}"'
         axis = f' axis="{numbers(rng, 3)}" ref="{numbers(rng, 1)}"' if kind in ("hinge", "slide") else ""
+        axis += f' armature="1.{i}"' if kind != "free" else ""
         joint = f'<joint name="j{i}" type="{kind}"{where}{axis} damping="{round(float(rng.uniform(0, 2)), 2)}"/>'
         inertial = f'pos="{numbers(rng, 3)}" quat="{numbers(rng, 4)}" mass="{2 + i}" diaginertia="1.1 1.3 1.{i}"'
         texts[i] = f'<body pos="{numbers(rng, 3)}" quat="{numbers(rng, 4)}">{joint}<inertial {inertial}/>'

@@ -182,7 +182,8 @@ def _of_arm(program: Any, name: str) -> int:
     ("change", "pointer", "code"),
     [
         ({"stiffness": 1}, "/bodies/0/joint/stiffness", "no-angles"),
-        ({"armature": 1}, "/bodies/0/joint/armature", "no-angles"),
+        ({"armature": 1, "type": "floating"}, "/bodies/0/joint/armature", "no-angles"),
+        ({"armature": [1, 1, 2]}, "/bodies/0/joint/armature", "wrong-length"),
         ({"limits": [-1, 1]}, "/bodies/0/joint/limits", "no-angles"),
         ({"velocities": ["a", "b"]}, "/bodies/0/joint/velocities", "wrong-length"),
         ({"coordinate": ["a", "b", "c"]}, "/bodies/0/joint/coordinate", "wrong-length"),

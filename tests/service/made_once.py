@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import sqlite3
 from collections.abc import Callable
+from contextlib import closing
 from functools import cache
 from pathlib import Path
 
@@ -23,18 +24,18 @@ def upgrade_from(first: Path) -> Callable[..., None]:
     """In place of ``upgrade``; ``first``: where the first file of all will be."""
 
     @cache
-    def made() -> sqlite3.Connection:
+    def made() -> Path:
         engine = create_engine(f"sqlite:///{first}")
         upgrade(engine)
         engine.dispose()
-        return sqlite3.connect(first, check_same_thread=False)
+        return first
 
     def quick(engine: Engine, *revision: str) -> None:
         if revision or engine.dialect.name != "sqlite" or inspect(engine).get_table_names():
             upgrade(engine, *revision)
             return
-        with engine.connect() as connection:
-            made().backup(connection.connection.driver_connection)
+        with engine.connect() as connection, closing(sqlite3.connect(made())) as source:
+            source.backup(connection.connection.driver_connection)
 
     return quick
 

@@ -8,6 +8,7 @@ import sqlite3
 import time
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -132,7 +133,8 @@ def test_a_batch_under_fire(farm: list[Server], undisturbed: dict[int, tuple[str
             check_nothing_doubled(client, batch, submitter)
     print(f"{sum(one.kills for one in farm)} servers and {assassin.kills} workers killed; {submitter.sent} small jobs")
     for file in tmp_path.glob("*.db"):
-        assert sqlite3.connect(file).execute("PRAGMA integrity_check").fetchone() == ("ok",)
+        with closing(sqlite3.connect(file)) as found:
+            assert found.execute("PRAGMA integrity_check").fetchone() == ("ok",)
 
 
 def kill_again_and_again(server: Server, seed: int, times: int) -> None:

@@ -220,6 +220,25 @@ def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
         assert "target=simulink does not take velocity constraints into account: take target=fmu" in fault["message"]
 
 
+def test_exports_without_constraints_and_contacts_name_the_fmu_alone(tied: TestClient) -> None:
+    ball = {"name": "ball", "bodies": [{"name": "b", "parent": "base", "joint": {"type": "prismatic"}, "mass": 1}]}
+    spec = {"name": "bouncy", "instances": [{"name": "x", "definition": ball}]}
+    spec |= {"contacts": [{"name": "floor", "point": "x.b"}]}
+    assert tied.post("/v1/trees", json=spec).status_code == 201
+    told = {
+        "sleigh": "velocity constraints into account: take the quantity 'velocity_dynamics', or target=fmu",
+        "bouncy": "contacts into account: take target=fmu",
+    }
+    for name, message in told.items():
+        answer = tied.get(f"/v1/trees/{name}/export?target=c&quantities=forward_dynamics")
+        (fault,) = answer.json()["errors"]
+        assert fault["pointer"] == "/query/quantities"
+        assert fault["message"] == f"'forward_dynamics' does not take {message}"
+    (fault,) = tied.get("/v1/trees/bouncy/export?target=simulink").json()["errors"]
+    assert (fault["pointer"], fault["code"]) == ("/query/target", "has-contacts")
+    assert fault["message"].endswith("take target=fmu, which Simulink reads, too")
+
+
 def test_formulas_of_the_tree_stay(tied: TestClient) -> None:
     for path in ("metric", "christoffel", "forces", "export?target=c", "export?target=urdf&bind=defaults"):
         answer = tied.get(f"/v1/trees/sleigh/{path}")

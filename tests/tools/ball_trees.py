@@ -21,8 +21,11 @@ def with_balls(definition: Plain) -> Plain:
         if joint["type"] in OF:
             gone |= {*joint["coordinate"]}
             joint |= {"type": OF[joint["type"]], "velocities": joint.pop("coordinate")}
-            for name in ("stiffness", "rest", "armature"):
+            for name in ("stiffness", "rest"):
                 joint.pop(name, None)
+            rotor = joint.pop("armature", None)
+            if joint["type"] == "ball" and rotor is not None:
+                joint["armature"] = rotor[0] if isinstance(rotor, list) else rotor
         bodies.append({**body, "joint": joint})
 
     def names(load: Plain) -> bool:

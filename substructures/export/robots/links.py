@@ -207,7 +207,8 @@ class _Reader:
         body = self.m.definition.bodies[i]
         parent, before = self.prefix + body.parent, self._pose(body.parent)
         ball = self.balls.get(i, "")
-        rates = tuple(float(self.numbers["laws"][k][0]) for k, _ in entries if ball)
+        laws = [dict(zip(LAWS, self.numbers["laws"][k].tolist(), strict=True)) for k, _ in entries if ball]
+        damping, rotor = tuple(law["damping"] for law in laws), max((law["armature"] for law in laws), default=0.0)
         entries = [] if ball and not (ball == "ball" and self.angles) else entries
         for k, entry in entries[:-1]:
             name = self._between(f"{body.name}_{entry.step + 1}")
@@ -223,7 +224,7 @@ class _Reader:
         tensor = np.array([[six[0], six[3], six[4]], [six[3], six[1], six[5]], [six[4], six[5], six[2]]])
         pose = between(before, self._pose(body.name))
         name = self.prefix + body.name
-        yield RigidLink(name, parent, pose, drive, ball, rates, mass=float(mass), com=com, inertia=tensor)
+        yield RigidLink(name, parent, pose, drive, ball, damping, rotor, mass=float(mass), com=com, inertia=tensor)
 
     def _between(self, wanted: str) -> str:
         """A name that no body or port has."""

@@ -147,6 +147,7 @@ class _Writer:
                 name = self._new(f"{link.name}_{axis}", self.joints)
                 Tree.SubElement(body, "joint", {"name": name, "type": "slide", "axis": numbers(e), **slides})
         name = self._new(f"{link.name}_{link.ball}", self.joints)
+        laws |= {"armature": number(link.armature)} if link.armature else {}
         Tree.SubElement(body, "joint", {"name": name, "type": "free" if is_free else "ball", **laws})
 
     def _equalities(self) -> None:

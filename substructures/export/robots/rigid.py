@@ -34,6 +34,7 @@ class RigidLink:
     """A link on its parent (None: the root); mass [kg], mass centre [m], tensor about it in the link's axes.
 
     ``ball``: the type of a joint with a quaternion, ``ball`` or ``floating``, else empty; ``damping``: of its rates;
+    ``armature``: of a ball;
     ``is_between``: whether it is within a compound joint, massless, with one link on it.
     """
 
@@ -43,6 +44,7 @@ class RigidLink:
     drive: Drive | None = None
     ball: str = ""
     damping: tuple[float, ...] = ()
+    armature: float = 0.0
     is_between: bool = False
     mass: float = 0.0
     com: Array = field(default_factory=lambda: np.zeros(3))

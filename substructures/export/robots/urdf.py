@@ -46,6 +46,8 @@ def _left_out(robot: Robot) -> Iterator[str]:
     for link in robot.links:
         if any(link.damping):
             yield f"the damping of the joint of '{link.name}'"
+        if link.armature:
+            yield f"the armature {link.armature!r} of the joint of '{link.name}'"
         if link.ball == "ball":
             yield f"the quaternion of '{link.name}': yaw, pitch, roll here"
         if link.drive and link.drive.stiffness:

@@ -29,6 +29,7 @@ from substructures.interchange.numbers import (
 from substructures.interchange.report import Place, Report, refuse
 from substructures.interchange.robot import Inertial, Link, Motion, MotionType, NamedFrame
 from substructures.interchange.rotations import from_z_axis, six_of, tensor, to_rpy, turned_inertia
+from substructures.interchange.turning import is_turning
 from substructures.interchange.xml import Node
 
 _MOTION: dict[str, MotionType] = {"hinge": "revolute", "slide": "prismatic", "ball": "spherical", "free": "free"}
@@ -113,8 +114,8 @@ class Bodies:
         geoms = [(child, inner) for child, inner in inside if child.tag == "geom"]
         unweighed = None if name in self._moving else self._unweighed(node, geoms)
         inertial = self._inertial(node, geoms if unweighed is None else [])
-        if any(m.type == "free" for m in motions):
-            motions, inertial = self._rotor(motions, inertial)
+        if len(motions) == 1 and parent not in self._moving:
+            motions, inertial = self._rotor(motions[0], inertial)
         made = Link(name, parent, node.place, seat.position, seat.rpy, motions, inertial)
         self.links.append(replace(made, has_shape=bool(geoms), unweighed=unweighed))
         self._children(node, name, childclass, Seat())
@@ -169,8 +170,6 @@ class Bodies:
         if kind in ("free", "spherical") and any(map(value, node.numbers("springdamper", 2, (ZERO, ZERO)))):
             message = "springdamper of a ball or free joint is not read: give its stiffness and damping"
             raise refuse(node.place, "not-read", message)
-        if kind == "spherical" and value(self._law(node, "armature")):
-            raise refuse(node.place, "not-read", "the armature of a ball joint is not read: set it to 0")
         if kind == "spherical" and range_of(node, self.compiler) is not None:
             self.report.lost(node.place, "range of a ball joint is not read: it turns to any attitude here")
         if value(node.number("frictionloss", ZERO)):
@@ -203,14 +202,17 @@ class Bodies:
         low, high = map(self._angle, found)
         return low, high
 
-    def _rotor(self, motions: tuple[Motion, ...], inertial: Inertial) -> tuple[tuple[Motion, ...], Inertial]:
-        """The armature a of a free joint: a |v|^2 / 2 remains a law of its slides, a |omega|^2 / 2 is a moment a 1."""
-        a = motions[0].armature
-        if is_zero(a):
-            return motions, inertial
-        self.report.merged(motions[0].place, f"its armature {a} is added to the moments of inertia of the body")
+    def _rotor(self, motion: Motion, inertial: Inertial) -> tuple[tuple[Motion], Inertial]:
+        """The armature a of a free or ball joint on what stands still: a |omega|^2 / 2 is a moment a 1 of the body,
+        a |v|^2 / 2 remains a law of slides.
+        """
+        a = motion.armature
+        if not is_turning(motion) or is_zero(a):
+            return (motion,), inertial
+        self.report.merged(motion.place, f"its armature {a} is added to the moments of inertia of the body")
         six = tuple(decimal_of(value(x) + (value(a) if i < 3 else 0)) for i, x in enumerate(inertial.inertia))
-        return motions, replace(inertial, inertia=six)
+        kept = motion if motion.type == "free" else replace(motion, armature=ZERO)
+        return (kept,), replace(inertial, inertia=six)
 
     def _unweighed(self, node: Node, geoms: list[tuple[Node, Seat]]) -> Place | None:
         """Where a body that does not move has a mass that is not known, and needs not be while nothing moves it."""
@@ -221,7 +223,7 @@ class Bodies:
             try:
                 mass_of(geom, self.compiler, self.meshes)
             except UnknownMass:
-                message = "the mass of a mesh needs its file: it is left out, as the body does not move here"
+                message = "the mass of a mesh needs its file, of a shell <inertial>: left out, as this stands still"
                 self.report.lost(geom.place, message, "physics")
                 return geom.place
         return None

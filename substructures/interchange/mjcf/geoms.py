@@ -7,6 +7,14 @@ About its own centre, with mass m, radius r, half length h (height H = 2 h), hal
     cylinder    V = pi r^2 H                m (3 r^2 + H^2) / 12 across, m r^2 / 2 along
     ellipsoid   V = 4/3 pi a b c            m (b^2 + c^2) / 5, ...
     box         V = 8 a b c                 m (b^2 + c^2) / 3, ...
+
+With ``shellinertia`` the surface alone has mass, evenly, of a density in kg/m^2:
+
+    sphere      A = 4 pi r^2                2/3 m r^2
+    capsule     A = 2 pi r H + 4 pi r^2     tube and two half spheres
+    cylinder    A = 2 pi r H + 2 pi r^2     tube and two discs
+    box         A = 8 (a b + b c + c a)     of the faces across x: m (b^2 + c^2) / 3 and m (a^2 + b^2 / 3), ...
+    tube        A = 2 pi r H                m (6 r^2 + H^2) / 12 across, m r^2 along
 """
 
 from __future__ import annotations
@@ -19,7 +27,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.interchange.mjcf.meshes import Meshes, UnknownMass
-from substructures.interchange.mjcf.settings import Compiler, orientation
+from substructures.interchange.mjcf.settings import Compiler, choice, orientation
 from substructures.interchange.numbers import ORIGIN, ZERO, value
 from substructures.interchange.report import refuse
 from substructures.interchange.rotations import from_z_axis
@@ -28,6 +36,10 @@ from substructures.interchange.xml import Node
 DENSITY = Decimal(1000)
 _SIZES = {"sphere": 1, "capsule": 2, "cylinder": 2, "ellipsoid": 3, "box": 3}
 _MASSLESS = ("plane", "hfield")
+_NO_SHELLS = {
+    "mesh": "is not of mesh geoms: give the <mesh> inertia='shell'",
+    "ellipsoid": "of an ellipsoid has no area in closed form (MuJoCo estimates it): give the body an <inertial>",
+}
 
 
 @dataclass(frozen=True)
@@ -48,8 +60,9 @@ def mass_of(geom: Node, compiler: Compiler, meshes: Meshes) -> Mass | None:
     mass, density = (value(geom.number(name, x)) for name, x in (("mass", ZERO), ("density", DENSITY)))
     if kind in _MASSLESS or not low <= value(geom.number("group", ZERO)) <= high or not (mass if given else density):
         return None
-    if geom.attributes.get("shellinertia", "false") == "true":
-        raise UnknownMass(refuse(geom.place, "shell", "shellinertia is not read: give the body an <inertial>").faults)
+    shell = "shellinertia" in geom.attributes and choice(geom, "shellinertia", ("false", "true")) == "true"
+    if shell and kind in _NO_SHELLS:
+        raise UnknownMass(refuse(geom.place, "shell", f"shellinertia {_NO_SHELLS[kind]}").faults)
     if kind == "mesh":
         found = meshes.of(geom)
         m = mass if given else density * found.volume
@@ -59,7 +72,7 @@ def mass_of(geom: Node, compiler: Compiler, meshes: Meshes) -> Mass | None:
         message = f"a {kind[:20]} fitted to a mesh is not read: give its size, or the body an <inertial>"
         raise UnknownMass(refuse(geom.place, "mesh-inertia", message).faults)
     size, centre, R = _placed(geom, kind, compiler)
-    volume, unit = _shape(kind, *size)
+    volume, unit = (_shell if shell else _shape)(kind, *size)
     m = mass if given else density * volume
     return _positive(geom, Mass(m, centre, R @ np.diag(unit) @ R.T * m))
 
@@ -110,6 +123,28 @@ def _shape(kind: str, a: float, b: float = 0, c: float = 0) -> tuple[float, list
     across = (1 - balls) * across + balls * (ball + height * (3 * a + 2 * height) / 8)
     along = (1 - balls) * along + balls * ball
     return math.pi * (a * a * height + 4 / 3 * a**3), [across, across, along]
+
+
+def _shell(kind: str, a: float, b: float = 0, c: float = 0) -> tuple[float, list[float]]:
+    """Area, and moments of inertia of a surface of 1 kg."""
+    if kind == "sphere":
+        return 4 * math.pi * a**2, [2 / 3 * a * a] * 3
+    if kind == "box":
+        sides = (a, b, c)
+        parts = []
+        for i, side in enumerate(sides):
+            squares = [x * x / 3 for x in sides]
+            squares[i] *= 3
+            parts.append((8 * a * b * c / side, [sum(squares) - x for x in squares]))
+    else:
+        tube = (a * a / 2 + b * b / 3, a * a)
+        across, along = (
+            (2 / 3 * a * a + b * b + a * b, 2 / 3 * a * a) if kind == "capsule" else (a * a / 4 + b * b, a * a / 2)
+        )
+        ends = (4 if kind == "capsule" else 2) * math.pi * a * a
+        parts = [(4 * math.pi * a * b, [tube[0], tube[0], tube[1]]), (ends, [across, across, along])]
+    area = sum(part for part, _ in parts)
+    return area, [sum(part * moments[i] for part, moments in parts) / area for i in range(3)]
 
 
 def summed(masses: list[Mass]) -> Mass | None:
