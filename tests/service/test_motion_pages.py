@@ -277,11 +277,15 @@ def farm(tmp_path: Path) -> Iterator[Server]:
     server.kill()
 
 
+def later(route: Any) -> None:
+    """A request that becomes a job."""
+    route.continue_(headers={**route.request.headers, "prefer": "respond-async"})
+
+
 @in_browser
 @pytest.mark.deep
 def test_a_long_motion_is_a_job(browser: Any, farm: Server) -> None:
     tab = opened(browser, farm.address, "/trees/swing@1/motion?pose=0.4")
-    later = lambda route: route.continue_(headers={**route.request.headers, "prefer": "respond-async"})  # noqa: E731
     tab.page.route("**/simulations", later)
     tab.page.click("#run")
     tab.until(TELLS.format("job"))
@@ -295,3 +299,50 @@ def test_a_long_motion_is_a_job(browser: Any, farm: Server) -> None:
     tab.until("document.getElementById('verdict').textContent === 'cancelled'")
     assert tab.page.is_enabled("#run")
     tab.close()
+
+
+LONG = {"q": [0.4], "span": [0, 30000]}
+
+
+def in_between(tab: Tab, farm: Server, lost: str) -> None:
+    """The server goes, which the page tells by an expression, and comes back."""
+    farm.kill()
+    tab.until(lost)
+    farm.start()
+
+
+def closed(tab: Tab) -> None:
+    """Nothing was wrong but that the server was gone."""
+    tab.wrong = [each for each in tab.wrong if "net::ERR_" not in each and "502" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_motion_is_followed_beyond_the_end_of_its_server(browser: Any, farm: Server) -> None:
+    tab = opened(browser, farm.address, "/trees/swing@1/motion?pose=0.4")
+    tab.page.route("**/simulations", later)
+    tab.page.fill("#span", str(LONG["span"][1]))
+    tab.page.click("#run")
+    tab.until(TELLS.format("job"))
+    in_between(tab, farm, TELLS.format("the connection is lost"))
+    assert "right" in (ran(tab) and tab.page.inner_text("#verdict"))
+    closed(tab)
+
+
+@in_browser
+@pytest.mark.deep
+def test_the_page_of_a_job_follows_it_beyond_the_end_of_its_server(browser: Any, farm: Server) -> None:
+    """Also where what stands before the server says that it is gone, after which a browser asks for no more events."""
+    with Client(farm.address) as client:
+        body = {"kind": "simulate", "items": [{"tree": "swing", "request": LONG}]}
+        job = client.request("POST", "/v1/jobs", body).json()
+    tab = Tab(browser, farm.address, f"/jobs/{job['id']}")
+    gone = lambda route: route.fulfill(status=502, body="")  # noqa: E731
+    tab.page.route("**/events", gone)
+    in_between(tab, farm, "document.getElementById('told').textContent.includes('the connection is lost')")
+    tab.page.unroute("**/events")
+    tab.until("document.querySelector('#live [data-final]')")
+    assert tab.page.inner_text("#told") == ""
+    assert "succeeded" in tab.page.inner_text("#live")
+    closed(tab)
