@@ -168,7 +168,7 @@ def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> 
         tag = tree_tag(base, withdrawn(connection, viewer, base)) if if_match else ""
     owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
     if if_match is not None:
-        require_match(text, tag, if_match)
+        require_match(f"the tree '{text}'", tag, if_match)
     return base, _current(base)
 
 
@@ -279,7 +279,7 @@ def remove(connection: Connection, viewer: Viewer, name: str, if_match: str | No
         raise Refused(422, "bare-name-expected", f"a tree is removed as a whole: '{tree.name}', not '{name[:160]}'")
     owners.require(viewer, tree.owner, name, "removes it")
     if if_match is not None:
-        require_match(name, tree_tag(tree, withdrawn(connection, viewer, tree)), if_match)
+        require_match(f"the tree '{name}'", tree_tag(tree, withdrawn(connection, viewer, tree)), if_match)
     trees.remove(connection, name)
     audit.note(connection, viewer, "tree.remove", name, revisions=tree.revision)
 
