@@ -356,7 +356,7 @@ def test_preferences_that_were_followed_are_told(
         ("cell/evaluations", "POST"),
         ("cell/metric", "GET, HEAD"),
         ("cell/couplings/arm", "DELETE, PATCH"),
-        ("cell", "DELETE, GET, HEAD"),
+        ("cell", "DELETE, GET, HEAD, PATCH"),
     ],
 )
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
