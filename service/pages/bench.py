@@ -65,7 +65,7 @@ def bench_page(bench: Bench, view: Html, part: str = "") -> bytes:
 
 def _settable(bench: Bench, spec: Mapping[str, Any]) -> step_forms.Settable:
     """Of every instance the parameters that its part declares, and those that it is given."""
-    instances = spec["instances"]
+    instances = spec.get("instances", ())
     return {each["name"]: (bench.parameters[each["name"]], each.get("parameters", {})) for each in instances}
 
 
@@ -140,7 +140,7 @@ def _number(given: Any) -> str:
 
 def _outline(bench: Bench, spec: Mapping[str, Any]) -> Html:
     """What hangs on what, with a button for every place."""
-    rows = _instances(bench, spec["instances"], "world")
+    rows = _instances(bench, spec.get("instances", ()), "world")
     gravity = f" gravity {', '.join(map(step_forms.written, _gravity(spec)))} m/s²"
     world = tag("li", _place("world", "world"), tag("span", gravity, class_="quiet small"), tag("ul", rows))
     lists = [_list(spec.get(kind, ()), kind) for kind in ("loads", "closures")]

@@ -141,6 +141,13 @@ def test_parameters_and_gravity_by_hand(browser: Any, address: str, filled: Test
     tab.close()
 
 
+def test_a_tree_without_instances_has_a_workbench(filled: TestClient) -> None:
+    assert filled.post("/v1/trees", json={"name": "bare", "instances": []}).status_code == 201
+    page = filled.get("/trees/bare/edit")
+    assert page.status_code == 200
+    assert "Couple a part" in page.text
+
+
 @in_browser
 @pytest.mark.deep
 def test_loads_of_every_type_by_hand(browser: Any, address: str, filled: TestClient, bench: str) -> None:
