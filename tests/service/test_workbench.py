@@ -150,6 +150,28 @@ def test_a_tree_without_instances_has_a_workbench(filled: TestClient) -> None:
 
 @in_browser
 @pytest.mark.deep
+def test_what_to_do_is_told_where_a_gateway_answers_or_a_tree_is_gone(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    """No sentence about JSON, nor a number alone."""
+    tab, tree = Tab(browser, address, f"/trees/{bench}/edit"), Tab(browser, address, f"/trees/{bench}@1")
+    tab.until(READY)
+    tree.until(READY)
+    gateway = lambda route: route.fulfill(status=502, body="<html>Bad gateway</html>", content_type="text/html")  # noqa: E731
+    tab.page.route(f"**/v1/trees/{bench}@1", gateway)
+    tab.page.click("summary:has-text('Set gravity')")
+    tab.page.click("button:has-text('Set gravity')")
+    tab.until("document.getElementById('told').textContent.includes('see whether the server runs')")
+    assert filled.delete(f"/v1/trees/{bench}").status_code == 204
+    tree.page.click(".tabs [data-tab=christoffel]")
+    tree.until("document.getElementById('grid').textContent.includes('it is there no more')")
+    for each in (tab, tree):
+        each.wrong = [text for text in each.wrong if "502" not in text and "404" not in text]
+        each.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_loads_of_every_type_by_hand(browser: Any, address: str, filled: TestClient, bench: str) -> None:
     tab = Tab(browser, address, f"/trees/{bench}/edit")
     form = "[data-action=loads]"
