@@ -53,6 +53,19 @@ def test_axe_finds_nothing_serious(browser: Any, address: str, path: str, scheme
 
 @in_browser
 @pytest.mark.deep
+@pytest.mark.parametrize("path", ["/jobs", "/trees/cell@2"])
+def test_paper_is_white(browser: Any, address: str, path: str) -> None:
+    """Light letters of the dark scheme would not be seen on it."""
+    tab = Tab(browser, address, path, color_scheme="dark")
+    ground = "getComputedStyle(document.documentElement).getPropertyValue('--page').trim()"
+    assert tab.page.evaluate(ground) == "#14171a"
+    tab.page.emulate_media(media="print", color_scheme="dark")
+    assert tab.page.evaluate(ground) == "#fff"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_axe_finds_a_planted_fault(browser: Any, address: str) -> None:
     tab = Tab(browser, address, "/jobs")
     tab.page.evaluate("document.querySelector('main').append(document.createElement('button'))")
