@@ -53,6 +53,23 @@ def test_axe_finds_nothing_serious(browser: Any, address: str, path: str, scheme
 
 @in_browser
 @pytest.mark.deep
+@pytest.mark.parametrize("path", ["/jobs", "/docs", "/trees/cell@2", "/v1/trees/cell@2/report?format=mathml"])
+def test_a_page_that_is_loaded_again_is_what_it_was(browser: Any, address: str, path: str) -> None:
+    """Its style, its scripts and its policy, which the browser has, and the server says so."""
+    page, wrong = browser.new_page(), list[str]()  # what a Tab intercepts is not kept by the browser
+    page.on("console", lambda message: wrong.append(message.text))
+    page.goto(address + path)
+    colour = "getComputedStyle(document.querySelector('a')).color"
+    before = page.evaluate(colour)
+    for _ in range(2):
+        page.reload()
+        assert page.evaluate(colour) == before
+    page.close()
+    assert wrong == []
+
+
+@in_browser
+@pytest.mark.deep
 @pytest.mark.parametrize("path", ["/jobs", "/trees/cell@2"])
 def test_paper_is_white(browser: Any, address: str, path: str) -> None:
     """Light letters of the dark scheme would not be seen on it."""
