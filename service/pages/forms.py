@@ -28,7 +28,7 @@ def couple(part: str, at: str) -> Html:
         field("name", required="required", value=_instance(part), **INSTANCE),
         frame_field("at", at),
         tag("fieldset", tag("legend", "placement: numbers or expressions, or drag the part"), numbers),
-        tag("button", "Couple", type="submit"),
+        submit("Couple"),
         data_action="couplings",
         class_="step",
     )
@@ -147,9 +147,13 @@ def _choice(name: str, values: Sequence[str], label: str) -> Html:
     return tag("label", f"{label} ", tag("select", [tag("option", each, value=each) for each in values], name=name))
 
 
+def submit(title: str, **attributes: str) -> Html:
+    """A button that a script makes usable: before that, a browser would ask for a page with the fields as its query."""
+    return tag("button", title, type="submit", disabled="disabled", **attributes)
+
+
 def _form(title: str, action: str, *fields: Content, method: str | None = None) -> Html:
-    button = tag("button", title, type="submit")
-    form = tag("form", fields, button, data_action=action, data_method=method, class_="step")
+    form = tag("form", fields, submit(title), data_action=action, data_method=method, class_="step")
     return tag("details", tag("summary", title), form)
 
 

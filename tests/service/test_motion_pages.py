@@ -135,6 +135,23 @@ def test_a_motion_begins_in_the_state_of_the_page_before(browser: Any, address: 
 
 
 @in_browser
+@pytest.mark.deep
+@pytest.mark.usefixtures("trees")
+def test_an_emptied_parameter_is_its_default(browser: Any, address: str) -> None:
+    tab = opened(browser, address, "/trees/swing@1/motion?set=arm.m:,arm.l:3")
+    tab.page.click(".parameters summary")
+    assert float(tab.page.input_value("[aria-label='arm.m']")) == 2
+    assert float(tab.page.input_value("[aria-label='arm.l']")) == 3
+    tab.page.fill("[aria-label='arm.l']", "")
+    tab.page.press("[aria-label='arm.l']", "Enter")
+    assert float(tab.page.input_value("[aria-label='arm.l']")) == 1
+    tab.until("!location.search.includes('set=')")
+    tab.page.click("#run")
+    assert ran(tab)["parameters"] == {}
+    tab.close()
+
+
+@in_browser
 @pytest.mark.usefixtures("trees")
 def test_warnings_are_no_green_and_power_has_a_unit(browser: Any, address: str) -> None:
     tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=0")

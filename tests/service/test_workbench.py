@@ -294,6 +294,11 @@ def test_without_scripts_the_outline_is_there(browser: Any, address: str, bench:
     tab = Tab(browser, address, f"/trees/{bench}/edit", java_script_enabled=False)
     assert "Steps are taken by a script" in tab.page.inner_text("main")
     assert "arm" in tab.page.inner_text("#outline")
+    forms = tab.page.locator("form[data-action] [type=submit]")
+    assert forms.count() > 5
+    assert all(forms.nth(k).is_disabled() for k in range(forms.count())), "nothing is sent as a query of the page"
+    tab.page.goto(f"{address}/trees/{bench}/motion")
+    assert all(tab.page.is_disabled(each) for each in ("#run", "#locus [type=submit]"))
     tab.page.close()
 
 

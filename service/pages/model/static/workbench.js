@@ -104,6 +104,7 @@ for (const form of document.querySelectorAll("[data-action]")) {
         clearTimeout(waiting);
         waiting = setTimeout(() => tried(placing.rested(form)), REST);
     });
+    form.querySelector("[type=submit]").disabled = false;
     form.addEventListener("submit", (event) => {
         event.preventDefault();
         const [method, address] = request(form);

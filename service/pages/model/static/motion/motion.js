@@ -113,6 +113,7 @@ async function start({ kind, reference, ranges, joints, turns }) {
         play, given: () => sliders.given()[0], found: (q) => sliders.set(q), size: () => view?.told.sphere.radius ?? 1,
     });
     locus(path, () => sliders.given()[0]);
+    for (const button of document.querySelectorAll("[type=submit]")) button.disabled = false;
     restore();
     back();
     view = await shown(kind, reference, sliders);
