@@ -19,12 +19,15 @@ async function again() {
     return;
   }
   if (told.textContent === LOST) told.textContent = "";
-  const fresh = new DOMParser().parseFromString(text, "text/html").getElementById("live");
+  const page = new DOMParser().parseFromString(text, "text/html");
+  const [fresh, rows, old] = [page.getElementById("live"), page.getElementById("rows"), document.getElementById("rows")];
   if (!fresh) return;
   const focus = live.contains(document.activeElement) ? named(document.activeElement) : null;
   isFinal = Boolean(fresh.querySelector("[data-final]"));
   live.replaceChildren(...fresh.childNodes);
   if (focus) [...live.querySelectorAll("a, button")].find(each => named(each) === focus)?.focus();
+  if (rows && !old) live.after(rows);
+  else if (rows && isFinal && !old.contains(document.activeElement)) old.replaceWith(rows);
   if (isFinal) source?.close();
   else if (source?.readyState === EventSource.CLOSED) follow();
 }

@@ -318,6 +318,27 @@ def test_a_long_motion_is_a_job(browser: Any, farm: Server) -> None:
     tab.close()
 
 
+@in_browser
+@pytest.mark.deep
+def test_the_rows_of_a_sweep_come_with_its_end(browser: Any, farm: Server) -> None:
+    arm = {"name": "arm", "substructure": "pendulum"}
+    samples = {"method": "grid", "of": {"arm.l": {"uniform": [1, 2], "count": 400}}}
+    body = {
+        "kind": "sweep",
+        "template": {"name": "s", "instances": [arm]},
+        "samples": samples,
+        "columns": {"m": "mass"},
+    }
+    tab = Tab(browser, farm.address, "/jobs")
+    with Client(farm.address) as client:
+        job = client.request("POST", "/v1/jobs", body).json()["id"]
+    tab.page.goto(f"{farm.address}/jobs/{job}")
+    tab.until("document.querySelector('#live [data-final]')")
+    tab.until("document.querySelector('#rows table')")
+    assert tab.page.locator("#rows").count() == 1
+    tab.close()
+
+
 LONG = {"q": [0.4], "span": [0, 30000]}
 
 
