@@ -76,7 +76,7 @@ class _Listed(BaseModel):
     model_config = ConfigDict(frozen=True, extra="forbid")
 
     name: LibraryName
-    number: Annotated[int, Field(ge=1, le=MOST_NUMBER)] | None = None
+    number: Annotated[int, Field(strict=True, ge=1, le=MOST_NUMBER)] | None = None
     digest: Digest
     program: Digest
     folder: str

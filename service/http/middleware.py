@@ -26,6 +26,7 @@ _ID, _TYPE, _PAGE = b"x-request-id", b"content-type", b"application/xhtml+xml"
 _GUARDS, _GUARDS_OF_PAGE = (
     [(name.lower().encode(), value.encode()) for name, value in some.items()] for some in (GUARDED, GUARDED_PAGE)
 )
+NOT_MODIFIED = 304
 GONE = 499  # as log lines of proxies have it
 _log = logging.getLogger("service.access")
 
@@ -74,7 +75,9 @@ class Conventions:
                 pairs = [pair for pair in message.get("headers", ()) if pair[0] != _ID]
                 told = {name for name, _ in pairs}
                 is_page = any(name == _TYPE and value.startswith(_PAGE) for name, value in pairs)
-                guards = [pair for pair in (_GUARDS_OF_PAGE if is_page else _GUARDS) if pair[0] not in told]
+                # of what a browser has already these would take the place of its own
+                wanted = [] if status == NOT_MODIFIED else _GUARDS_OF_PAGE if is_page else _GUARDS
+                guards = [pair for pair in wanted if pair[0] not in told]
                 message["headers"] = [*pairs, (_ID, identifier.encode()), *guards]
             if is_start or not is_head:
                 await send(message)

@@ -17,7 +17,7 @@ from pydantic.json_schema import models_json_schema
 
 from service.models.numbers import ANALYSES
 from service.schemas.analyses.velocity_constraints import VelocityConstraints
-from service.schemas.entries import ChangedInstance, SubmittedDefinition, SubmittedTree, VisibilityRequest
+from service.schemas.entries import ChangedInstance, ChangedTree, SubmittedDefinition, SubmittedTree, VisibilityRequest
 from service.schemas.equivalences import EquivalenceRequest
 from service.schemas.jobs import CancelRequest, JobRequest, RetryRequest
 from service.schemas.numbers import EvaluationRequest, KernelsRequest
@@ -61,6 +61,7 @@ _READ_BY_US: tuple[type[BaseModel], ...] = (
     SubmittedTree,
     Instance,
     ChangedInstance,
+    ChangedTree,
     AnyTreeLoad,
     *_REQUESTS,
     VelocityConstraints,

@@ -29,6 +29,7 @@ from substructures.formats import arrays, arrow
 SUBMISSIONS = "/v1/jobs"  # longer bodies
 IMPORTS = "/v1/imports"  # zips of files with meshes
 SESSION = "substructures_session"  # cookie
+PRECONDITIONS = ("If-Match", "If-None-Match")
 SHORT = 2**12  # bytes of JSON that are read in less time than another thread takes to begin
 
 
@@ -56,6 +57,8 @@ def needs(scope: str) -> Any:
         viewer = await authenticated(store_of(request), credentials(request.method, request.headers))
         viewer.require(scope)
         check_query(request)
+        if scope != "read":
+            check_preconditions(request)
         request.state.viewer, request.state.principal = viewer, viewer.key
 
     return Depends(authorise)
@@ -75,6 +78,18 @@ def check_query(request: Request) -> None:
         if len(request.query_params.getlist(name)) > 1 and not _is_list(known[name].field_info.annotation):
             detail = f"the query parameter '{name}' is given more than once, and has one value: give it once"
             raise unprocessable("given-twice", detail, "/query" + pointer_step(name))
+
+
+def check_preconditions(request: Request) -> None:
+    """Raise Refused 422 for a condition of a request that changes something, where its endpoint does not look at it: to
+    be passed over is the last thing that whoever sets one wants.
+    """
+    route = request.scope.get("route")
+    known = {each.alias for each in route.dependant.header_params} if isinstance(route, APIRoute) else set()
+    for name in PRECONDITIONS:
+        if name.lower() in request.headers and name.lower() not in known:
+            detail = f"{name} has no meaning for {request.method} {request.url.path}: send it without"
+            raise unprocessable("unknown-precondition", detail, f"/header/{name}")
 
 
 def _query_fields(dependant: Any) -> Iterator[tuple[str, Any]]:

@@ -44,12 +44,13 @@ class Refused(Exception):
 class NotDerived(Exception):
     """Content that this server has not derived, or not as it is stored now: it is derived anew before it is used.
 
-    ``kind``: ``part`` with its digest as ``key``, or ``tree`` with name and revision as in ``cell@2``.
+    ``kind``: ``part`` with its digest as ``key``, or ``tree`` with name and revision as in ``cell@2``. ``is_newest``: a
+    tree that another version of the software coupled will not do, either.
     """
 
-    def __init__(self, kind: Literal["part", "tree"], key: str) -> None:
+    def __init__(self, kind: Literal["part", "tree"], key: str, is_newest: bool = False) -> None:
         super().__init__(f"the {kind} {key} is being derived anew from its document; ask again")
-        self.kind, self.key = kind, key
+        self.kind, self.key, self.is_newest = kind, key, is_newest
 
 
 class LongWork(TimeoutError):

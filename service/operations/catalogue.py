@@ -9,11 +9,11 @@ from dataclasses import dataclass
 from service.content.summaries import PartContent, part_content
 from service.database.connections import Connection
 from service.jobs.worker import Worker
-from service.messages.answers import names
 from service.messages.references import ALIAS, Reference, parse_reference
 from service.messages.refusals import Refused, not_found, unprocessable
 from service.messages.viewer import Viewer
 from service.operations import owners
+from service.operations.preconditions import ANY, Expected, require, require_part, tag_of
 from service.operations.sharing.provenance import Origin, derived_from, pinned, provenance
 from service.queries import aliases, audit, catalogue, content, folders, uses
 from service.queries.owners import is_version, ownership
@@ -31,7 +31,7 @@ SUBMITTED = Origin()
 class PartSubmission:
     """A definition ready to be stored; ``content`` is None when that is stored already. ``is_mended``: what is stored
     is damaged, or was not derived here, and the content takes its place. ``number``: that the version has elsewhere, by
-    default the next one."""
+    default the next one. ``expected``: what the part has to be when it is stored."""
 
     name: str
     digest: str
@@ -40,6 +40,7 @@ class PartSubmission:
     entry: PartEntry = PLAIN
     origin: Origin = SUBMITTED
     number: int | None = None
+    expected: Expected = ANY
 
 
 def prepare(
@@ -49,27 +50,30 @@ def prepare(
     entry: PartEntry,
     origin: Origin = SUBMITTED,
     make: Callable[[], PartContent] | None = None,
+    expected: Expected = ANY,
 ) -> PartSubmission:
     """Derive, verify and certify a definition unless its content is known and sound; ``make``: what does so, by default
     here and with whatever time it takes.
 
-    Raises InvalidDocument, TooLarge, TimeoutError, Refused 403 for a name of others, 409, 422.
+    Raises InvalidDocument, TooLarge, TimeoutError, Refused 403 for a name of others, 409, 412, 422.
     """
     is_mended = False
+    name, digest = definition.name, definition.digest
     with store.database.read() as connection:
-        if not _is_there(connection, viewer, definition.name, definition.digest):
-            owners.wanted(connection, viewer, "substructure", definition.name, entry)
+        require_part(connection, viewer, name, expected)
+        if not _is_there(connection, viewer, name, digest):
+            owners.wanted(connection, viewer, "substructure", name, entry)
         derived_from(connection, viewer, entry)
         try:
-            known = content.get_part(connection, definition.digest)
+            known = content.get_part(connection, digest)
         except Refused:  # damaged, or gone in part
             is_mended = True
         else:
             if known is not None and known.is_derived:
-                return PartSubmission(definition.name, definition.digest, None, entry=entry, origin=origin)
+                return PartSubmission(name, digest, None, entry=entry, origin=origin, expected=expected)
             is_mended = known is not None
     found = make() if make else part_content(derive(definition, store.settings.limits.program_nodes))
-    return PartSubmission(definition.name, definition.digest, found, is_mended, entry, origin)
+    return PartSubmission(name, digest, found, is_mended, entry, origin, expected=expected)
 
 
 def derived(worker: Worker, definition: Definition, limits: Mapping[str, int]) -> PartContent:
@@ -102,10 +106,11 @@ def mend_part(connection: Connection, part: PartContent) -> None:
 
 def submit(connection: Connection, viewer: Viewer, submission: PartSubmission) -> tuple[catalogue.Version, bool]:
     """Store a submission; the version, and whether it is new. Raises Refused 403 for a name of others, 409, also for a
-    number that another content has."""
+    number that another content has, 412."""
     name, digest = submission.name, submission.digest
     if not _is_there(connection, viewer, name, digest) or submission.entry.visibility is not None:
         owners.claimed(connection, viewer, "substructure", name, submission.entry)
+    require_part(connection, viewer, name, submission.expected)
     if submission.content is not None:
         (mend_part if submission.is_mended else store_part)(connection, submission.content)
     origin = submission.origin
@@ -153,9 +158,9 @@ def used(connection: Connection, viewer: Viewer, text: str) -> tuple[str, int | 
 
 
 def set_alias(
-    connection: Connection, viewer: Viewer, name: str, alias: str, version: int, if_match: str | None
+    connection: Connection, viewer: Viewer, name: str, alias: str, version: int, expected: Expected = ANY
 ) -> aliases.Alias:
-    """Point an alias to a version; to move an existing one, ``if_match`` has to be its ETag. Raises Refused."""
+    """Point an alias to a version; to move an existing one, its ETag has to be expected. Raises Refused."""
     if not re.fullmatch(ALIAS, alias):
         raise unprocessable(
             "alias-name", f"an alias is a letter and up to 63 letters, digits, '-', '_': '{alias[:80]}'"
@@ -167,11 +172,11 @@ def set_alias(
         why = owners.absent_part(connection, viewer, f"{name}@{version}")
         raise unprocessable("unknown-version", why, "/version")
     current = aliases.get_alias(connection, name, alias)
-    if current is not None and if_match is None:
+    tag = None if current is None else alias_tag(current)
+    require(f"the alias '{alias}'", tag, expected)
+    if current is not None and expected.if_match is None:
         detail = f"the alias '{alias}' exists; send its ETag in If-Match to move it"
         raise Refused(428, "precondition-required", detail, headers={"ETag": alias_tag(current)})
-    if if_match is not None and (current is None or not names(if_match, alias_tag(current))):
-        raise Refused(412, "precondition-failed", f"the alias '{alias}' is not what If-Match says")
     if current is not None and current.version == version:
         return current
     changed = aliases.set_alias(connection, name, alias, version, current.revision if current else 0, viewer.key)
@@ -195,13 +200,19 @@ def alias_tag(alias: aliases.Alias) -> str:
 
 
 def withdraw(
-    connection: Connection, viewer: Viewer, text: str, reason: str, successor: str | None = None
+    connection: Connection,
+    viewer: Viewer,
+    text: str,
+    reason: str,
+    successor: str | None = None,
+    if_match: str | None = None,
 ) -> catalogue.Version:
     """Withdraw a version: it stays where it is used, and no longer is anybody's latest; ``successor``: reference to
-    what to take instead. Raises Refused 404, 403, 422.
+    what to take instead. Raises Refused 404, 403, 412, 422.
     """
     version = find(connection, viewer, text)
     owners.require(viewer, version.owner, version.name, "withdraws its versions")
+    require(f"the part '{text}'", tag_of(connection, viewer, version), Expected(if_match))
     instead = None if successor is None else pinned(connection, viewer, successor, "/successor")
     if instead == (version.name, version.version):
         raise unprocessable("own-successor", f"'{text[:80]}' cannot take its own place", "/successor")

@@ -75,7 +75,8 @@ class StoreLibrary:
         ref = parse_reference(reference)
         found = None if ref is None else trees.resolve(self._connection, self._viewer, ref)
         self._note(found)
-        return None if found is None else StoredTree(found.name, found.digest, found.program, found.spec, found.summary)
+        names = StoredTree.__dataclass_fields__
+        return None if found is None else StoredTree(**{name: getattr(found, name) for name in names})
 
     def _note(self, found: Version | Tree | None) -> None:
         if found is not None and not found.is_public:

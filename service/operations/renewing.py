@@ -40,7 +40,7 @@ class Renewal:
         if not self._lock.acquire(timeout=self._store.settings.limits.sync_seconds):
             raise wanted
         try:
-            self._renew(wanted, is_served=True)
+            self._renew(wanted, is_served=not wanted.is_newest)
         except (Refused, DBAPIError):
             raise
         except Exception as error:

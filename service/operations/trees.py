@@ -82,10 +82,7 @@ def coupling(store: Store, viewer: Viewer, text: str, data: Any, if_match: str |
 def removal(store: Store, viewer: Viewer, text: str, instance: str, if_match: str | None = None) -> TreeChange:
     """One instance less, which must not carry another. Raises Refused 403, 404, 409 or 412."""
     base, spec = _existing(store, viewer, text, if_match)
-    instances = spec.get("instances", [])
-    known = [each["name"] for each in instances]
-    if instance not in known:
-        raise not_found(f"the tree '{text}' has no instance '{instance}'{among(instance, known)}", "unknown-instance")
+    instances, _ = _found(spec, text, ("instance", "instances", instance))
     carried = [each["name"] for each in instances if each.get("at", "").partition(".")[0] == instance]
     if carried:
         raise Refused(409, "instance-in-use", f"'{instance}' carries {', '.join(carried)}; remove these first")
@@ -100,20 +97,33 @@ def replacement(
     that is named takes that of a definition, or the other way round. Raises Refused 403, 404, 412 or 422.
     """
     base, spec = _existing(store, viewer, text, if_match)
-    instances = spec.get("instances", [])
-    known = [each["name"] for each in instances]
-    if instance not in known:
-        raise not_found(f"the tree '{text}' has no instance '{instance}'{among(instance, known)}", "unknown-instance")
+    instances, k = _found(spec, text, ("instance", "instances", instance))
     if not isinstance(data, Mapping):
         raise unprocessable("invalid-document", "send an object with the members that change", "")
     if data.get("name", instance) != instance:
         raise unprocessable("name-stays", f"what hangs on '{instance}' knows it by this name, which stays", "/name")
-    k = known.index(instance)
     left = {"substructure", "definition"} if {"substructure", "definition"} & data.keys() else set()
     merged = {**{name: value for name, value in instances[k].items() if name not in left}, **data}
     made = {name: value for name, value in merged.items() if value is not None}
     document = {**spec, "instances": [*instances[:k], made, *instances[k + 1 :]]}
     return TreeChange(document, base, is_pinned(text), f"/instances/{k}")
+
+
+def _found(spec: Mapping[str, Any], text: str, which: tuple[str, str, str]) -> tuple[list[dict[str, Any]], int]:
+    """All of a kind in a tree, and the number of one among them. Raises Refused 404."""
+    kind, members, name = which
+    listed = spec.get(members, [])
+    known = [each["name"] for each in listed]
+    if name not in known:
+        raise not_found(f"the tree '{text}' has no {kind} '{name}'{among(name, known)}", f"unknown-{kind}")
+    return listed, known.index(name)
+
+
+def amendment(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
+    """Other members of the tree itself; null leaves one out. Raises Refused 403, 404 or 412."""
+    base, spec = _existing(store, viewer, text, if_match)
+    document = {name: value for name, value in {**spec, **data}.items() if value is not None}
+    return TreeChange(document, base, is_pinned(text), "")
 
 
 def load(store: Store, viewer: Viewer, text: str, data: Any, if_match: str | None = None) -> TreeChange:
@@ -145,12 +155,8 @@ def opening(store: Store, viewer: Viewer, text: str, name: str, if_match: str | 
 def _one_less(store: Store, viewer: Viewer, text: str, which: tuple[str, str, str], if_match: str | None) -> TreeChange:
     """Without what has the name in a list of the tree."""
     base, spec = _existing(store, viewer, text, if_match)
-    kind, members, name = which
-    listed = spec.get(members, [])
-    kept = [each for each in listed if each["name"] != name]
-    if len(kept) == len(listed):
-        known = [each["name"] for each in listed]
-        raise not_found(f"the tree '{text}' has no {kind} '{name}'{among(name, known)}", f"unknown-{kind}")
+    listed, k = _found(spec, text, which)
+    kept, members = [*listed[:k], *listed[k + 1 :]], which[1]
     changed = {key: value for key, value in spec.items() if key != members} | ({members: kept} if kept else {})
     return TreeChange(changed, base, is_pinned(text), "")
 
@@ -168,7 +174,7 @@ def _existing(store: Store, viewer: Viewer, text: str, if_match: str | None) -> 
         tag = tree_tag(base, withdrawn(connection, viewer, base)) if if_match else ""
     owners.require(viewer, base.owner, base.name, "changes it; couple what you need to a tree of your own")
     if if_match is not None:
-        require_match(text, tag, if_match)
+        require_match(f"the tree '{text}'", tag, if_match)
     return base, _current(base)
 
 
@@ -279,7 +285,7 @@ def remove(connection: Connection, viewer: Viewer, name: str, if_match: str | No
         raise Refused(422, "bare-name-expected", f"a tree is removed as a whole: '{tree.name}', not '{name[:160]}'")
     owners.require(viewer, tree.owner, name, "removes it")
     if if_match is not None:
-        require_match(name, tree_tag(tree, withdrawn(connection, viewer, tree)), if_match)
+        require_match(f"the tree '{name}'", tree_tag(tree, withdrawn(connection, viewer, tree)), if_match)
     trees.remove(connection, name)
     audit.note(connection, viewer, "tree.remove", name, revisions=tree.revision)
 

@@ -2,25 +2,30 @@
 
 A part is right when what this software derives of its definition is what is stored, by the digest of its program, and
 figure by figure; a tree when coupling its parts gives what is stored. Nothing is sampled. What another version of the
-software derived, or a server elsewhere, is told as such: it may be right, and this server does not vouch for it.
+software derived, or a server elsewhere, is told as such: it may be right, and this server does not vouch for it. Until
+this software has looked at all of the store (:mod:`service.operations.renewing`), what has the seal of this server and
+is of another version is no fault: it is not renewed yet, and not verified either.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 from service.content.derivation import software
 from service.content.integrity import checked
+from service.content.summaries import PartContent
 from service.database.connections import Connection, Database
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY
 from service.operations.renewal import part_anew, read_tree, renew_part, renew_tree, tree_anew
-from service.queries import catalogue, content, trees
+from service.queries import catalogue, content, renewals, trees
+from service.queries.content import StoredPart
 from service.queries.jobs import results
-from service.queries.searching.formulas import FormulaRow, read_index
+from service.queries.searching.formulas import FormulaRow, list_formulas, read_index
+from service.queries.trees import Tree
 from substructures.documents import read_json
 from substructures.errors import SubstructuresError
 
@@ -33,7 +38,8 @@ FIGURES = ("program", "dof", "joints", "mass")
 class Finding:
     """What was verified, e.g. ``substructure arm@2``.
 
-    ``fault``: what is wrong, empty where nothing is; ``outcome``: what came of deriving it anew.
+    ``fault``: what is wrong, empty where nothing is; ``outcome``: what came of deriving it anew, or
+    :data:`NOT_RENEWED`.
     """
 
     what: str
@@ -46,8 +52,14 @@ class Finding:
         """Whether it can be used now."""
         return not self.fault or self.outcome == MENDED
 
+    @property
+    def is_left(self) -> bool:
+        """Whether it was not compared, as this version has not derived it yet."""
+        return self.outcome == NOT_RENEWED
+
 
 MENDED = "derived anew"
+NOT_RENEWED = "not renewed yet, nor verified: another version derived it; a server or --repair derives it anew"
 
 
 def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
@@ -64,14 +76,15 @@ def verify_all(database: Database, repair: bool = False) -> Iterator[Finding]:
         name = f"{tree}@{number}"
         yield _verified(database, f"tree {name}", name, _check_tree, partial(_renew_tree, database) if repair else None)
     for key in kept:
-        if fault := _fault(database, key, _check_result):
-            yield Finding(f"result {key}", key, fault)
+        if (found := _looked_at(database, f"result {key}", key, _check_result)).fault:
+            yield found
 
 
-def _check_result(connection: Connection, key: str) -> None:
+def _check_result(connection: Connection, key: str) -> bool:
     results.get_summary(connection, key)
     for file in results.list_files(connection, [key]).get(key, ()):
         results.get_file(connection, key, file.name)
+    return True
 
 
 def _renew_tree(database: Database, reference: str) -> None:
@@ -87,27 +100,31 @@ def _verified(
     database: Database,
     what: str,
     key: str,
-    check: Callable[[Connection, str], object],
+    check: Callable[[Connection, str], bool],
     mend: Callable[[str], object] | None,
 ) -> Finding:
-    fault = _fault(database, key, check)
-    if not fault or mend is None:
-        return Finding(what, key, fault)
+    found = _looked_at(database, what, key, check)
+    if mend is None or not (found.fault or found.is_left):
+        return found
     try:
         mend(key)
     except Exception as error:  # whatever it is, the next one is looked at, too
-        return Finding(what, key, fault, f"cannot be derived anew: {told(error)}")
-    again = _fault(database, key, check)
-    return Finding(what, key, fault, (again and f"derived anew, and still wrong: {again}") or MENDED)
+        fault = found.fault or "another version of the software derived it"
+        return replace(found, fault=fault, outcome=f"cannot be derived anew: {told(error)}")
+    again = _looked_at(database, what, key, check)
+    if again.fault or again.is_left:
+        fault, outcome = found.fault or again.fault, f"derived anew, and still wrong: {again.fault or again.outcome}"
+        return replace(found, fault=fault or NOT_RENEWED, outcome=outcome)
+    return replace(found, outcome=MENDED)
 
 
-def _fault(database: Database, key: str, check: Callable[[Connection, str], object]) -> str:
+def _looked_at(database: Database, what: str, key: str, check: Callable[[Connection, str], bool]) -> Finding:
+    """What a check found, which says whether what is stored was compared."""
     try:
         with database.read() as connection:
-            check(connection, key)
+            return Finding(what, key, outcome="" if check(connection, key) else NOT_RENEWED)
     except Exception as error:  # damage may show as anything
-        return told(error)
-    return ""
+        return Finding(what, key, told(error))
 
 
 def told(error: Exception) -> str:
@@ -116,22 +133,35 @@ def told(error: Exception) -> str:
     return str(error) if is_known and str(error) else f"{type(error).__name__}: {error}"
 
 
-def _check_part(connection: Connection, digest: str) -> None:
-    """Raises what is wrong with a part, its columns and the index of its formulas."""
+def _check_part(connection: Connection, digest: str) -> bool:
+    """Raises what is wrong with a part, its columns and the index of its formulas; False: it is not renewed yet."""
     stored = content.get_part(connection, digest)
     if stored is None:
         raise ValueError("its definition is gone from the store; submit it again")
     made = part_anew(connection, digest)
-    row = content.get_row(connection, digest)
+    if is_left := _is_left(connection, stored):
+        list_formulas(connection, digest)
+    else:
+        _require_none(_wrong_of_part(content.get_row(connection, digest), made))
+        _require_own(stored)
+    if wrong := catalogue.wrong_latest(connection, digest):
+        raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
+    return not is_left
+
+
+def _is_left(connection: Connection, stored: StoredPart | Tree) -> bool:
+    """Whether it is as this server stored it with another version, and this one may not have looked at it yet."""
+    return stored.is_derived and stored.software != software() and not renewals.is_done(connection)
+
+
+def _wrong_of_part(row: Mapping[str, Any], made: PartContent) -> list[str]:
+    """What of a part differs from what was derived anew."""
     wrong = [name for name in made.row if name not in APART and row[name] != made.row[name]]
     if _lasting(read_json(row["certificate"].encode())) != _lasting(read_json(made.row["certificate"].encode())):
         wrong.append("certificate")
     if read_index(row["outputs"], row["formulas"]) != [FormulaRow(*values) for values in made.formulas]:
         wrong.append("index of formulas")
-    _require_none(wrong)
-    _require_own(stored.software, stored.is_derived)
-    if wrong := catalogue.wrong_latest(connection, digest):
-        raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
+    return wrong
 
 
 def _lasting(certificate: Mapping[str, Any]) -> dict[str, Any]:
@@ -143,30 +173,30 @@ def _require_none(wrong: list[str]) -> None:
         raise ValueError(f"what is stored is not what this version derives of its document: {', '.join(wrong)}")
 
 
-def _require_own(made_by: str, is_derived: bool) -> None:
-    if not is_derived:
+def _require_own(stored: StoredPart | Tree) -> None:
+    if not stored.is_derived:
         raise ValueError("it was changed in the store, or this server has not derived it")
-    if made_by != software():
+    if stored.software != software():
         raise ValueError("it was derived by another version of the software")
 
 
-def _check_tree(connection: Connection, reference: str) -> None:
-    """Raises what is wrong with a tree, its program and its summary."""
+def _check_tree(connection: Connection, reference: str) -> bool:
+    """Raises what is wrong with a tree, its program and its summary; False: it is not renewed yet."""
     name, number = _parted(reference)
     tree, _ = read_tree(connection, name, number)
     checked("its summary", tree.summary_digest, tree.summary.encode())
     if content.get_program(connection, tree.program) is None:
         raise ValueError(f"its program {tree.program} is gone from the store")
     found = tree_anew(connection, name, number)
-    made = found.tree
-    wrong = [each for each in FIGURES if getattr(tree, each) != getattr(made, each)]
-    wrong += _different(read_json(tree.summary.encode()), read_json(made.summary.encode()))
-    _require_none(wrong)
-    _require_own(tree.software, tree.is_derived)
+    if not (is_left := _is_left(connection, tree)):
+        wrong = [each for each in FIGURES if getattr(tree, each) != getattr(found.tree, each)]
+        _require_none(wrong + _different(read_json(tree.summary.encode()), read_json(found.tree.summary.encode())))
+        _require_own(tree)
     if trees.part_digests(connection, name, number) != dict(found.parts):
         raise ValueError("the parts that it is found by are not those of its document")
     if wrong := trees.wrong_latest(connection, tree):
         raise ValueError(f"what searches find of it is not what is stored of it: {', '.join(wrong)}")
+    return not is_left
 
 
 def _different(stored: Mapping[str, Any], made: Mapping[str, Any]) -> list[str]:

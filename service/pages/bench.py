@@ -12,6 +12,7 @@ from service.pages import forms as step_forms
 from service.pages.html import Content, Html, html, joined, link, table, tag
 from service.pages.layout import document
 from service.queries.trees import Tree
+from substructures.documents import read_json
 
 MOST = 50  # revisions that are offered for comparison
 #: quantities whose operations are compared with those of the revision before
@@ -20,12 +21,14 @@ COUNTED = ("metric", "christoffel", "forces")
 
 @dataclass(frozen=True)
 class Bench:
-    """A revision, the one before it, and the numbers of the newest; ``frames``: of the tree by instance, in order."""
+    """A revision, the one before it, and the numbers of the newest; ``frames``: of the tree by instance, in order, and
+    ``parameters`` that their parts declare."""
 
     tree: Tree
     before: Tree | None
     newest: Sequence[int]
     frames: Mapping[str, Sequence[str]]
+    parameters: Mapping[str, Mapping[str, Any]]
 
     @property
     def reference(self) -> str:
@@ -34,7 +37,7 @@ class Bench:
 
     def spec(self) -> dict[str, Any]:
         """The stored document."""
-        found: dict[str, Any] = orjson.loads(self.tree.spec)
+        found: dict[str, Any] = read_json(self.tree.spec.encode())
         return found
 
 
@@ -45,6 +48,8 @@ def bench_page(bench: Bench, view: Html, part: str = "") -> bytes:
     forms = (
         step_forms.couple(part, "world" if not bench.frames else ""),
         step_forms.change(list(bench.frames)),
+        step_forms.parameters(_settable(bench, spec)),
+        step_forms.gravity(_gravity(spec)),
         step_forms.load(orjson.loads(bench.tree.summary)["coordinates"]),
         step_forms.loop(),
         step_forms.publish(bench.tree.name),
@@ -56,6 +61,16 @@ def bench_page(bench: Bench, view: Html, part: str = "") -> bytes:
     path = [("trees", "/trees"), (bench.reference, f"/trees/{bench.reference}")]
     needs = tag("noscript", tag("p", "Steps are taken by a script; without one the interface takes them, as below."))
     return document(f"Workbench of {bench.reference} - substructures", title, needs, place, crumbs=path)
+
+
+def _settable(bench: Bench, spec: Mapping[str, Any]) -> step_forms.Settable:
+    """Of every instance the parameters that its part declares, and those that it is given."""
+    instances = spec.get("instances", ())
+    return {each["name"]: (bench.parameters[each["name"]], each.get("parameters", {})) for each in instances}
+
+
+def _gravity(spec: Mapping[str, Any]) -> Sequence[Any]:
+    return spec.get("gravity", (0, 0, 0))
 
 
 def _frames(bench: Bench) -> Html:
@@ -125,8 +140,9 @@ def _number(given: Any) -> str:
 
 def _outline(bench: Bench, spec: Mapping[str, Any]) -> Html:
     """What hangs on what, with a button for every place."""
-    rows = _instances(bench, spec["instances"], "world")
-    world = tag("li", _place("world", "world"), tag("ul", rows))
+    rows = _instances(bench, spec.get("instances", ()), "world")
+    gravity = f" gravity {', '.join(map(step_forms.written, _gravity(spec)))} m/s²"
+    world = tag("li", _place("world", "world"), tag("span", gravity, class_="quiet small"), tag("ul", rows))
     lists = [_list(spec.get(kind, ()), kind) for kind in ("loads", "closures")]
     return tag("section", tag("h2", "Outline"), tag("ul", world, class_="outline"), *lists, id="outline")
 
@@ -144,7 +160,8 @@ def _instances(bench: Bench, instances: Sequence[Mapping[str, Any]], host: str) 
         remove = tag("button", "remove", type="button", data_remove=f"couplings/{name}", aria_label=f"remove {name}")
         places = [_place(f"{name}.{frame}", frame) for frame in bench.frames.get(name, ())]
         below = _instances(bench, instances, name)
-        where = tag("span", f" at {at}", class_="quiet small")
+        given = ", ".join(f"{key} = {step_forms.written(value)}" for key, value in each.get("parameters", {}).items())
+        where = tag("span", f" at {at}" + (f" with {given}" if given else ""), class_="quiet small")
         head = html(tag("b", name), " ", link(part, f"/substructures/{part}"), where, " ", replace, " ", remove)
         found.append(tag("li", head, tag("div", places, class_="frames"), tag("ul", below) if below else None))
     return found

@@ -37,13 +37,13 @@ def part_page(version: Version, aliases: Sequence[str], part: Part, work: Html, 
     certificate = {**read_json(version.certificate.encode()), "warnings": part_warnings(version)}
     return document(
         f"{reference} - substructures",
-        tag("h1", version.title or version.name),
+        tag("h1", version.title or version.name, dir="auto"),
         _first(reference, (version.dof, version.joints, version.mass), certificate),
         _acts(path, link("Couple onto a tree", f"/trees?part={reference}"), exported=OF_PARTS if version.dof else ()),
         _withdrawn(version),
         *notes[0],
         work,
-        tag("p", version.description) if version.description else Html(),
+        tag("p", version.description, dir="auto") if version.description else Html(),
         _split(path, reference, _about_part(version, aliases, part)),
         *_sections(
             words.coordinates(part.coordinates, part.joints),

@@ -28,7 +28,7 @@ def couple(part: str, at: str) -> Html:
         field("name", required="required", value=_instance(part), **INSTANCE),
         frame_field("at", at),
         tag("fieldset", tag("legend", "placement: numbers or expressions, or drag the part"), numbers),
-        tag("button", "Couple", type="submit"),
+        submit("Couple"),
         data_action="couplings",
         class_="step",
     )
@@ -51,6 +51,57 @@ def change(instances: Sequence[str]) -> Html:
     return _form("Replace or move an instance", "couplings", chosen, fields, method="PATCH") if instances else Html()
 
 
+Settable = Mapping[str, tuple[Mapping[str, Any], Mapping[str, Any]]]
+
+
+def parameters(instances: Settable) -> Html:
+    """Values for the parameters of an instance; ``instances``: by name what is declared, and what is given."""
+    shown = {name: each for name, each in instances.items() if each[0]}
+    sets = [
+        tag(
+            "fieldset",
+            tag("legend", f"{name}: values, with units, or expressions; empty is the default"),
+            [_parameter(each, about, given.get(each)) for each, about in declared.items()],
+            data_type=name,
+            **_shut(k),
+        )
+        for k, (name, (declared, given)) in enumerate(shown.items())
+    ]
+    chosen = _choice("instance", list(shown), "instance")
+    return _form("Set parameters", "couplings", chosen, sets, method="PATCH") if shown else Html()
+
+
+def _parameter(name: str, about: Mapping[str, Any], given: Any) -> Html:
+    default = about.get("value")
+    return field(
+        name,
+        about.get("unit", ""),
+        value="" if given is None else written(given),
+        placeholder="to be given" if default is None else written(default),
+        title=about.get("description") or None,
+        data_kind="number",
+        data_member="parameters",
+    )
+
+
+def gravity(given: Sequence[Any]) -> Html:
+    """The acceleration of gravity of a tree."""
+    shown = ", ".join(map(written, given))
+    words = "x, y, z in world axes: numbers or expressions in parameters of the tree"
+    entered = field("gravity", "m/s²", value=shown, required="required", title=words, data_kind="vector")
+    return _form("Set gravity", "tree", entered, method="PATCH")
+
+
+def written(given: Any) -> str:
+    """A number of a document as it is typed: with its unit if it has one."""
+    return f"{given['value']} {given['unit']}" if isinstance(given, Mapping) else str(given)
+
+
+def _shut(k: int) -> dict[str, str]:
+    """Attributes of a set of fields that is not the first one."""
+    return {} if k == 0 else {"hidden": "hidden", "disabled": "disabled"}
+
+
 def load(coordinates: Sequence[str]) -> Html:
     """A load of any type; only the fields of the chosen type are there."""
     types = _choice("type", list(_loads()), "type")
@@ -60,7 +111,7 @@ def load(coordinates: Sequence[str]) -> Html:
             tag("legend", name),
             [_given(each, schema, required, coordinates) for each, schema, required in fields],
             data_type=name,
-            **({} if k == 0 else {"hidden": "hidden", "disabled": "disabled"}),
+            **_shut(k),
         )
         for k, (name, fields) in enumerate(_loads().items())
     ]
@@ -96,9 +147,13 @@ def _choice(name: str, values: Sequence[str], label: str) -> Html:
     return tag("label", f"{label} ", tag("select", [tag("option", each, value=each) for each in values], name=name))
 
 
+def submit(title: str, **attributes: str) -> Html:
+    """A button that a script makes usable: before that, a browser would ask for a page with the fields as its query."""
+    return tag("button", title, type="submit", disabled="disabled", **attributes)
+
+
 def _form(title: str, action: str, *fields: Content, method: str | None = None) -> Html:
-    button = tag("button", title, type="submit")
-    form = tag("form", fields, button, data_action=action, data_method=method, class_="step")
+    form = tag("form", fields, submit(title), data_action=action, data_method=method, class_="step")
     return tag("details", tag("summary", title), form)
 
 

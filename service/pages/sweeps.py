@@ -9,7 +9,7 @@ import numpy as np
 
 from service.messages.addresses import BASE
 from service.operations.jobs.tables import Table
-from service.pages.html import Content, Html, html, joined, link, table, tag
+from service.pages.html import Content, Html, joined, link, table, tag
 from substructures.array import Array
 from substructures.sweeps.block import objectives
 from substructures.sweeps.front import front
@@ -37,7 +37,8 @@ def sweep_section(whole: Table, shown: Table, path: str, query: dict[str, str], 
     ]
     asked = urlencode({name: x for name, x in query.items() if name in ("sort", "where") and x})
     files = link("as JSON", f"{path}/table?{asked}"), link("Pareto front", f"{path}/pareto")
-    return html(
+    return tag(
+        "div",
         tag("h2", "Rows"),
         _form(whole, query),
         tag("p", wrong, class_="warn") if wrong else None,
@@ -45,6 +46,7 @@ def sweep_section(whole: Table, shown: Table, path: str, query: dict[str, str], 
         tag("p", counts, " · ", joined(files, " · "), class_="quiet"),
         tag("ul", refused, class_="plain") if refused else None,
         _rows(shown, path, query, may_write),
+        id="rows",
     )
 
 

@@ -11,6 +11,7 @@ from service.http.responses import response_of
 from service.messages.answers import REVALIDATE, json_answer
 from service.messages.refusals import not_found
 from service.operations import catalogue
+from service.operations.preconditions import Expected
 from service.queries import aliases
 from service.routes.bodies import APIRouter, body_of
 from service.schemas.resources import AliasList, AliasRequest, AliasView
@@ -56,12 +57,13 @@ def set_alias(
     body: JsonBody,
     store: StoreOf,
     viewer: ViewerOf,
-    if_match: Annotated[str | None, Header()] = None,
+    if_match: Annotated[str | None, Header(description="ETag of the alias that is to be moved")] = None,
+    if_none_match: Annotated[str | None, Header(description="*: only where there is no such alias")] = None,
 ) -> Response:
     """Create an alias (201) or move it (200; needs If-Match: 428 without, 412 when it was moved meanwhile)."""
     wanted = read_model(AliasRequest, body)
     with store.database.write() as connection:
-        row = catalogue.set_alias(connection, viewer, name, alias, wanted.version, if_match)
+        row = catalogue.set_alias(connection, viewer, name, alias, wanted.version, Expected(if_match, if_none_match))
         view = alias_view(name, row, aliases.history(connection, name, alias))
     status = 201 if row.revision == 1 and if_match is None else 200
     return response_of(json_answer(dump(view), status, {"ETag": catalogue.alias_tag(row)}))

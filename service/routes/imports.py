@@ -11,7 +11,7 @@ from fastapi import Query, Request, Response
 from service.content import bundles
 from service.database.connections import Connection
 from service.http.acting import ActOf, timed
-from service.http.requests import RawBody, StoreOf, declared_type, needs, received
+from service.http.requests import RawBody, StoreOf, check_preconditions, declared_type, needs, received
 from service.jobs.files import Wanted, read
 from service.jobs.kinds.assemble import NAMED
 from service.messages.addresses import tree_path, version_path
@@ -73,6 +73,7 @@ def import_file(
     if not stored:
         return act.compute(lambda: json_answer(imports.answer_of(_read(store, act, body, wanted, preview))))
     act.require("write")
+    check_preconditions(request)
     found = act.first(lambda: read(act.worker, body, wanted, store.settings.limits.binary_bytes))
     entry = PartEntry(visibility=visibility)
     return _tree(store, act, found, entry) if "tree" in found else _part(store, act, found, entry)

@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import partial
 from typing import Annotated, Any
 
-from fastapi import Query, Request, Response
+from fastapi import Header, Query, Request, Response
 
 from service.content.integrity import missing
 from service.database.connections import Connection
-from service.http.acting import ActOf, timed
+from service.http.acting import ActOf, Commit, timed
 from service.http.requests import JsonBody, OptionalJsonBody, StoreOf, ViewerOf, needs
 from service.http.responses import conditional, link_header, next_link, response_of
 from service.messages.addresses import version_path
@@ -18,11 +17,10 @@ from service.messages.answers import Answer, etag, json_answer
 from service.messages.paging import limited
 from service.messages.references import is_pinned
 from service.operations import catalogue, searches
+from service.operations.preconditions import Expected, require_part, tag_of, version_tag
 from service.queries import aliases, content, uses
-from service.queries.catalogue import Version
 from service.queries.searching.part_search import CatalogueSearch
 from service.queries.searching.words import words_of
-from service.queries.uses import Withdrawn
 from service.routes.bodies import APIRouter, body_of, content_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf, PortName
@@ -47,25 +45,39 @@ DEFINITION: dict[str, Any] = body_of("SubmittedDefinition")
     responses=made(VersionView),
 )
 @timed("derive")
-def submit_substructure(body: JsonBody, store: StoreOf, act: ActOf) -> Response:
+def submit_substructure(
+    body: JsonBody,
+    store: StoreOf,
+    act: ActOf,
+    if_match: Annotated[str | None, Header(description="ETag of the version whose next one this is")] = None,
+    if_none_match: Annotated[str | None, Header(description="*: only where there is no part of this name")] = None,
+) -> Response:
     """Derive, verify and store a definition. 201 with the new version, 200 when nothing changed."""
     entry, document = PartEntry.parted(body)
     definition = Definition.read(document)
+    expected = Expected(if_match, if_none_match)
 
     def prepare() -> Any:
         """Derive, unless that is stored already."""
         make = partial(catalogue.derived, act.worker, definition, store.work_limits)
-        submission = catalogue.prepare(store, act.viewer, definition, entry, make=make)
+        submission = catalogue.prepare(store, act.viewer, definition, entry, make=make, expected=expected)
 
         def commit(connection: Connection) -> Answer:
             """Store the version and answer it."""
             version, is_new = catalogue.submit(connection, act.viewer, submission)
             view = whole_view(connection, act.viewer, version)
-            return json_answer(dump(view), 201 if is_new else 200, {"Location": version_path(version)})
+            headers = {"Location": version_path(version), "ETag": tag_of(connection, act.viewer, version)}
+            return json_answer(dump(view), 201 if is_new else 200, headers)
 
         return commit
 
-    return act.run(prepare, deferred(act, "derive", body))
+    def later() -> Commit:
+        """The job that stores the same."""
+        with store.database.read() as connection:
+            require_part(connection, act.viewer, definition.name, expected)
+        return deferred(act, "derive", body, members=expected.members())()
+
+    return act.run(prepare, later)
 
 
 @router.get("", response_model=VersionPage, dependencies=READ)
@@ -90,14 +102,6 @@ def list_substructures(
         names = aliases.aliases_of(connection, *((version.name, version.version) for version in page.items))
     link = next_link(request, page.next_token)
     return response_of(json_answer(dump(page_view(page, names, link)), headers=link_header(link)))
-
-
-def version_tag(version: Version, names: Sequence[str], withdrawn: Sequence[Withdrawn]) -> str:
-    """The ETag of a version: what it refers to may become visible, or be withdrawn."""
-    seen = (version.derived_from, version.successor, version.tree)
-    shown = [*(each for each in seen if each), *(f"{each.instance}:{each.successor}" for each in withdrawn)]
-    said = version.digest, version.program, str(version.version), str(version.withdrawn_at), version.visibility
-    return etag(*said, *shown, *names)
 
 
 @router.get("/{ref}", response_model=VersionView, dependencies=READ)
@@ -126,13 +130,19 @@ def get_substructure_definition(ref: str, request: Request, store: StoreOf, view
 @router.post(
     "/{ref}/withdraw", response_model=VersionView, dependencies=WRITE, openapi_extra=body_of("WithdrawalRequest", False)
 )
-def withdraw_substructure(ref: str, body: OptionalJsonBody, act: ActOf) -> Response:
+def withdraw_substructure(
+    ref: str,
+    body: OptionalJsonBody,
+    act: ActOf,
+    if_match: Annotated[str | None, Header(description="ETag of the version that is to be withdrawn")] = None,
+) -> Response:
     """Withdraw a version: it stays usable by number and digest but is no longer offered as the latest."""
     wanted = read_model(WithdrawalRequest, body)
 
     def commit(connection: Connection) -> Answer:
         """Withdraw the version and answer it."""
-        version = catalogue.withdraw(connection, act.viewer, ref, wanted.reason, wanted.successor)
-        return json_answer(dump(whole_view(connection, act.viewer, version)))
+        version = catalogue.withdraw(connection, act.viewer, ref, wanted.reason, wanted.successor, if_match)
+        headers = {"ETag": tag_of(connection, act.viewer, version)}
+        return json_answer(dump(whole_view(connection, act.viewer, version)), headers=headers)
 
     return act.submit(lambda: commit)

@@ -23,9 +23,10 @@ from service.routes.bodies import APIRouter, body_of
 from service.routes.deferred import deferred, made
 from service.routes.filters import NarrowOf
 from service.routes.revisions import changed, revision, shown_soon
-from service.schemas.entries import Entry
+from service.schemas.entries import ChangedTree, Entry
 from service.schemas.resources import TreePage, TreeView
 from service.views.resources import dump, tree_page_view, tree_view
+from substructures.documents import read_model
 from substructures.tree.document import TreeSpec
 
 router = APIRouter(prefix="/v1/trees", tags=["trees"])
@@ -105,6 +106,22 @@ def remove_tree(ref: str, act: ActOf, if_match: IfMatch = None) -> Response:
         return Answer(204, b"")
 
     return act.submit(lambda: commit)
+
+
+@router.patch(
+    "/{ref}",
+    status_code=201,
+    response_model=TreeView,
+    dependencies=WRITE,
+    openapi_extra=body_of("ChangedTree"),
+    responses=made(TreeView),
+)
+@timed("derive")
+def change_tree(ref: str, body: JsonBody, store: StoreOf, act: ActOf, if_match: IfMatch = None) -> Response:
+    """Give a tree other gravity, parameters, inputs, given motions or momenta, velocity constraints or contacts: a new
+    revision."""
+    read_model(ChangedTree, body)  # whatever becomes of it
+    return changed(act, lambda: trees.amendment(store, act.viewer, ref, body, if_match))
 
 
 @router.post(

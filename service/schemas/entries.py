@@ -9,14 +9,19 @@ from pydantic import ConfigDict, Field
 
 from service.schemas.shapes import Shape
 from substructures.documents import read_model
-from substructures.documents.fields import Name, Number, Words
-from substructures.part.definition import Definition, Placement
-from substructures.tree.document import MOUNT, REFERENCE, TreeSpec
+from substructures.documents.fields import Name, Number, NumberVector, Words
+from substructures.part.definition import Definition, Input, Parameter, Placement
+from substructures.tree.document import FRAME, MOUNT, REFERENCE, Driven, TreeSpec
+from substructures.tree.given.ties import MAX_CONTACTS, ConstraintOfTree, ContactOfTree
 
 Visibility = Literal["public", "private"]
 VISIBILITY = "who sees the name: everybody (the default of a new name), or the keys of its owner"
 NOTE = "why it is submitted, in words; kept with the version or revision that it becomes"
 DERIVED_FROM = "reference to the version that it was made from"
+
+
+#: a coordinate of a tree
+Place = Annotated[str, Field(pattern=FRAME)]
 
 
 class Entry(Shape):
@@ -69,6 +74,18 @@ class ChangedInstance(Shape):
     placement: Placement | None = None
     parameters: dict[Name, Number] | None = Field(None, max_length=5000)
     level: Literal["full", "reduced"] | None = None
+
+
+class ChangedTree(Shape):
+    """Members of a tree that take the place of its own; null leaves one out."""
+
+    gravity: NumberVector | None = Field(None, description="gravity acceleration in world axes, m/s^2")
+    parameters: dict[Name, Parameter] | None = Field(None, max_length=5000)
+    inputs: dict[Name, Input] | None = Field(None, max_length=500)
+    driven: dict[Place, Driven] | None = Field(None, max_length=5000)
+    ignored: dict[Place, Number] | None = Field(None, max_length=5000)
+    velocity_constraints: tuple[ConstraintOfTree, ...] | None = Field(None, max_length=100)
+    contacts: tuple[ContactOfTree, ...] | None = Field(None, max_length=MAX_CONTACTS)
 
 
 class VisibilityRequest(Shape):

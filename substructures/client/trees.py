@@ -78,6 +78,11 @@ class TreeCaller(CatalogueCaller):
         out; what it carries stays on it; the new revision."""
         return self.tree_of(self._made("PATCH", f"/v1/trees/{step(tree)}/couplings/{step(instance)}", members))
 
+    def change_tree(self, tree: str | Referable, **members: Any) -> Tree:
+        """Give a tree other members (``gravity``, ``parameters``, ``inputs``, ``driven``, ``ignored``,
+        ``velocity_constraints``, ``contacts``), None leaves one out; the new revision."""
+        return self.tree_of(self._made("PATCH", f"/v1/trees/{step(tree)}", members))
+
     def uncouple(self, tree: str | Referable, instance: str) -> Tree:
         """Take an instance off a tree; the new revision."""
         return self.tree_of(self._made("DELETE", f"/v1/trees/{step(tree)}/couplings/{step(instance)}"))

@@ -78,6 +78,12 @@ def make_client(store: Store) -> TestClient:
     return TestClient(create_app(store), base_url="http://localhost", raise_server_exceptions=True)
 
 
+def plain_tag(client: TestClient, path: str) -> str:
+    """The ETag of what is not compressed."""
+    found: str = client.get(path, headers={"Accept-Encoding": "identity"}).headers["etag"]
+    return found
+
+
 def at_once(call: Callable[[Given], Answer], given: Sequence[Given]) -> list[Answer]:
     """The results of calls that are made at the same time, each in a thread of its own."""
     with ThreadPoolExecutor(len(given)) as pool:

@@ -199,6 +199,24 @@ def number_of_none(document: Any) -> None:
     document["parts"][0]["number"] = 0
 
 
+def format_of(value: Any) -> Callable[[Any], None]:
+    """Something else than a whole number as the number of the format."""
+
+    def change(document: Any) -> None:
+        document["version"] = value
+
+    return change
+
+
+def number_of(value: Any) -> Callable[[Any], None]:
+    """Something else than a whole number in the place of one."""
+
+    def change(document: Any) -> None:
+        document["parts"][0]["number"] = value
+
+    return change
+
+
 def other_name(document: Any) -> None:
     document["parts"][1]["name"] = "pendulum2"
 
@@ -253,6 +271,16 @@ WRONG: dict[str, Wrong] = {
     "a bomb that says it is small": Wrong(shy_bomb, "invalid-bundle", ""),
     "a long definition": Wrong(long_definition, "too-large", "/definition.json"),
     "many files": Wrong(many_files, "too-large", "", "number of files"),
+    **{
+        f"{value!r} as a number": Wrong(with_list(number_of(value)), "invalid-document", "/bundle.json/parts/0/number")
+        for value in (True, "1", 1.5, [1])
+    },
+    **{
+        f"{value!r} as the format": Wrong(
+            with_list(format_of(value)), "invalid-bundle", "/bundle.json/version", "number"
+        )
+        for value in (True, "2", 1.5)
+    },
     "a number of no version": Wrong(with_list(number_of_none), "invalid-document", "/bundle.json/parts/0/number", "1"),
     "a newer format": Wrong(with_list(newer), "newer-format", "/bundle.json/version", "format 3"),
     "another format": Wrong(with_list(lambda d: d.update(format="x")), "invalid-bundle", "/bundle.json/format"),

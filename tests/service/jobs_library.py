@@ -47,7 +47,7 @@ class MemoryLibrary:
         document = spec.canonical().decode()
         made = tree_summary(spec, model)
         texts = document, summary_text(made.values, made.form, document)
-        self._trees[spec.name] = StoredTree(spec.name, spec.digest, model.program.digest, *texts)
+        self._trees[spec.name] = StoredTree(spec.name, spec.digest, model.program.digest, *texts, 1, software())
 
     def file(self, given: Mapping[str, Any]) -> Mapping[str, Any]:
         return document_of(given)

@@ -53,6 +53,36 @@ def test_axe_finds_nothing_serious(browser: Any, address: str, path: str, scheme
 
 @in_browser
 @pytest.mark.deep
+@pytest.mark.parametrize("path", ["/jobs", "/docs", "/trees/cell@2", "/v1/trees/cell@2/report?format=mathml"])
+def test_a_page_that_is_loaded_again_is_what_it_was(browser: Any, address: str, path: str) -> None:
+    """Its style, its scripts and its policy, which the browser has, and the server says so."""
+    page, wrong = browser.new_page(), list[str]()  # what a Tab intercepts is not kept by the browser
+    page.on("console", lambda message: wrong.append(message.text))
+    page.goto(address + path)
+    colour = "getComputedStyle(document.querySelector('a')).color"
+    before = page.evaluate(colour)
+    for _ in range(2):
+        page.reload()
+        assert page.evaluate(colour) == before
+    page.close()
+    assert wrong == []
+
+
+@in_browser
+@pytest.mark.deep
+@pytest.mark.parametrize("path", ["/jobs", "/trees/cell@2"])
+def test_paper_is_white(browser: Any, address: str, path: str) -> None:
+    """Light letters of the dark scheme would not be seen on it."""
+    tab = Tab(browser, address, path, color_scheme="dark")
+    ground = "getComputedStyle(document.documentElement).getPropertyValue('--page').trim()"
+    assert tab.page.evaluate(ground) == "#14171a"
+    tab.page.emulate_media(media="print", color_scheme="dark")
+    assert tab.page.evaluate(ground) == "#fff"
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
 def test_axe_finds_a_planted_fault(browser: Any, address: str) -> None:
     tab = Tab(browser, address, "/jobs")
     tab.page.evaluate("document.querySelector('main').append(document.createElement('button'))")

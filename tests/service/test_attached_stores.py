@@ -35,6 +35,7 @@ from substructures.part.derive import derive, recheck
 
 from .conftest import HAND, PENDULUM, SLIDER, make_client
 from .damaged_bundles import bump, swapped, wrong_elsewhere
+from .fake_engine import FakeEngine, finished, running, submitted
 from .seals import seal_again
 
 Forgery = Callable[[Any], None]
@@ -138,6 +139,71 @@ def test_verify_names_what_has_the_seal_of_this_server(
         served(make_client(store))
 
 
+def test_what_is_not_renewed_yet_is_neither_wrong_nor_verified(
+    template: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """As other software left it, until this one has looked at all; without this server's seal it is wrong at once."""
+    path = tmp_path / "store.db"
+    shutil.copy(template, path)
+    shutil.copy(f"{template}.key", f"{path}.key")
+    forged(path, bump)
+    seal_again(path, "another one")
+    command = ["verify", "--database", f"sqlite:///{path}"]
+    assert main(command) == 0
+    told = capsys.readouterr().out
+    assert "substructure pendulum@1: not renewed yet, nor verified: another version derived it" in told
+    assert told.endswith("0 verified, 0 wrong, 3 not renewed yet\n")
+    assert main([*command, "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert (told["verified"], told["wrong"], told["not_renewed"]) == (0, 0, 3)
+    for damage, fault in (
+        ("UPDATE parts SET title = 'other' WHERE title = 'Pendulum'", "document: program, title"),
+        ("UPDATE parts SET formulas = formulas || ' '", "damaged"),
+        ("UPDATE trees SET dof = dof + 1", "document: program, dof"),
+        ("DELETE FROM programs", "gone from the store"),
+        ("UPDATE tree_parts SET part = 'sha256:0'", "the parts that it is found by"),
+    ):
+        copy = tmp_path / "damaged.db"
+        shutil.copy(path, copy)
+        shutil.copy(f"{path}.key", f"{copy}.key")
+        with closing(sqlite3.connect(copy)) as connection, connection:
+            connection.execute("PRAGMA foreign_keys = OFF")
+            connection.execute(damage)
+        assert main(["verify", "--database", f"sqlite:///{copy}"]) == 1, damage
+        assert fault in capsys.readouterr().out, damage
+    with open_store(Settings(database=f"sqlite:///{path}", catalogue=False)) as store:
+        assert Renewal(store).all() == 0
+        assert main(command) == 0
+        assert capsys.readouterr().out == "3 verified, 0 wrong\n"
+    seal_again(path, "another one")
+    assert main(command) == 1, "this software has looked at all"
+    assert "it was derived by another version of the software" in capsys.readouterr().out
+
+
+def test_what_is_not_renewed_yet_is_derived_anew_where_that_is_asked_for(
+    template: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """By the command with ``--repair``, and before the items of a job are queued."""
+    repaired, asked = tmp_path / "repaired.db", tmp_path / "asked.db"
+    for path in (repaired, asked):
+        shutil.copy(template, path)
+        shutil.copy(f"{template}.key", f"{path}.key")
+        forged(path, bump)
+        seal_again(path, "another one")
+    assert main(["verify", "--repair", "--database", f"sqlite:///{repaired}"]) == 0
+    assert capsys.readouterr().out.endswith("\n3 verified, 0 wrong, 3 derived anew\n")
+    settings = Settings(database=f"sqlite:///{asked}", catalogue=False)
+    with open_store(settings) as store, running(store, FakeEngine()):
+        client = make_client(store)
+        job = submitted(client, {"kind": "verify", "items": [{"tree": "*"}, {"substructure": "*"}]})
+        finished(client, job)
+        items = client.get(f"/v1/jobs/{job}/items").json()["items"]
+        assert [each["state"] for each in items] == ["succeeded"] * 3
+    for path in (repaired, asked):
+        assert main(["verify", "--database", f"sqlite:///{path}"]) == 0
+        assert capsys.readouterr().out == "3 verified, 0 wrong\n"
+
+
 def test_who_submits_the_definition_gets_its_own_formulas(template: Path, tmp_path: Path) -> None:
     """Content that came from elsewhere is none that is known."""
     path = tmp_path / "store.db"
@@ -205,6 +271,7 @@ def test_a_worker_of_other_software(client: TestClient, store: Store) -> None:
     files = {**made.files(), "content": made.files()["content"].replace(software().encode(), b"another one")}
     content = PartContent.of_files(files)
     assert content.row["software"] == "another one"
+    assert Renewal(store).all() == 0
     with store.database.write() as connection:
         submit(connection, OPERATOR, PartSubmission(content.name, content.digest, content))
     assert client.get("/v1/substructures/pendulum").json()["derived_here"] is True

@@ -12,7 +12,7 @@ from service.messages.paging import write_token
 from service.schemas.resources import AliasView, FormulaIndex, VersionPage, VersionView
 from substructures.printers import FORMATS
 
-from .conftest import PENDULUM, SLIDER, at_once
+from .conftest import PENDULUM, SLIDER, at_once, plain_tag
 
 VERSION_FIELDS = {
     "name", "version", "digest", "dof", "coordinates", "bodies", "joints", "ports", "parameters", "operations",
@@ -264,6 +264,81 @@ def test_wrong_queries(client: TestClient, query: str) -> None:
     answer = client.get(f"/v1/substructures?{query}")
     assert answer.status_code == 422
     assert answer.json()["errors"][0]["pointer"] == f"/query/{query.split('=')[0]}"
+
+
+def test_what_a_new_version_and_a_withdrawal_expect(filled: TestClient) -> None:
+    def refused(answer: Any) -> bool:
+        return (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
+
+    old, other = plain_tag(filled, "/v1/substructures/pendulum"), {**PENDULUM, "title": "Another"}
+    for prefer in ({}, {"Prefer": "respond-async"}):
+        assert refused(filled.post("/v1/substructures", json=other, headers={"If-None-Match": "*", **prefer}))
+        assert refused(filled.post("/v1/substructures", json=other, headers={"If-Match": '"other"', **prefer}))
+        fresh = {**other, "name": "fresh"}
+        assert refused(filled.post("/v1/substructures", json=fresh, headers={"If-Match": "*", **prefer}))
+    assert refused(filled.post("/v1/substructures", json=PENDULUM, headers={"If-None-Match": "*"})), "the same, too"
+    made = filled.post("/v1/substructures", json=other, headers={"If-Match": old})
+    assert (made.status_code, made.json()["version"]) == (201, 2)
+    tag = made.headers["etag"]
+    assert tag == plain_tag(filled, "/v1/substructures/pendulum") != old
+    assert refused(filled.post("/v1/substructures", json={**PENDULUM, "title": "Third"}, headers={"If-Match": old}))
+    withdraw = "/v1/substructures/pendulum@2/withdraw"
+    assert refused(filled.post(withdraw, json={"reason": "heavy"}, headers={"If-Match": old}))
+    gone = filled.post(withdraw, json={"reason": "heavy"}, headers={"If-Match": tag})
+    assert (gone.status_code, gone.json()["is_withdrawn"]) == (200, True)
+    assert gone.headers["etag"] == plain_tag(filled, "/v1/substructures/pendulum@2") != tag
+    assert filled.post("/v1/substructures/pendulum@1/withdraw", json={}).status_code == 200
+    assert refused(filled.post("/v1/substructures", json=other, headers={"If-None-Match": "*"})), "all are withdrawn"
+    assert refused(filled.post("/v1/substructures", json=other, headers={"If-Match": "*"}))
+    free = filled.post("/v1/substructures", json={**PENDULUM, "name": "free"}, headers={"If-None-Match": "*"})
+    assert free.status_code == 201
+
+
+def test_of_those_that_expect_no_part_one_makes_it(filled: TestClient) -> None:
+    def make(k: int) -> int:
+        document = {**PENDULUM, "name": "first", "title": f"Number {k}"}
+        return filled.post("/v1/substructures", json=document, headers={"If-None-Match": "*"}).status_code
+
+    assert sorted(at_once(make, range(1, 6))) == [201] + 4 * [412]
+    assert filled.get("/v1/substructures/first").json()["version"] == 1
+
+
+def test_an_alias_that_is_expected_not_to_be_there(filled: TestClient) -> None:
+    url = "/v1/substructures/pendulum/aliases/stable"
+    assert filled.put(url, json={"version": 1}, headers={"If-None-Match": "*"}).status_code == 201
+    again = filled.put(url, json={"version": 1}, headers={"If-None-Match": "*"})
+    assert (again.status_code, again.json()["code"]) == (412, "precondition-failed")
+
+
+@pytest.mark.parametrize(
+    ("method", "path"),
+    [
+        ("POST", "/v1/bundles"),
+        ("POST", "/v1/imports?store=true"),
+        ("POST", "/v1/jobs"),
+        ("POST", "/v1/jobs/none/cancel"),
+        ("POST", "/v1/jobs/none/retry"),
+        ("DELETE", "/v1/jobs/none"),
+        ("POST", "/v1/jobs/none/rows/1/tree"),
+        ("PUT", "/v1/substructures/pendulum/visibility"),
+        ("PUT", "/v1/trees/cell/visibility"),
+        ("POST", "/v1/trees/cell/publish"),
+    ],
+)
+def test_a_condition_that_has_no_meaning_is_not_passed_over(filled: TestClient, method: str, path: str) -> None:
+    for header in ("If-Match", "If-None-Match"):
+        headers = {header: "*", "Content-Type": "application/json"}
+        answer = filled.request(method, path, content=b"{}", headers=headers)
+        assert (answer.status_code, answer.json()["code"]) == (422, "unknown-precondition"), answer.text
+        assert answer.json()["errors"][0]["pointer"] == f"/header/{header}"
+    coupling = {"name": "hand", "substructure": "pendulum", "at": "arm.tip"}
+    for tree_path, body in (("couplings", coupling), ("loads", {}), ("closures", {})):
+        answer = filled.post(f"/v1/trees/cell/{tree_path}", json=body, headers={"If-None-Match": "*"})
+        assert (answer.status_code, answer.json()["code"]) == (422, "unknown-precondition")
+    numbers = filled.post(
+        "/v1/trees/cell/evaluations", json={"q": [0.1], "quantities": ["metric"]}, headers={"If-None-Match": "*"}
+    )
+    assert numbers.status_code == 200, "nothing is changed"
 
 
 def test_aliases_move_only_with_if_match(filled: TestClient) -> None:

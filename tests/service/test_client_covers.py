@@ -110,6 +110,7 @@ METHODS: dict[str, Callable[[Client], Any]] = {
     f"GET {TREE}/report": lambda c: c.report("cell"),
     f"GET {PART}/report": lambda c: c.part_report("a"),
     f"POST {TREE}/couplings": lambda c: c.couple("cell", {}),
+    f"PATCH {TREE}": lambda c: c.change_tree("cell", gravity=[0, 0, -1]),
     f"PATCH {TREE}/couplings/{{instance}}": lambda c: c.change_coupling("cell", "hand", at="arm.tip"),
     f"DELETE {TREE}/couplings/{{instance}}": lambda c: c.uncouple("cell", "hand"),
     f"GET {TREE}/difference": lambda c: c.tree_difference("cell@1", "cell@2"),

@@ -356,12 +356,22 @@ def test_preferences_that_were_followed_are_told(
         ("cell/evaluations", "POST"),
         ("cell/metric", "GET, HEAD"),
         ("cell/couplings/arm", "DELETE, PATCH"),
-        ("cell", "DELETE, GET, HEAD"),
+        ("cell", "DELETE, GET, HEAD, PATCH"),
     ],
 )
 def test_methods_that_a_path_has(filled: TestClient, path: str, allowed: str) -> None:
     answer = filled.request("PUT", f"/v1/trees/{path}")
     assert (answer.status_code, answer.headers["allow"]) == (405, allowed)
+
+
+def test_what_a_browser_has_keeps_its_policy(filled: TestClient) -> None:
+    """Headers of a 304 take the place of those that are kept (RFC 9111, section 3.2): a page would lose its style."""
+    for path in ("/jobs", "/docs", "/v1/trees/cell/report?format=mathml", "/v1/trees/cell"):
+        first = filled.get(path)
+        again = filled.get(path, headers={"If-None-Match": first.headers["etag"]})
+        assert (first.status_code, again.status_code) == (200, 304)
+        policy = again.headers.get("content-security-policy", first.headers["content-security-policy"])
+        assert policy == first.headers["content-security-policy"], path
 
 
 def test_everything_served_is_guarded(filled: TestClient) -> None:

@@ -111,7 +111,7 @@ def test_what_was_not_answered_is_asked_for_again(browser: Any, address: str, fi
     tab.until(READY)
     lost = "**/v1/substructures/plug/{}"
     for what in ("program.wasm?quantities=*", "definition"):
-        tab.page.route(lost.format(what), lambda route: route.fulfill(status=503, body="{}"), times=1)
+        tab.page.route(lost.format(what), lambda route: route.fulfill(status=503, json={}), times=1)
     for name, text in (("substructure", "plug"), ("name", "hand"), ("at", "arm.tip")):
         tab.page.fill(f"[data-action=couplings] [name={name}]", text)
     tab.until("document.getElementById('told').textContent.includes('503')")

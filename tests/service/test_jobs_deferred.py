@@ -104,6 +104,24 @@ def test_a_tree_that_a_job_makes_is_what_its_request_expected(filled: TestClient
     assert [items[name]["problem"]["code"] for name in ("new", "cell")] == ["conflict"] * 2
 
 
+def test_a_part_that_a_job_makes_is_what_its_request_expected(filled: TestClient, store: Store) -> None:
+    """What was expected of the part when the job was submitted has to be so when the part is stored."""
+    tag = filled.get("/v1/substructures/pendulum").headers["etag"]
+    with running(store, FakeEngine(is_open=False)) as engine:
+        given = [("none", {"If-None-Match": "*"}), ("new", {"If-None-Match": "*"}), ("pendulum", {"If-Match": tag})]
+        made = {n: {**PENDULUM, "name": n, "title": "By a job"} for n, _ in given}
+        jobs = {n: filled.post("/v1/substructures", json=made[n], headers=ASYNC | h).json() for n, h in given}
+        for name in ("new", "pendulum"):
+            assert filled.post("/v1/substructures", json={**PENDULUM, "name": name, "tags": []}).status_code == 201
+        engine.open()
+        items = {}
+        for name, job in jobs.items():
+            finished(filled, job["id"])
+            (items[name],) = filled.get(f"/v1/jobs/{job['id']}/items").json()["items"]
+    assert items["none"]["result"]["version"] == 1, items
+    assert [items[name]["problem"]["code"] for name in ("new", "pendulum")] == ["precondition-failed"] * 2
+
+
 @pytest.mark.parametrize("fails", [False, True])
 def test_work_that_is_given_up_acts_once(
     filled: TestClient, store: Store, rows: Any, monkeypatch: pytest.MonkeyPatch, fails: bool

@@ -135,6 +135,23 @@ def test_a_motion_begins_in_the_state_of_the_page_before(browser: Any, address: 
 
 
 @in_browser
+@pytest.mark.deep
+@pytest.mark.usefixtures("trees")
+def test_an_emptied_parameter_is_its_default(browser: Any, address: str) -> None:
+    tab = opened(browser, address, "/trees/swing@1/motion?set=arm.m:,arm.l:3")
+    tab.page.click(".parameters summary")
+    assert float(tab.page.input_value("[aria-label='arm.m']")) == 2
+    assert float(tab.page.input_value("[aria-label='arm.l']")) == 3
+    tab.page.fill("[aria-label='arm.l']", "")
+    tab.page.press("[aria-label='arm.l']", "Enter")
+    assert float(tab.page.input_value("[aria-label='arm.l']")) == 1
+    tab.until("!location.search.includes('set=')")
+    tab.page.click("#run")
+    assert ran(tab)["parameters"] == {}
+    tab.close()
+
+
+@in_browser
 @pytest.mark.usefixtures("trees")
 def test_warnings_are_no_green_and_power_has_a_unit(browser: Any, address: str) -> None:
     tab = opened(browser, address, "/trees/swing@1/motion?pose=0.4&t=0")
@@ -277,11 +294,15 @@ def farm(tmp_path: Path) -> Iterator[Server]:
     server.kill()
 
 
+def later(route: Any) -> None:
+    """A request that becomes a job."""
+    route.continue_(headers={**route.request.headers, "prefer": "respond-async"})
+
+
 @in_browser
 @pytest.mark.deep
 def test_a_long_motion_is_a_job(browser: Any, farm: Server) -> None:
     tab = opened(browser, farm.address, "/trees/swing@1/motion?pose=0.4")
-    later = lambda route: route.continue_(headers={**route.request.headers, "prefer": "respond-async"})  # noqa: E731
     tab.page.route("**/simulations", later)
     tab.page.click("#run")
     tab.until(TELLS.format("job"))
@@ -295,3 +316,71 @@ def test_a_long_motion_is_a_job(browser: Any, farm: Server) -> None:
     tab.until("document.getElementById('verdict').textContent === 'cancelled'")
     assert tab.page.is_enabled("#run")
     tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_the_rows_of_a_sweep_come_with_its_end(browser: Any, farm: Server) -> None:
+    arm = {"name": "arm", "substructure": "pendulum"}
+    samples = {"method": "grid", "of": {"arm.l": {"uniform": [1, 2], "count": 400}}}
+    body = {
+        "kind": "sweep",
+        "template": {"name": "s", "instances": [arm]},
+        "samples": samples,
+        "columns": {"m": "mass"},
+    }
+    tab = Tab(browser, farm.address, "/jobs")
+    with Client(farm.address) as client:
+        job = client.request("POST", "/v1/jobs", body).json()["id"]
+    tab.page.goto(f"{farm.address}/jobs/{job}")
+    tab.until("document.querySelector('#live [data-final]')")
+    tab.until("document.querySelector('#rows table')")
+    assert tab.page.locator("#rows").count() == 1
+    tab.close()
+
+
+LONG = {"q": [0.4], "span": [0, 30000]}
+
+
+def in_between(tab: Tab, farm: Server, lost: str) -> None:
+    """The server goes, which the page tells by an expression, and comes back."""
+    farm.kill()
+    tab.until(lost)
+    farm.start()
+
+
+def closed(tab: Tab) -> None:
+    """Nothing was wrong but that the server was gone."""
+    tab.wrong = [each for each in tab.wrong if "net::ERR_" not in each and "502" not in each]
+    tab.close()
+
+
+@in_browser
+@pytest.mark.deep
+def test_a_motion_is_followed_beyond_the_end_of_its_server(browser: Any, farm: Server) -> None:
+    tab = opened(browser, farm.address, "/trees/swing@1/motion?pose=0.4")
+    tab.page.route("**/simulations", later)
+    tab.page.fill("#span", str(LONG["span"][1]))
+    tab.page.click("#run")
+    tab.until(TELLS.format("job"))
+    in_between(tab, farm, TELLS.format("the connection is lost"))
+    assert "right" in (ran(tab) and tab.page.inner_text("#verdict"))
+    closed(tab)
+
+
+@in_browser
+@pytest.mark.deep
+def test_the_page_of_a_job_follows_it_beyond_the_end_of_its_server(browser: Any, farm: Server) -> None:
+    """Also where what stands before the server says that it is gone, after which a browser asks for no more events."""
+    with Client(farm.address) as client:
+        body = {"kind": "simulate", "items": [{"tree": "swing", "request": LONG}]}
+        job = client.request("POST", "/v1/jobs", body).json()
+    tab = Tab(browser, farm.address, f"/jobs/{job['id']}")
+    gone = lambda route: route.fulfill(status=502, body="")  # noqa: E731
+    tab.page.route("**/events", gone)
+    in_between(tab, farm, "document.getElementById('told').textContent.includes('the connection is lost')")
+    tab.page.unroute("**/events")
+    tab.until("document.querySelector('#live [data-final]')")
+    assert tab.page.inner_text("#told") == ""
+    assert "succeeded" in tab.page.inner_text("#live")
+    closed(tab)

@@ -363,6 +363,25 @@ def test_browsers_are_told_what_is_wrong_as_a_page(filled: TestClient) -> None:
     assert filled.get("/v1/trees/none", headers=browser).json()["code"] == "unknown-tree"
 
 
+def test_the_tag_of_what_is_compressed_is_weak_and_as_good(filled: TestClient) -> None:
+    """Other bytes than those that the strong one names; what was read under either can be changed, and is known."""
+    path = "/v1/trees/cell"
+    plain = filled.get(path, headers={"Accept-Encoding": "identity"})
+    packed = filled.get(path, headers={"Accept-Encoding": "gzip"})
+    assert (plain.headers.get("content-encoding"), packed.headers["content-encoding"]) == (None, "gzip")
+    tag = plain.headers["etag"]
+    assert tag.startswith('"')
+    assert packed.headers["etag"] == f"W/{tag}"
+    for coding in ("identity", "gzip"):
+        for known in (tag, f"W/{tag}"):
+            same = filled.get(path, headers={"If-None-Match": known, "Accept-Encoding": coding})
+            assert same.status_code == 304
+            assert same.headers["etag"] == known
+    changed = filled.post(f"{path}/couplings", json=HAND, headers={"If-Match": packed.headers["etag"]})
+    assert changed.status_code == 201
+    assert filled.post(f"{path}/couplings", json=HAND, headers={"If-Match": f"W/{tag}"}).status_code == 412
+
+
 def test_what_is_read_is_compressed(filled: TestClient) -> None:
     packed = filled.get("/trees/cell", headers={"Accept-Encoding": "gzip"})
     assert packed.headers["content-encoding"] == "gzip"

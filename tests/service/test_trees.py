@@ -9,7 +9,7 @@ from fastapi.testclient import TestClient
 
 from service.schemas.resources import TreePage, TreeView
 
-from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once
+from .conftest import HAND, PENDULUM, SLIDER, TREE, at_once, plain_tag
 
 TREE_FIELDS = {
     "name", "revision", "digest", "dof", "coordinates", "parameters", "instances", "operations", "certificate", "links",
@@ -179,24 +179,24 @@ def test_concurrent_couplings_lose_nothing(filled: TestClient) -> None:
 
 def test_if_match_guards_against_other_changes(filled: TestClient) -> None:
     # a list, of which a proxy has made one that it compresses
-    seen = {"If-Match": f'"other", W/{filled.get("/v1/trees/cell").headers["etag"]}'}
+    seen = {"If-Match": f'"other", W/{plain_tag(filled, "/v1/trees/cell")}'}
     assert filled.post("/v1/trees/cell/couplings", json=HAND, headers=seen).status_code == 201
     for answer in (
         filled.post("/v1/trees/cell/couplings", json={**HAND, "name": "other"}, headers=seen),
         filled.delete("/v1/trees/cell/couplings/hand", headers=seen),
     ):
         assert (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
-        assert answer.headers["etag"] == filled.get("/v1/trees/cell").headers["etag"]
+        assert answer.headers["etag"] == plain_tag(filled, "/v1/trees/cell")
 
 
 def test_what_a_new_revision_and_a_removal_expect(filled: TestClient) -> None:
     def refused(answer: Any) -> bool:
         return (answer.status_code, answer.json()["code"]) == (412, "precondition-failed")
 
-    old = filled.get("/v1/trees/cell").headers["etag"]
+    old = plain_tag(filled, "/v1/trees/cell")
     coupled = filled.post("/v1/trees/cell/couplings", json=HAND, headers={"If-Match": old})
     tag = coupled.headers["etag"]
-    assert tag == filled.get("/v1/trees/cell").headers["etag"] != old
+    assert tag == plain_tag(filled, "/v1/trees/cell") != old
     other = {**TREE, "gravity": [0, 0, -1]}
     for prefer in ({}, {"Prefer": "respond-async"}):
         assert refused(filled.post("/v1/trees", json=other, headers={"If-Match": old, **prefer}))
@@ -209,6 +209,34 @@ def test_what_a_new_revision_and_a_removal_expect(filled: TestClient) -> None:
     assert filled.delete("/v1/trees/cell", headers={"If-Match": made.headers["etag"]}).status_code == 204
     again = filled.post("/v1/trees", json=TREE, headers={"If-None-Match": "*"})
     assert (again.status_code, again.json()["revision"], again.json()["based_on"]) == (201, 4, None)
+
+
+def test_a_tree_takes_other_gravity_and_parameters(filled: TestClient) -> None:
+    moon = {"gravity": [0, {"value": "-1.62", "unit": "m/s^2"}, 0]}
+    tag = plain_tag(filled, "/v1/trees/cell")
+    changed = filled.patch("/v1/trees/cell", json=moon, headers={"If-Match": tag})
+    assert (changed.status_code, changed.json()["revision"], changed.json()["based_on"]) == (201, 2, 1)
+    made = filled.get("/v1/trees/cell").json()
+    assert made["gravity"] == [0, {"unit": "m/s^2", "value": "-1.62"}, 0]
+    assert made["instances"] == filled.get("/v1/trees/cell@1").json()["instances"]
+    state = {"q": [0.0], "quantities": ["gravity"]}
+    on_the_moon = filled.post("/v1/trees/cell/evaluations", json=state).json()["gravity"]
+    assert on_the_moon == [pytest.approx(-2 * 1.62)]  # m g l cos q
+    assert filled.patch("/v1/trees/cell", json=moon, headers={"If-Match": tag}).status_code == 412
+    assert filled.patch("/v1/trees/cell", json=moon).status_code == 200, "nothing has changed"
+    gone = filled.patch("/v1/trees/cell", json={"gravity": None, "parameters": {"h": {"value": 1}}})
+    assert (gone.status_code, set(gone.json()["parameters"])) == (201, {"h", "arm.l", "arm.m"})
+    assert "gravity-not-given" in {each["code"] for each in gone.json()["certificate"]["warnings"]}
+    for wrong, code in (
+        ({"name": "other"}, "extra-forbidden"),
+        ({"instances": []}, "extra-forbidden"),
+        ({"gravity": [0, 0]}, "missing"),
+        ({"gravity": [0, 0, "-k"]}, "unknown-name"),
+        ([], "object-expected"),
+    ):
+        answer = filled.patch("/v1/trees/cell", json=wrong)
+        assert (answer.status_code, answer.json()["errors"][0]["code"]) == (422, code), answer.text
+    assert filled.patch("/v1/trees/none", json=moon).status_code == 404
 
 
 def test_of_those_that_expect_no_tree_one_makes_it(filled: TestClient) -> None:

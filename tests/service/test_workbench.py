@@ -10,6 +10,7 @@ import pytest
 from fastapi.testclient import TestClient
 
 from .one_store import filled, store
+from .test_accessible_pages import faults
 from .test_model_pages import READY, Tab, address, browser, in_browser
 
 __all__ = ["address", "browser", "filled", "store"]
@@ -97,6 +98,76 @@ def test_frames_are_picked_for_loads_and_loops(browser: Any, address: str, fille
     (told,) = filled.get(f"/v1/trees/{bench}").json()["closures"]
     assert (told["name"], told["type"], told["from"]) == ("rod", "rod", "arm.tip"), told
     tab.close()
+
+
+@in_browser
+def test_parameters_and_gravity_by_hand(browser: Any, address: str, filled: TestClient, bench: str) -> None:
+    """What is given shows in the outline and in the fields, to the last digit; an empty field is the default again."""
+    hand = {"name": "hand", "substructure": "pendulum", "at": "arm.tip", "parameters": {"l": "0.12345678901234567890"}}
+    assert filled.post(f"/v1/trees/{bench}/couplings", json=hand).status_code == 201
+    tab = Tab(browser, address, f"/trees/{bench}/edit")
+    tab.until(READY)
+    tab.page.click("summary:has-text('Set parameters')")
+    form = "form:has(fieldset[data-type='hand'])"
+    tab.page.select_option(f"{form} [name=instance]", "hand")
+    assert tab.page.input_value(f"{form} [data-type=hand] [name=l]") == "0.12345678901234567890"
+    assert tab.page.get_attribute(f"{form} [data-type=hand] [name=m]", "placeholder") == "2"
+    tab.page.focus(f"{form} [data-type=hand] [name=m]")
+    tab.page.keyboard.type("750 g")
+    told = tab.page.evaluate("document.querySelector('[data-request=Python]').textContent")
+    assert f'change_coupling("{bench}@2", "hand", **{{"parameters":' in told
+    tab.page.keyboard.press("Enter")
+    arrived(tab, f"/trees/{bench}@3/edit")
+    given = filled.get(f"/v1/trees/{bench}").json()["instances"][1]["parameters"]
+    assert given == {"l": "0.12345678901234567890", "m": {"unit": "g", "value": "750"}}
+    assert "m = 750 g" in tab.page.inner_text("#outline")
+    tab.page.click("summary:has-text('Set parameters')")
+    tab.page.select_option(f"{form} [name=instance]", "hand")
+    for name in ("l", "m"):
+        tab.page.fill(f"{form} [data-type=hand] [name={name}]", "")
+    assert faults(tab) == []
+    tab.page.click(f"{form} button")
+    arrived(tab, f"/trees/{bench}@4/edit")
+    assert not filled.get(f"/v1/trees/{bench}").json()["instances"][1].get("parameters")
+    tab.page.click("summary:has-text('Set gravity')")
+    assert tab.page.input_value("[name=gravity]") == "0, 0, -9.81"
+    tab.page.fill("[name=gravity]", "0, -1.62 m/s^2, 0")
+    python = tab.page.evaluate("document.querySelector('[data-request=Python]').textContent")
+    assert f'change_tree("{bench}@4", **{{"gravity":' in python
+    tab.page.click("button:has-text('Set gravity')")
+    arrived(tab, f"/trees/{bench}@5/edit")
+    assert filled.get(f"/v1/trees/{bench}").json()["gravity"] == [0, {"unit": "m/s^2", "value": "-1.62"}, 0]
+    assert "gravity 0, -1.62 m/s^2, 0" in tab.page.inner_text("#outline")
+    tab.close()
+
+
+def test_a_tree_without_instances_has_a_workbench(filled: TestClient) -> None:
+    assert filled.post("/v1/trees", json={"name": "bare", "instances": []}).status_code == 201
+    page = filled.get("/trees/bare/edit")
+    assert page.status_code == 200
+    assert "Couple a part" in page.text
+
+
+@in_browser
+@pytest.mark.deep
+def test_what_to_do_is_told_where_a_gateway_answers_or_a_tree_is_gone(
+    browser: Any, address: str, filled: TestClient, bench: str
+) -> None:
+    """No sentence about JSON, nor a number alone."""
+    tab, tree = Tab(browser, address, f"/trees/{bench}/edit"), Tab(browser, address, f"/trees/{bench}@1")
+    tab.until(READY)
+    tree.until(READY)
+    gateway = lambda route: route.fulfill(status=502, body="<html>Bad gateway</html>", content_type="text/html")  # noqa: E731
+    tab.page.route(f"**/v1/trees/{bench}@1", gateway)
+    tab.page.click("summary:has-text('Set gravity')")
+    tab.page.click("button:has-text('Set gravity')")
+    tab.until("document.getElementById('told').textContent.includes('see whether the server runs')")
+    assert filled.delete(f"/v1/trees/{bench}").status_code == 204
+    tree.page.click(".tabs [data-tab=christoffel]")
+    tree.until("document.getElementById('grid').textContent.includes('it is there no more')")
+    for each in (tab, tree):
+        each.wrong = [text for text in each.wrong if "502" not in text and "404" not in text]
+        each.close()
 
 
 @in_browser
@@ -223,6 +294,11 @@ def test_without_scripts_the_outline_is_there(browser: Any, address: str, bench:
     tab = Tab(browser, address, f"/trees/{bench}/edit", java_script_enabled=False)
     assert "Steps are taken by a script" in tab.page.inner_text("main")
     assert "arm" in tab.page.inner_text("#outline")
+    forms = tab.page.locator("form[data-action] [type=submit]")
+    assert forms.count() > 5
+    assert all(forms.nth(k).is_disabled() for k in range(forms.count())), "nothing is sent as a query of the page"
+    tab.page.goto(f"{address}/trees/{bench}/motion")
+    assert all(tab.page.is_disabled(each) for each in ("#run", "#locus [type=submit]"))
     tab.page.close()
 
 

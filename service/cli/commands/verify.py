@@ -9,7 +9,7 @@ import typer
 from service.cli.options import Json, Store, settings
 from service.cli.output import print_json
 from service.database.connections import Database
-from service.operations.verification import verify_all
+from service.operations.verification import MENDED, verify_all
 
 
 def verify(
@@ -23,25 +23,29 @@ def verify(
     """Prove every part and tree of a store by deriving it anew; a server may go on using it meanwhile."""
     given = settings(database=database)
     opened = Database(given.database, exclusive=False, seal_key=given.seal_key)
-    told, verified, wrong, mended = [], 0, 0, 0
+    told, verified, wrong, mended, left, is_bad = [], 0, 0, 0, 0, False
     try:
         for finding in verify_all(opened, repair):
-            verified += 1
+            verified += not finding.is_left
+            left += finding.is_left
             wrong += bool(finding.fault)
-            mended += bool(finding.fault) and finding.is_sound
-            if finding.fault or all:
+            is_bad |= not finding.is_sound
+            mended += finding.outcome == MENDED
+            if finding.fault or finding.outcome or all:
                 told.append({"what": finding.what, "fault": finding.fault or None, "outcome": finding.outcome or None})
-                words = ": ".join(filter(None, (finding.what, finding.fault or "right", finding.outcome)))
+                right = "" if finding.outcome else "right"
+                words = ": ".join(filter(None, (finding.what, finding.fault or right, finding.outcome)))
                 if not json:
                     print(words, flush=True)
     finally:
         opened.close()
     if json:
-        print_json({"verified": verified, "wrong": wrong, "mended": mended, "findings": told})
+        print_json({"verified": verified, "wrong": wrong, "mended": mended, "not_renewed": left, "findings": told})
     else:
-        anew = f", {mended} derived anew" if wrong and repair else ""
-        print(f"{verified} verified, {wrong} wrong{anew}")
-    return int(wrong > mended)
+        anew = f", {mended} derived anew" if (wrong or mended) and repair else ""
+        later = f", {left} not renewed yet" if left else ""
+        print(f"{verified} verified, {wrong} wrong{anew}{later}")
+    return int(is_bad)
 
 
 COMMANDS = {"verify": verify}

@@ -25,13 +25,17 @@ class StoredVersion:
 
 @dataclass(frozen=True)
 class StoredTree:
-    """A revision of a tree: name, digest, the digest of its program (a blob), ``spec`` and ``summary`` as JSON."""
+    """A revision of a tree: name, digest, the digest of its program (a blob), ``spec`` and ``summary`` as JSON, its
+    number, and the software that coupled it.
+    """
 
     name: str
     digest: str
     program: str
     spec: str
     summary: str
+    revision: int
+    software: str
 
 
 class Library(Protocol):

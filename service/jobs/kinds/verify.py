@@ -1,6 +1,7 @@
 """verify: an item is ``{"substructure": reference}`` or ``{"tree": reference}``, ``*`` for all there are.
 
-It is proven by deriving: what is stored has to be what today's software makes of the document, by its digest.
+It is proven by deriving: what is stored has to be what today's software makes of the document, by its digest. What
+another version of the software derived is derived anew before the job is queued.
 """
 
 from __future__ import annotations
@@ -8,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from service.content.derivation import derived_part
+from service.content.derivation import derived_part, software
 from service.content.integrity import reading
 from service.jobs.engines.engine import Outcome
 from service.jobs.kinds.assemble import pinned_tree, tree_parts
@@ -22,6 +23,7 @@ from service.jobs.kinds.kind import (
     recipe_member,
 )
 from service.jobs.kinds.library import Library
+from service.messages.refusals import NotDerived
 from service.schemas.jobs import ItemDocument
 from service.settings import Limits
 from substructures.documents import read_json, read_model, write_json
@@ -51,6 +53,8 @@ def _resolve(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[
 
 def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     version = known_part(item, library)
+    if version.software != software():
+        raise NotDerived("part", version.digest)
     pinned = {"substructure": f"{version.name}@{version.digest}", "program": version.program}
     return {**item, **pinned, **recipe_member(version, library)}, (version.digest, version.program)
 
@@ -58,6 +62,8 @@ def _pinned_part(item: ItemDocument, library: Library) -> tuple[ItemDocument, tu
 def _pinned_tree(item: ItemDocument, library: Library) -> tuple[ItemDocument, tuple[str, ...]]:
     """The document with its parts, and what the stored summary says beside the certificate."""
     tree = known_tree(item, library)
+    if tree.software != software():
+        raise NotDerived("tree", f"{tree.name}@{tree.revision}", is_newest=True)
     with reading(f"the document of tree {tree.name}", tree.digest):
         spec, summary = read_json(tree.spec.encode()), read_json(tree.summary.encode())
     parts, blobs = pinned_tree({"tree": spec, "nodes": item["nodes"]}, library, is_stored=True)

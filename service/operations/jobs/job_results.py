@@ -20,6 +20,7 @@ from service.messages.addresses import tree_path, version_path
 from service.messages.viewer import Viewer
 from service.operations import catalogue, trees
 from service.operations.catalogue import PartSubmission
+from service.operations.preconditions import Expected
 from service.operations.renewal import TreeProgram, put_part, put_tree
 from service.operations.sharing.provenance import IMPORTED, Origin
 from service.queries.attempts import Attempt
@@ -81,7 +82,9 @@ def _tree(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outco
 def _version(connection: Connection, viewer: Viewer, item: Mapping[str, Any], outcome: Outcome) -> dict[str, Any]:
     part = PartContent.of_files(outcome.files)
     entry, origin = PartEntry(**item.get(ENTRY, {})), Origin.of_item(item)
-    submission = PartSubmission(part.name, part.digest, part, entry=entry, origin=origin)
+    submission = PartSubmission(
+        part.name, part.digest, part, entry=entry, origin=origin, expected=Expected.of_item(item)
+    )
     version, _ = catalogue.submit(connection, viewer, submission)
     return {"version": version.version, "location": version_path(version)}
 

@@ -4,15 +4,17 @@ tree as an item of a work, with its digests and the contents that go with them.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Any
 
-from service.content.integrity import reading
+from service.content.integrity import missing, reading
+from service.database.connections import Connection
 from service.jobs.kinds.requested.derived import read_derived
 from service.jobs.kinds.trees import pinned
 from service.jobs.worker import Worker
 from service.messages.viewer import ANYBODY
 from service.operations.library import StoreLibrary
-from service.queries import trees
+from service.queries import content, trees
 from service.queries.trees import Tree
 from service.schemas.jobs import ItemDocument
 from service.store.store import Store
@@ -119,3 +121,15 @@ def pinned_tree(store: Store, tree: Tree, has_parts: bool = True) -> tuple[ItemD
         if "inputs" not in item["model"]:
             item["model"] |= store.declared(connection, tree)
     return item, store.blobs(digests)
+
+
+def declared_parameters(connection: Connection, tree: Tree) -> dict[str, Mapping[str, Any]]:
+    """Of every instance of a tree the parameters that its part declares. Raises Refused for content that is gone."""
+    found = {}
+    for each in read_json(tree.spec.encode()).get("instances", ()):
+        digest = each.get("substructure", "").partition("@")[2]
+        text = None if "definition" in each else content.get_definition(connection, digest)
+        if text is None and "definition" not in each:
+            raise missing(f"the part of '{each['name']}'", digest)
+        found[each["name"]] = each.get("definition") or read_json(text or b"")
+    return {name: definition.get("parameters", {}) for name, definition in found.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from service.pages.forms import submit
 from service.pages.html import Html, tag
 from service.pages.layout import document
 from service.pages.model.place import model_data, parameters, sliders, view
@@ -76,7 +77,7 @@ def _form(shown: Shown) -> Html:
             "seconds ",
             tag("input", type="number", id="span", value="5", min="0.001", step="any", required="required"),
         ),
-        tag("button", "Run", type="submit", id="run"),
+        submit("Run", id="run"),
         tag("button", "Cancel", type="button", id="cancel", hidden="hidden"),
         tag(
             "details",
@@ -125,7 +126,7 @@ def _locus(shown: Shown) -> Html:
         tag("label", "parameter ", tag("select", options, name="parameter")),
         numbers,
         tag("label", "values ", count),
-        tag("button", "Draw", type="submit"),
+        submit("Draw"),
         id="locus",
         class_="bar",
     )

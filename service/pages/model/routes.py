@@ -15,6 +15,7 @@ from service.messages.refusals import not_found
 from service.messages.viewer import Viewer
 from service.operations import catalogue, differences, modules, pictures, trees
 from service.operations.preconditions import withdrawn
+from service.operations.sharing.sources import declared_parameters
 from service.pages.account import PageRoute
 from service.pages.bench import MOST, Bench, bench_page
 from service.pages.details import part_page, tree_page
@@ -153,13 +154,13 @@ def workbench(
         newest = versions.page_revisions(connection, viewer, found.name, None, MOST + 1)
         older = versions.page_revisions(connection, viewer, found.name, found.revision, 1)
         before = trees.find(connection, viewer, f"{found.name}@{older[0].revision}") if older else None
+        parameters = declared_parameters(connection, found)
     frames: dict[str, list[str]] = {}
     for name in model.frames:
         frames.setdefault(name.partition(".")[0], []).append(name.partition(".")[2])
     shown = of_tree(found, model, None, None)
-    made = bench_page(
-        Bench(found, before, [each.revision for each in newest], frames), view(shown, picture_of(shown)), substructure
-    )
+    bench = Bench(found, before, [each.revision for each in newest], frames, parameters)
+    made = bench_page(bench, view(shown, picture_of(shown)), substructure)
     return _answer(request, made, "workbench.js")
 
 

@@ -96,6 +96,7 @@ export function parameters(state, changed) {
     const all = document.getElementById("reset");
     const inputs = rows.map((row) => row.querySelector("[data-p]"));
     const update = () => {
+        for (const input of inputs) if (!Number.isFinite(input.valueAsNumber)) reset(input); // empty is the default
         const differ = inputs.map((input) => input.value !== input.defaultValue);
         inputs.forEach((input, k) => {
             state.p[k] = input.valueAsNumber;

@@ -4,11 +4,13 @@ const METHODS = { couplings: "couple", loads: "load", closures: "close_loop" };
 
 const WITH_UNIT = /^([-+]?[0-9]*\.?[0-9]+(?:[eE][-+]?[0-9]+)?)\s*([a-zA-Zµ°%].*)$/;
 
-/** A number, one with a unit behind it, else the expression. */
+const DIGITS = 15; // that a number keeps
+
+/** A number, one with a unit behind it, else the expression, as which more digits are kept. */
 export function number(text) {
     const given = text.trim();
     if (given === "") return 0;
-    if (Number.isFinite(Number(given))) return Number(given);
+    if (Number.isFinite(Number(given))) return given.replace(/[eE].*|[^0-9]/g, "").length > DIGITS ? given : Number(given);
     const [, value, unit] = WITH_UNIT.exec(given) ?? [];
     return unit ? { value, unit } : given;
 }
@@ -36,7 +38,8 @@ export function filled(form) {
     for (const input of form.querySelectorAll("[data-kind]")) {
         if (input.matches(":disabled")) continue;
         const found = KINDS[input.dataset.kind](input);
-        if (found !== undefined) body[input.name] = found;
+        const of = input.dataset.member ? (body[input.dataset.member] ??= {}) : body;
+        if (found !== undefined) of[input.name] = found;
     }
     return body;
 }
@@ -44,13 +47,14 @@ export function filled(form) {
 /** Method and path behind that of the tree. */
 export function request({ dataset: { action, method }, elements }) {
     const instance = elements.namedItem("instance")?.value;
-    return [method ?? "POST", instance ? `${action}/${instance}` : action];
+    const path = action === "tree" ? "" : `/${action}`;
+    return [method ?? "POST", instance ? `${path}/${instance}` : path];
 }
 
 /** By program the text that does the same. */
 export function texts(origin, reference, form) {
     const [[method, path], body] = [request(form), filled(form)];
-    const [url, json] = [`${origin}/v1/trees/${reference}/${path}`, JSON.stringify(body)];
+    const [url, json] = [`${origin}/v1/trees/${reference}${path}`, JSON.stringify(body)];
     const verb = method === "POST" ? "" : `-X ${method} `;
     const option = method === "POST" ? "" : `, weboptions("RequestMethod", "${method.toLowerCase()}")`;
     const matlab = `webwrite("${url}", "json", '${json.replaceAll("'", "''")}'${option})`;
@@ -65,6 +69,7 @@ export function texts(origin, reference, form) {
 function call(reference, form, body) {
     const { action } = form.dataset;
     const python = JSON.stringify(body).replaceAll(":true", ":True");
+    if (action === "tree") return `change_tree("${reference}", **${python})`;
     if (action === "publish") return `publish("${reference}", **${python})`;
     const instance = form.elements.namedItem("instance")?.value;
     if (instance) return `change_coupling("${reference}", "${instance}", **${python})`;

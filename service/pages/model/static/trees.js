@@ -6,6 +6,9 @@ import { number } from "./steps.js";
 const form = document.getElementById("begin");
 const told = document.getElementById("told");
 
+let busy = false;
+addEventListener("pageshow", () => (busy = false)); // the way back shows the page as it was left
+
 async function begin() {
     const value = (name) => form.elements.namedItem(name).value.trim();
     const part = value("substructure");
@@ -15,11 +18,10 @@ async function begin() {
         gravity: value("gravity").split(",").map(number),
         instances: [{ name: /^[A-Za-z]/.test(instance) ? instance : `part_${instance}`, substructure: part }],
     };
-    const there = await reached(`/v1/trees/${encodeURIComponent(body.name)}/revisions?page_size=1`);
-    if (there.ok && (await there.json()).items.length) throw new Error(`there is a tree '${body.name}': choose another name`);
-    const headers = { "Content-Type": "application/json" };
+    const headers = { "Content-Type": "application/json", "If-None-Match": "*" };
     const answer = await reached("/v1/trees", { method: "POST", headers, body: JSON.stringify(body) });
     const found = await answer.json();
+    if (answer.status === 412) throw new Error(`there is a tree '${body.name}': choose another name`);
     const faults = (found.errors ?? []).map(({ pointer, message }) => `${pointer}: ${message}`);
     if (!answer.ok) throw new Error(faults.join("; ") || found.detail);
     location.assign(answer.status === 202 ? `/jobs/${found.id}` : `/trees/${found.name}@${found.revision}/edit`);
@@ -28,10 +30,13 @@ async function begin() {
 for (const button of form?.querySelectorAll("button") ?? []) button.disabled = false;
 form?.addEventListener("submit", (event) => {
     event.preventDefault();
+    if (busy) return; // the second click of two
+    busy = true;
     told.className = "quiet";
     told.textContent = "deriving and proving ...";
     begin().catch((error) => {
         told.className = "warn";
         told.textContent = error.message;
+        busy = false;
     });
 });

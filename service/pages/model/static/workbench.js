@@ -87,11 +87,10 @@ function other(instance) {
     show(form);
 }
 
-/** Of a load only the fields of its type are there. */
+/** Of a load only the fields of its type are there, of parameters those of their instance. */
 function chosen(form) {
-    for (const set of form.querySelectorAll("[data-type]")) {
-        set.hidden = set.disabled = set.dataset.type !== form.elements.namedItem("type").value;
-    }
+    const { value } = form.elements.namedItem("type") ?? form.elements.namedItem("instance") ?? {};
+    for (const set of form.querySelectorAll("[data-type]")) set.hidden = set.disabled = set.dataset.type !== value;
 }
 
 for (const form of document.querySelectorAll("[data-action]")) {
@@ -105,10 +104,11 @@ for (const form of document.querySelectorAll("[data-action]")) {
         clearTimeout(waiting);
         waiting = setTimeout(() => tried(placing.rested(form)), REST);
     });
+    form.querySelector("[type=submit]").disabled = false;
     form.addEventListener("submit", (event) => {
         event.preventDefault();
         const [method, address] = request(form);
-        tried(step(method, `${path}/${address}`, JSON.stringify(filled(form))));
+        tried(step(method, `${path}${address}`, JSON.stringify(filled(form))));
     });
 }
 

@@ -277,6 +277,13 @@ classdef api
         {ref}, {}, varargin);
     end
 
+    function answer = change_tree (ref, body, varargin)
+      % PATCH /v1/trees/{ref}: Give a tree other gravity, parameters, inputs, given motions or momenta,
+      % velocity constraints or contacts: a new revision.
+      answer = substructures.call ('patch', '/v1/trees/{ref}', ...
+        {ref}, {body}, varargin);
+    end
+
     function answer = add_coupling (ref, body, varargin)
       % POST /v1/trees/{ref}/couplings: Couple one more instance onto the tree: a new revision.
       answer = substructures.call ('post', '/v1/trees/{ref}/couplings', ...

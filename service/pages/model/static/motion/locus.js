@@ -2,7 +2,7 @@
 import { element } from "../fragments.js";
 import { short } from "../numbers.js";
 import { svg } from "../svg.js";
-import { post } from "./asked.js";
+import { heard, post } from "./asked.js";
 import { constants } from "./request.js";
 import { offer, picture } from "./saving.js";
 
@@ -27,7 +27,8 @@ export function locus(path, given) {
         const values = Array.from({ length: n }, (_, k) => low + ((high - low) * k) / Math.max(1, n - 1));
         tell("computing ...");
         const unit = parameter.selectedOptions[0].dataset.unit;
-        post(`${path}/root-loci`, { parameter: parameter.value, values, q: given(), ...constants() })
+        const told = (...job) => tell(heard(...job));
+        post(`${path}/root-loci`, { parameter: parameter.value, values, q: given(), ...constants() }, { told })
             .then((found) => drawn(found, parameter.value, unit))
             .catch((error) => tell(element("p", { class: "warn" }, error.message)));
     });

@@ -1,10 +1,11 @@
 // Modes about a state: frequencies and damping, each to be played; where nothing rests, the way to what does.
 import { element } from "../fragments.js";
 import { short } from "../numbers.js";
-import { post } from "./asked.js";
+import { heard, post } from "./asked.js";
 import { constants } from "./request.js";
 
 const place = document.getElementById("modes");
+const told = (...job) => place.replaceChildren(heard(...job));
 const PERIODS = 5;
 const TURN = 0.3; // rad that a joint of a mode moves at most
 const SHARE = 0.15; // of the size of the whole that one slides at most
@@ -22,7 +23,7 @@ export class Modes {
     }
 
     async about(q) {
-        const found = await post(`${this.path}/linearisations`, { q, ...constants() });
+        const found = await post(`${this.path}/linearisations`, { q, ...constants() }, { told });
         if (!found.is_equilibrium) return this.elsewhere(q, found);
         this.q = found.q ?? q;
         const { verdict, reason } = found.stability;
@@ -55,7 +56,7 @@ export class Modes {
     }
 
     async rest(q) {
-        const { found } = await post(`${this.path}/equilibria`, { starts: [q], ...constants() });
+        const { found } = await post(`${this.path}/equilibria`, { starts: [q], ...constants() }, { told });
         if (!found.length) throw new Error("no equilibrium was found from here: start nearer to one");
         const away = (other) => Math.max(...other.q.map((x, k) => Math.abs(x - q[k])));
         const nearest = found.reduce((best, each) => (away(each) < away(best) ? each : best));

@@ -1,12 +1,11 @@
 // The page of motions: runs from the state of the sliders, plays it, plots it; modes and roots about a state.
 import "../keys.js";
 import { kept, lead } from "../address.js";
-import { element } from "../fragments.js";
 import { Chart } from "../chart.js";
 import { load } from "../program.js";
 import { Sliders, parameters } from "../sliders.js";
 import { shown } from "../viewing.js";
-import { post } from "./asked.js";
+import { heard, post } from "./asked.js";
 import { table, verdict } from "./checks.js";
 import { locus } from "./locus.js";
 import { Modes } from "./modes.js";
@@ -114,6 +113,7 @@ async function start({ kind, reference, ranges, joints, turns }) {
         play, given: () => sliders.given()[0], found: (q) => sliders.set(q), size: () => view?.told.sphere.radius ?? 1,
     });
     locus(path, () => sliders.given()[0]);
+    for (const button of document.querySelectorAll("[type=submit]")) button.disabled = false;
     restore();
     back();
     view = await shown(kind, reference, sliders);
@@ -135,14 +135,9 @@ function forget() {
     history.replaceState(null, "", address);
 }
 
-/** How far the job is that a motion became. */
-function followed({ id, state, progress }) {
-    const share = progress.fraction ?? 0;
-    const bar = element("progress", { ...(share ? { value: String(share) } : {}), max: "1", "aria-label": "progress" });
-    tell(bar, "quiet", ` job ${state}, ${Math.round(100 * share)} %: `, element("a", { href: `/jobs/${id}` }, "its page"));
-}
+const followed = (...job) => tell(heard(...job));
 
-function tell(words, kind = "quiet", ...more) {
-    get("verdict").replaceChildren(words, ...more);
+function tell(words, kind = "quiet") {
+    get("verdict").replaceChildren(words);
     get("verdict").className = kind;
 }
