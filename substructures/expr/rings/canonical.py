@@ -18,9 +18,12 @@ Terms = tuple[tuple[Basis, Fraction], ...]
 
 
 class RingEvaluator:
-    """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions."""
+    """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions.
 
-    def __init__(self, generators: Generators, nodes: list[Expr], limit: int) -> None:
+    A node that is too large by itself, whatever was formed before it, is added to ``large``.
+    """
+
+    def __init__(self, generators: Generators, nodes: list[Expr], limit: int, large: set[Expr] | None = None) -> None:
         self.generators, self.limit = generators, limit
         self.graph = nodes[0].graph
         forms = [generators.forms[n] for n in nodes if is_function(n)]
@@ -33,7 +36,12 @@ class RingEvaluator:
         self._relate()
         self.values: dict[Expr, Quotient] = {}
         for node in nodes:
-            self.values[node] = self._value(node)
+            try:
+                self.values[node] = self._value(node)
+            except TooLarge:
+                if large is not None and not self.ring.is_spent:
+                    large.add(node)
+                raise
 
     def _plain(self, nodes: list[Expr]) -> list[int]:
         """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
