@@ -135,7 +135,9 @@ class Expander:
 
 
 def expand(expr: Expr, limit: int = LIMIT, large: set[Expr] | None = None) -> Expanded:
-    """The canonical form. Raises TooLarge (size, limit) with more than ``limit`` terms or too much work."""
+    """The canonical form; ``large``: see Expander. Raises TooLarge (size, limit) with more than ``limit`` terms or too
+    much work.
+    """
     return Expander([expr], limit, large).expand(expr)
 
 
