@@ -33,6 +33,7 @@ from substructures.expr.walk import reachable
 
 #: terms of the canonical form of one element
 TERMS = 20_000
+_NONE = Fraction(0)
 #: an element by its index
 Index = tuple[int, ...]
 #: a product of variables: their powers
@@ -68,6 +69,12 @@ class AngleSums:
 ZERO = AngleSums((), (), (), np.zeros(0, dtype=np.complex128))
 #: nothing is known
 UNKNOWN = AngleSums((), (), (), np.zeros(0, dtype=np.complex128), math.inf)
+
+
+def _constants(form: Expanded) -> dict[Expr, Any]:
+    """The values of its generators and angles that depend on no symbol."""
+    found = [x for x in {atom for term in form.terms for atom in term.atoms()} if is_constant([x])]
+    return dict(zip(found, enclosures(found, {}), strict=True))
 
 
 def angles_of(program: Program) -> frozenset[str]:
@@ -127,17 +134,16 @@ class Differences:
         if not math.isfinite(scale):
             return UNKNOWN
         by_product: dict[_Product, dict[tuple[Fraction, ...], Any]] = {}
-        rest = 0.0
-        for term in form.terms:
-            product, constant = self._split(term.powers)
-            phase, multiples, is_loose = self._angle(term)
-            with flint.ctx.workprec(PRECISION):
+        rest, constants = 0.0, _constants(form)
+        with flint.ctx.workprec(PRECISION):
+            for term in form.terms:
+                product, constant = self._split(term.powers, constants)
+                phase, multiples, is_loose = self._angle(term, constants)
                 value = constant * exact(term.coefficient) * phase
-            if is_loose:
-                rest += magnitude(abs(value)) * self._largest(product)
-                continue
-            terms = by_product.setdefault(product, {})
-            with flint.ctx.workprec(PRECISION):
+                if is_loose:
+                    rest += magnitude(abs(value)) * self._largest(product)
+                    continue
+                terms = by_product.setdefault(product, {})
                 terms[multiples] = terms[multiples] + value if multiples in terms else value
         return self._collected(by_product, scale, rest)
 
@@ -159,31 +165,29 @@ class Differences:
         found = np.array(weights, dtype=np.complex128)
         return AngleSums(tuple(products), tuple(starts), tuple(multiples), found, rest * scale * (1 + 2**-40))
 
-    def _split(self, powers: Iterable[tuple[Expr, int]]) -> tuple[_Product, Any]:
+    def _split(self, powers: Iterable[tuple[Expr, int]], constants: Mapping[Expr, Any]) -> tuple[_Product, Any]:
         """What varies of a product, and the value of what does not."""
         varying = list[tuple[Expr, int]]()
-        with flint.ctx.workprec(PRECISION):
-            constant = flint.acb(1)
-            for x, n in powers:
-                if is_constant([x]):
-                    constant = constant * flint.acb(enclosures([x], {})[0]) ** n
-                else:
-                    varying.append((x, n))
+        constant = flint.acb(1)
+        for x, n in powers:
+            if x in constants:
+                constant = constant * flint.acb(constants[x]) ** n
+            else:
+                varying.append((x, n))
         return tuple(varying), constant
 
-    def _angle(self, term: Term) -> tuple[Any, tuple[Fraction, ...], bool]:
+    def _angle(self, term: Term, constants: Mapping[Expr, Any]) -> tuple[Any, tuple[Fraction, ...], bool]:
         """cos or sin of a sum of angles as Re(phase exp(i k . q)), and whether it has another angle than these."""
-        k = dict.fromkeys(self.angles, Fraction(0))
+        k = dict.fromkeys(self.angles, _NONE)
         is_loose = False
-        with flint.ctx.workprec(PRECISION):
-            phase = flint.acb(0, -1) if term.trig == "sin" else flint.acb(1)
-            for x, factor in term.angle:
-                if x.op == "sym" and str(x.value) in k:
-                    k[str(x.value)] += factor
-                elif is_constant([x]):
-                    phase = phase * flint.acb(0, enclosures([x], {})[0] * exact(factor)).exp()
-                else:
-                    is_loose = True
+        phase = flint.acb(0, -1) if term.trig == "sin" else flint.acb(1)
+        for x, factor in term.angle:
+            if x.op == "sym" and (name := str(x.value)) in k:
+                k[name] = k[name] + factor if k[name] else factor
+            elif x in constants:
+                phase = phase * flint.acb(0, constants[x] * exact(factor)).exp()
+            else:
+                is_loose = True
         first = next((x for x in k.values() if x), Fraction(1))
         if first < 0:  # Re(C exp(i k . q)) = Re(C* exp(-i k . q))
             return phase.conjugate(), tuple(-x for x in k.values()), is_loose

@@ -14,4 +14,4 @@ def to_fmpq(value: Fraction | int) -> fmpq:
 
 def fraction(value: fmpq) -> Fraction:
     """A number of FLINT."""
-    return Fraction(int(value.p), int(value.q))
+    return Fraction(int(value.p), int(value.q)) if value.q != 1 else Fraction(int(value.p))

@@ -46,11 +46,16 @@ def symbols_in(roots: Iterable[Expr]) -> set[str]:
     return {str(node.value) for node in reachable(roots) if node.op == "sym"}
 
 
-def transfer(roots: Iterable[Expr], graph: Graph, bindings: Mapping[str, Expr]) -> list[Expr]:
-    """The roots rebuilt in another graph, symbols replaced by ``bindings`` (others by themselves)."""
-    roots = list(roots)
-    new: dict[Expr, Expr] = {}
-    for node in reachable(roots):
+def transfer(
+    roots: Iterable[Expr], graph: Graph, bindings: Mapping[str, Expr], new: dict[Expr, Expr] | None = None
+) -> list[Expr]:
+    """The roots rebuilt in another graph, symbols replaced by ``bindings`` (others by themselves); ``new``: what was
+    rebuilt there before, to which this is added.
+    """
+    roots, new = list(roots), {} if new is None else new
+    for node in reachable(roots, new.__contains__):
+        if node in new:
+            continue
         if node.op == "sym":
             name = str(node.value)
             new[node] = bindings[name] if name in bindings else graph.symbol(name)

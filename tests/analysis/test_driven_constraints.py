@@ -10,6 +10,7 @@ from closed_trees import tree_model
 from random_trees import Plain
 
 from substructures import ConstrainedMotion, Model, linearise, simulate, simulate_ensemble
+from substructures.analysis.equations.nonholonomic import quasi_velocities
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.equations.nonholonomic.velocity_constraints import closing
 from substructures.analysis.motion.problems.output_times import OutputGrid
@@ -91,6 +92,7 @@ def test_what_drives_make_of_the_blade_is_certified(monkeypatch: pytest.MonkeyPa
     """b left out of the rows is found."""
     name = "substructures.analysis.equations.nonholonomic.velocity_constraints.GIVEN"
     monkeypatch.setattr(name, ("U", "Omega"))
+    quasi_velocities._equations.cache_clear()
     with pytest.raises(VerificationFailed):
         quasi_velocity_equations(sledge(driven=STEER, velocity_constraints=[EDGE]), independent=["s.x", "s.f"])
 

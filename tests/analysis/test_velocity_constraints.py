@@ -66,6 +66,12 @@ def test_equations_are_formed_once_however_their_constraints_are_written() -> No
     assert again.program is first.program
 
 
+def test_equations_are_formed_once_for_all_places_with_the_same_velocities() -> None:
+    first, beside, turned = (quasi_velocity_equations(sleigh(), [BLADE], near={"s.f": f}) for f in (0.1, 0.2, 1.5))
+    assert beside.program is first.program
+    assert turned.velocities != first.velocities
+
+
 def test_rolling_disc() -> None:
     """Euler's equations about the line of nodes, with w3 = ph' + psi' cos th (O. M. O'Reilly, Nonlinear Dynamics 10,
     1996; Neimark and Fufaev 1972):

@@ -17,6 +17,7 @@ from substructures.expr.interpret import interpret
 from substructures.expr.parse import parse
 from substructures.expr.rings.expand import Expander, expand, is_zero
 from substructures.expr.trigonometry import cos, sin
+from substructures.expr.walk import reachable
 from substructures.printers import entries
 
 
@@ -181,6 +182,24 @@ def test_sizes_are_bounded_before_the_work_is_done() -> None:
         expand((g.symbol("x") + g.symbol("y")) ** 20, limit=20)
     assert len(expand((g.symbol("x") + g.symbol("y")) ** 19, limit=20)) == 20
     assert time.perf_counter() - start < 5
+
+
+def test_a_node_that_is_too_large_is_told_and_no_other() -> None:
+    """What needs it is too large as well; what was expanded before it is not, nor what all work together is too much
+    for.
+    """
+    g = Graph()
+    x, y, large = g.symbol("x"), g.symbol("y"), set[Expr]()
+    power = (x + y) ** 50
+    with pytest.raises(TooLarge):
+        expand((x - y) ** 2 + 1 / (power + 1), 20, large)
+    (found,) = large
+    assert found in reachable([power])
+    assert len(expand((x - y) ** 2, 20, large)) == 3
+    many = g.sum((x + i) ** 15 for i in range(200))
+    with pytest.raises(TooLarge, match="together"):
+        expand(many, 20, spent := set[Expr]())
+    assert not spent
 
 
 def test_coefficients_are_bounded() -> None:

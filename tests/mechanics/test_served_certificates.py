@@ -218,7 +218,7 @@ def clear() -> None:
     """What was made before is made anew."""
     perturbation._perturbation.cache_clear()
     quasi_velocities._equations.cache_clear()
-    linearised._linearised.cache_clear()
+    linearised._perturbed.cache_clear()
     first_integrals._found.cache_clear()
     variation._variational.cache_clear()
     steady._steady_formulas.cache_clear()

@@ -42,7 +42,7 @@ from substructures.expr.graph import Expr, Graph
 from substructures.expr.program import Formulas, Program, Symbol, array, operands, program
 from substructures.expr.replay import replay
 from substructures.expr.rings.expand import expand
-from substructures.expr.walk import transfer
+from substructures.expr.walk import reachable, transfer
 from substructures.mechanics.state_names import BallRow
 from substructures.printers import entries
 from substructures.quantities.regressor_model import RegressorModel
@@ -176,8 +176,9 @@ def _program(Y: RegressorModel, columns: Columns, found: Dependencies) -> Progra
     # constants first: no coefficient may be written in the coordinates of an equal node of Y
     graph, place = Graph(), {b: k for k, b in enumerate(found.base)}
     grouping: dict[tuple[int, ...], Expr | int] = {(k, b): graph.one for b, k in place.items()}
+    readable = _Readable(graph)
     for j, coefficients in found.others.items():
-        grouping |= {(place[b], j): _readable(c, graph) for b, c in coefficients.items()}
+        grouping |= {(place[b], j): readable.of(c) for b, c in coefficients.items()}
     pi = replay(Y.program, graph, {}, ["inertial_parameters"])["inertial_parameters"].entries
     beta = [graph.zero] * len(place)
     # beta = [1 C] pi
@@ -198,9 +199,19 @@ def _program(Y: RegressorModel, columns: Columns, found: Dependencies) -> Progra
     return program(graph, outputs, symbols)
 
 
-def _readable(x: Expr, graph: Graph) -> Expr:
-    """The canonical form where it is small."""
-    try:
-        return expand(x, READABLE).to_expr(graph)
-    except TooLarge:
-        return transfer([x], graph, {})[0]
+class _Readable:
+    """Formulas in ``graph``, in their canonical form where it is small; they share most of what they consist of."""
+
+    def __init__(self, graph: Graph) -> None:
+        self.graph = graph
+        self._large: set[Expr] = set()
+        self._moved: dict[Expr, Expr] = {}
+
+    def of(self, x: Expr) -> Expr:
+        """One of them."""
+        if self._large.isdisjoint(reachable([x])):
+            try:
+                return expand(x, READABLE, self._large).to_expr(self.graph)
+            except TooLarge:
+                self._large.add(x)
+        return transfer([x], self.graph, {}, self._moved)[0]

@@ -18,9 +18,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from substructures.analysis.equations.nonholonomic.independent_rows import independent_rows
 from substructures.analysis.equations.nonholonomic.linearised import linearised
-from substructures.analysis.equations.nonholonomic.quasi_choice import quasi_velocity_rows
+from substructures.analysis.equations.nonholonomic.quasi_velocities import chosen_near, rows_of
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of, row_values
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion
 from substructures.analysis.stability.equilibrium_search import RESIDUAL, SAME, SearchRange
@@ -37,7 +36,6 @@ from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, listed
 from substructures.expr.interpret import interpret
 from substructures.quantities.measured import numeric
-from substructures.quantities.numbers.workspace import Workspace
 from substructures.tree.model import Model
 
 #: singular values below this share of the largest leave a way free
@@ -100,14 +98,13 @@ class ConstrainedSearch:
 
     def _chosen(self, places: Sequence[Array]) -> tuple[str, ...]:
         """Independent coordinates near the first place where there are such."""
-        f = Workspace(self.model)
-        rows, _ = independent_rows(f, constraints_of(self.model))
+        constraints = constraints_of(self.model)
+        f, rows = rows_of(self.model, constraints)
         for place in places:
             at = values_at(self._point(place))
-            if not rows.rows or np.isfinite(row_values(f, rows.rows, at)).all():
+            if not rows or np.isfinite(row_values(f, rows, at)).all():
                 break
-        names, _ = quasi_velocity_rows(f, rows, None, None, at)
-        return tuple(name.removesuffix("'") for name in names)
+        return chosen_near(self.model, constraints, at)
 
     def _values(self) -> dict[str, float]:
         """Of all symbols, where nothing moves."""

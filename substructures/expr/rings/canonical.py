@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from fractions import Fraction
+from functools import cached_property
 from math import gcd, lcm
+from operator import itemgetter
 from typing import Any
 
 from substructures.errors import TooLarge
@@ -18,9 +19,12 @@ Terms = tuple[tuple[Basis, Fraction], ...]
 
 
 class RingEvaluator:
-    """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions."""
+    """Values of a list of nodes (operands first), in a ring made for them. ``generators`` must know their functions.
 
-    def __init__(self, generators: Generators, nodes: list[Expr], limit: int) -> None:
+    A node that is too large by itself, whatever was formed before it, is added to ``large``.
+    """
+
+    def __init__(self, generators: Generators, nodes: list[Expr], limit: int, large: set[Expr] | None = None) -> None:
         self.generators, self.limit = generators, limit
         self.graph = nodes[0].graph
         forms = [generators.forms[n] for n in nodes if is_function(n)]
@@ -31,9 +35,15 @@ class RingEvaluator:
         self.plain = plain
         self.ring = Ring(len(plain) + 1, len(self.angles), limit)
         self._relate()
+        self._multiples: dict[tuple[int, int], Fraction] = {}
         self.values: dict[Expr, Quotient] = {}
         for node in nodes:
-            self.values[node] = self._value(node)
+            try:
+                self.values[node] = self._value(node)
+            except TooLarge:
+                if large is not None and not self.ring.is_spent:
+                    large.add(node)
+                raise
 
     def _plain(self, nodes: list[Expr]) -> list[int]:
         """Numbers of all generators but the angles, roots first (a root of a sum before what is in it)."""
@@ -98,47 +108,66 @@ class RingEvaluator:
     def read(self, expr: Expr) -> Sum:
         """The canonical form of one of the nodes."""
         value = self.values[expr]
-        terms, denominator = self._terms(value.n), self._terms(value.d)
+        denominator = self._terms(value.d)
+        first, c = denominator[0]
+        is_monomial = len(denominator) == 1 and not first.trig
+        terms = self._terms(value.n, first.monomial if is_monomial else ())
         if len(terms) + len(denominator) > self.limit + 1:
             raise TooLarge("an expanded formula (in terms)", len(terms) + len(denominator) - 1, self.limit)
-        first, c = denominator[0]
-        if len(denominator) == 1 and not first.trig:
-            inverse = tuple((i, -n) for i, n in first.monomial)
-            return Sum(self._sorted((self._product(b, inverse), value / c) for b, value in terms))
+        if is_monomial:
+            return Sum(terms if c == 1 else tuple((b, x / c) for b, x in terms))
         # integers without common factor, first one positive
         scale = Fraction(lcm(*(x.denominator for _, x in denominator)), gcd(*(x.numerator for _, x in denominator)))
         scale = -scale if c < 0 else scale
         return Sum(tuple((b, x * scale) for b, x in terms), tuple((b, x * scale) for b, x in denominator))
 
-    def _product(self, basis: Basis, monomial: tuple[tuple[int, int], ...]) -> Basis:
-        powers = dict(basis.monomial)
-        for i, n in monomial:
-            powers[i] = powers.get(i, 0) + n
-        return Basis(self._ordered(powers), basis.trig, basis.angle)
+    @cached_property
+    def _ranks(self) -> dict[int, int]:
+        """The places of all generators in the order of display; equal ones have the same."""
+        keys = {i: self.generators.order[i] for i in (*self.place, *self.angles)}
+        numbers = {key: k for k, key in enumerate(sorted(set(keys.values())))}
+        return {i: numbers[key] for i, key in keys.items()}
 
-    def _ordered(self, powers: dict[int, int]) -> tuple[tuple[int, int], ...]:
-        order = self.generators.order
-        return tuple(sorted(((i, n) for i, n in powers.items() if n), key=lambda item: order[item[0]]))
+    @cached_property
+    def _in_order(self) -> list[tuple[int, int]]:
+        """All generators but the angles, with their places in exponents."""
+        return sorted(self.place.items(), key=lambda item: self._ranks[item[0]])
 
-    def _sorted(self, terms: Iterable[tuple[Basis, Fraction]]) -> Terms:
-        return tuple(sorted(terms, key=self.generators.place))
+    def _multiple(self, i: int, n: int) -> Fraction:
+        """n times the unit of an angle."""
+        found = self._multiples.get((i, n))
+        if found is None:
+            found = self._multiples[i, n] = n * self.units[i]
+        return found
 
-    def _terms(self, a: Laurent) -> Terms:
-        """c z^k + conj(c) z^-k = 2 Re(c) cos(k . angles) - 2 Im(c) sin(k . angles)."""
-        size, unit, result = self.ring.size, self.ring.unit, []
+    def _terms(self, a: Laurent, under: tuple[tuple[int, int], ...] = ()) -> Terms:
+        """Over the powers ``under``, for display: by degree, terms without angle first, then by names.
+
+        c z^k + conj(c) z^-k = 2 Re(c) cos(k . angles) - 2 Im(c) sin(k . angles)
+        """
+        size, less, found = self.ring.size, dict(under), []
         for raw, c in a.poly.to_dict().items():
             exponents = [int(n) for n in raw]
             k = [n - m for n, m in zip(exponents[size:], a.shift, strict=True)]
-            leading = next((n for n in k if n), 0)
-            if leading < 0:
+            if next((n for n in k if n), 0) < 0:
                 continue
-            value = fraction(c)
-            bits = max(value.numerator.bit_length(), value.denominator.bit_length())
+            bits = max(c.p.bit_length(), c.q.bit_length())
             if bits > MAX_BITS:
                 raise TooLarge("a coefficient of the expanded form (in bits)", bits, MAX_BITS)
-            powers = self._ordered({i: exponents[n] for i, n in self.place.items()})
-            angle = tuple((i, n * self.units[i]) for i, n in zip(self.angles, k, strict=True) if n)
-            imaginary = exponents[unit] > 0
-            trig = ("sin" if imaginary else "cos") if angle else ""
-            result.append((Basis(powers, trig, angle), value * (-2 if imaginary else 2) if angle else value))
-        return self._sorted(result)
+            powers = [(i, e) for i, n in self._in_order if (e := exponents[n] - less.get(i, 0))]
+            turns = [(i, n) for i, n in zip(self.angles, k, strict=True) if n]
+            found.append((*self._shown(powers, turns, exponents[self.ring.unit] > 0), c))
+        found.sort(key=itemgetter(0))
+        double = {"": 1, "cos": 2, "sin": -2}
+        return tuple((basis, fraction(c * double[basis.trig])) for _, basis, c in found)
+
+    def _shown(
+        self, powers: list[tuple[int, int]], turns: list[tuple[int, int]], imaginary: bool
+    ) -> tuple[tuple[Any, ...], Basis]:
+        """A basis function and its place among others."""
+        ranks, order = self._ranks, self.generators.order
+        trig = ("sin" if imaginary else "cos") if turns else ""
+        degree = sum(e for i, e in powers if order[i][0] > 0)
+        names, angle = [(ranks[i], -e) for i, e in powers], [(ranks[i], n) for i, n in turns]
+        basis = Basis(tuple(powers), trig, tuple((i, self._multiple(i, n)) for i, n in turns))
+        return (degree, bool(trig), names, angle, trig), basis

@@ -107,13 +107,14 @@ class Expander:
     """Expands several formulas of one graph that share subexpressions.
 
     ``limit`` bounds the terms of every formula and, times 100, all work together. The constructor and
-    :meth:`expand` raise TooLarge with size and limit before anything larger is formed, and ZeroDivisionError.
+    :meth:`expand` raise TooLarge with size and limit before anything larger is formed, and ZeroDivisionError. Nodes
+    that are too large, with which whatever needs them is, are added to ``large``.
     """
 
-    def __init__(self, exprs: Sequence[Expr], limit: int = LIMIT) -> None:
+    def __init__(self, exprs: Sequence[Expr], limit: int = LIMIT, large: set[Expr] | None = None) -> None:
         self.limit = limit
         self.generators = classified(exprs, limit)
-        self.evaluator = RingEvaluator(self.generators, reachable(exprs, is_function), limit)
+        self.evaluator = RingEvaluator(self.generators, reachable(exprs, is_function), limit, large)
 
     def expand(self, expr: Expr) -> Expanded:
         """The canonical form of one of the expressions (or of a subexpression)."""
@@ -133,9 +134,11 @@ class Expander:
         return Term(coefficient, powers, basis.trig, tuple((atoms[i], c) for i, c in basis.angle))
 
 
-def expand(expr: Expr, limit: int = LIMIT) -> Expanded:
-    """The canonical form. Raises TooLarge (size, limit) with more than ``limit`` terms or too much work."""
-    return Expander([expr], limit).expand(expr)
+def expand(expr: Expr, limit: int = LIMIT, large: set[Expr] | None = None) -> Expanded:
+    """The canonical form; ``large``: see Expander. Raises TooLarge (size, limit) with more than ``limit`` terms or too
+    much work.
+    """
+    return Expander([expr], limit, large).expand(expr)
 
 
 def is_zero(expr: Expr, limit: int = LIMIT) -> bool:

@@ -157,13 +157,6 @@ class Generators:
             result = result * build(graph, basis.trig, [angle])
         return result
 
-    def place(self, term: tuple[Basis, Fraction]) -> tuple[Any, ...]:
-        """Sort key for display: by degree, terms without angle first, then by names."""
-        basis = term[0]
-        degree = sum(power for i, power in basis.monomial if self.order[i][0] > 0)
-        names = tuple((self.order[i], -power) for i, power in basis.monomial)
-        return degree, bool(basis.trig), names, tuple((self.order[i], c) for i, c in basis.angle), basis.trig
-
     def units(self, angles: Iterable[Angle]) -> dict[int, Fraction]:
         """For every angle atom the largest angle of which all occurring ones are multiples."""
         result: dict[int, Fraction] = {}

@@ -59,6 +59,11 @@ class Ring:
         self.one = self.constant(Fraction(1))
         self.zero = self.constant(Fraction(0))
 
+    @property
+    def is_spent(self) -> bool:
+        """Whether all results together are too large."""
+        return self.work > WORK * self.limit
+
     def monomial(self, exponents: Sequence[int], value: Fraction = Fraction(1)) -> Any:
         """value * product of powers, as polynomial."""
         return self.context.term(coeff=to_fmpq(value), exp_vec=tuple(exponents))
@@ -138,7 +143,7 @@ class Ring:
         self.work += size
         if size > 2 * self.limit:
             raise TooLarge("an expanded formula (in terms)", size, 2 * self.limit)
-        if self.work > WORK * self.limit:
+        if self.is_spent:
             raise TooLarge("all steps of an expansion together (in terms)", self.work, WORK * self.limit)
         if bits > MAX_COEFFICIENT_BITS:
             bits = _bits(poly)

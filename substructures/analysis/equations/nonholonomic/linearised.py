@@ -38,12 +38,6 @@ def linearised(model: Model, constraints: tuple[Constraint, ...], choice: Choice
     them, which are M, D, K, F, e, T, R above. ``choice``: velocities, independent coordinates, and what they are near,
     as pairs. Raises InvalidInput as quasi_velocity_equations, also for forces without derivative, and TooLarge.
     """
-    return _linearised(known_model(model), constraints, choice)
-
-
-@lru_cache(maxsize=32)
-def _linearised(known: Known, constraints: tuple[Constraint, ...], choice: Choice) -> tuple[QuasiVelocities, Program]:
-    model: Model = known.source
     require_undriven(model.driven, "take simulations")
     require_smooth(model)
     velocities, independent, near = choice
@@ -54,10 +48,13 @@ def _linearised(known: Known, constraints: tuple[Constraint, ...], choice: Choic
         independent=independent,
         near=None if near is None else dict(near),
     )
-    return equations, _perturbed(equations)
+    known = f"{known_model(model).digest} {equations.velocities} {equations.program.digest}"
+    return equations, _perturbed(Known(known, equations))
 
 
-def _perturbed(equations: QuasiVelocities) -> Program:
+@lru_cache(maxsize=32)
+def _perturbed(known: Known) -> Program:
+    equations: QuasiVelocities = known.source
     model, names, graph = equations.model, list(equations.velocities), Graph()
     n, p, inputs, q = model.dof, len(names), inputs_of(model), list(model.coordinates)
     gaps = ["gaps"] if equations.gaps else []

@@ -28,7 +28,6 @@ def quasi_velocity_rows(
     rows: VelocityRows,
     velocities: Mapping[str, str] | None,
     independent: Sequence[str] | None,
-    near: Mapping[str, float] | None,
 ) -> tuple[list[str], MatrixRows]:
     """Names of the quasi-velocities and their rows (p, n); declares their symbols and those of their rates.
 
@@ -45,7 +44,7 @@ def quasi_velocity_rows(
                 f.scope.fault(f"/velocities/{name}", "duplicate-name", f"'{name}' is a symbol of the model")
         pointer = "/velocities"
     else:
-        chosen = _chosen(f, rows.rows, near) if independent is None else list(independent)
+        chosen = independent_coordinates(f, rows.rows, None) if independent is None else list(independent)
         for i, name in enumerate(chosen):
             if name not in coordinates:
                 message = f"unknown coordinate '{name[:80]}'{among(name, coordinates, i)}"
@@ -85,7 +84,7 @@ def vanishing(f: Workspace, rows: MatrixRows) -> Program | None:
     return source if (found < 0).any() and (found > 0).any() else None
 
 
-def _chosen(f: Workspace, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:
+def independent_coordinates(f: Workspace, rows: MatrixRows, near: Mapping[str, float] | None) -> list[str]:
     """Independent coordinates: the dependent ones are taken where the constraints have the simplest coefficients,
     if these are well conditioned.
     """

@@ -38,10 +38,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property, lru_cache
 
-from substructures.analysis.equations.cofactors import inverse
+from substructures.analysis.equations.cofactors import MatrixRows, inverse
 from substructures.analysis.equations.nonholonomic.expected import quasi_expected
 from substructures.analysis.equations.nonholonomic.independent_rows import independent_rows
-from substructures.analysis.equations.nonholonomic.quasi_choice import quasi_velocity_rows, vanishing
+from substructures.analysis.equations.nonholonomic.quasi_choice import (
+    independent_coordinates,
+    quasi_velocity_rows,
+    vanishing,
+)
 from substructures.analysis.equations.nonholonomic.quasi_equations import QuasiEquations
 from substructures.analysis.equations.nonholonomic.velocity_constraints import (
     GIVEN,
@@ -122,20 +126,43 @@ def quasi_velocity_equations(
     is_free = velocities is None and independent is None and near is None
     if is_free and all(isinstance(each, Closed) for each in constraints):
         independent = model.reduction.independent or None
+    if velocities is None and independent is None and near is not None:
+        independent = chosen_near(model, constraints, near)
     named = None if velocities is None else tuple(velocities.items())
-    chosen = None if independent is None else tuple(independent)
-    found = _equations(known_model(model), constraints, (named, chosen, None if near is None else tuple(near.items())))
+    found = _equations(known_model(model), constraints, named, None if independent is None else tuple(independent))
     return replace(found, model=model)
 
 
+def chosen_near(model: Model, constraints: tuple[Constraint, ...], near: Mapping[str, float]) -> tuple[str, ...]:
+    """The independent coordinates by which the motion is described well near these values of coordinates and
+    parameters. Raises InvalidInput for constraints that are none.
+    """
+    return tuple(independent_coordinates(*rows_of(model, constraints), near))
+
+
+def rows_of(model: Model, constraints: tuple[Constraint, ...]) -> tuple[Workspace, MatrixRows]:
+    """The rows of constraints that are independent, and where they are formulas. Raises InvalidInput."""
+    return _rows_of(known_model(model), constraints)
+
+
 @lru_cache(maxsize=32)
-def _equations(known: Known, constraints: tuple[Constraint, ...], choice: Choice) -> QuasiVelocities:
+def _rows_of(known: Known, constraints: tuple[Constraint, ...]) -> tuple[Workspace, MatrixRows]:
+    f = Workspace(known.source)
+    return f, independent_rows(f, constraints)[0].rows
+
+
+@lru_cache(maxsize=32)
+def _equations(
+    known: Known,
+    constraints: tuple[Constraint, ...],
+    named: tuple[tuple[str, str], ...] | None,
+    independent: tuple[str, ...] | None,
+) -> QuasiVelocities:
     model: Model = known.source
-    named, independent, place = choice
-    velocities, near = None if named is None else dict(named), None if place is None else dict(place)
+    velocities = None if named is None else dict(named)
     f = Workspace(model)
     rows, dependent = independent_rows(f, constraints)
-    names, own = quasi_velocity_rows(f, rows, velocities, independent, near)
+    names, own = quasi_velocity_rows(f, rows, velocities, independent)
     # Y q' = (v, -b), Y^-1 = [T S]
     Y = [*own, *rows.rows]
     inverted = inverse(Y)
