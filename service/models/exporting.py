@@ -11,7 +11,7 @@ from typing import Any
 
 from service.messages.refusals import unprocessable
 from service.models.binding import DEFAULTS, PLACE, Parameters, bound, bound_names
-from substructures.errors import InvalidArgument, MissingValue
+from substructures.errors import InvalidArgument, MissingValue, listed
 from substructures.export import (
     TARGETS,
     Exported,
@@ -33,6 +33,7 @@ from substructures.part.part import Part
 from substructures.quantities.quantity import FORWARD, VELOCITY_DYNAMICS, askable
 from substructures.quantities.sources import Sources
 from substructures.tree.document import TreeSpec
+from substructures.tree.given.ties import names_of
 from substructures.tree.glossary import glossary, part_glossary
 from substructures.tree.model import Model
 
@@ -197,9 +198,9 @@ def _require_free(model: Model, request: ExportRequest) -> None:
     fmu = f"target={FMU}{', which Simulink reads, too' if moves else ''}"
     function = "" if moves else f"the quantity '{VELOCITY_DYNAMICS}', or "
     for field, instead in {"velocity_constraints": function, "contacts": ""}.items():
-        if getattr(model, field):
-            kind = field.replace("_", " ")
-            message = f"{what} does not take {kind} into account: take {instead}{fmu}"
+        if ties := getattr(model, field):
+            kind, names = field.replace("_", " "), listed(f"'{name}'" for name in names_of(ties))
+            message = f"{what} does not take {kind} into account ({names}): take {instead}{fmu}"
             raise InvalidArgument.at(pointer, f"has-{kind.replace(' ', '-')}", message)
 
 

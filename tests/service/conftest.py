@@ -21,7 +21,7 @@ from service.settings import Settings
 from service.store.store import Store
 
 from .databases import close
-from .made_once import bare_app_from, upgrade_from
+from .made_once import bare_app_from, upgrade_once
 
 Given, Answer = TypeVar("Given"), TypeVar("Answer")
 
@@ -102,10 +102,10 @@ def _logs_as_they_are(monkeypatch: pytest.MonkeyPatch) -> None:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def _made_once(tmp_path_factory: pytest.TempPathFactory) -> Iterator[None]:
+def _made_once() -> Iterator[None]:
     """Most tests open a store and an app of their own: 0.2 s of CPU each time for what is always the same."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr("service.database.migrate.upgrade", upgrade_from(tmp_path_factory.mktemp("first") / "store.db"))
+        patch.setattr("service.database.migrate.upgrade", upgrade_once())
         patch.setattr("service.app.bare_app", bare_app_from(bare_app()))
         yield
 

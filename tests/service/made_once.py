@@ -11,30 +11,32 @@ import sqlite3
 from collections.abc import Callable
 from contextlib import closing
 from functools import cache
-from pathlib import Path
 
 from fastapi import FastAPI
-from sqlalchemy import Engine, create_engine, inspect
+from sqlalchemy import Engine, StaticPool, create_engine, inspect
 
 from service.app import bare_app
 from service.database.migrate import upgrade
 
 
-def upgrade_from(first: Path) -> Callable[..., None]:
-    """In place of ``upgrade``; ``first``: where the first file of all will be."""
+def upgrade_once() -> Callable[..., None]:
+    """In place of ``upgrade``."""
 
     @cache
-    def made() -> Path:
-        engine = create_engine(f"sqlite:///{first}")
+    def made() -> bytes:
+        engine = create_engine("sqlite://", poolclass=StaticPool)
         upgrade(engine)
+        with engine.connect() as connection:
+            found: bytes = connection.connection.driver_connection.serialize()
         engine.dispose()
-        return first
+        return found
 
     def quick(engine: Engine, *revision: str) -> None:
         if revision or engine.dialect.name != "sqlite" or inspect(engine).get_table_names():
             upgrade(engine, *revision)
             return
-        with engine.connect() as connection, closing(sqlite3.connect(made())) as source:
+        with engine.connect() as connection, closing(sqlite3.connect(":memory:")) as source:
+            source.deserialize(made())
             source.backup(connection.connection.driver_connection)
 
     return quick

@@ -217,7 +217,7 @@ def test_formulas_of_motions_refuse_too(tied: TestClient, path: str) -> None:
     if "simulink" in path:  # and what takes them instead
         (fault,) = answer.json()["errors"]
         assert fault["pointer"] == "/query/target"
-        assert "target=simulink does not take velocity constraints into account: take target=fmu" in fault["message"]
+        assert "does not take velocity constraints into account ('blade'): take target=fmu" in fault["message"]
 
 
 def test_exports_without_constraints_and_contacts_name_the_fmu_alone(tied: TestClient) -> None:
@@ -226,8 +226,8 @@ def test_exports_without_constraints_and_contacts_name_the_fmu_alone(tied: TestC
     spec |= {"contacts": [{"name": "floor", "point": "x.b"}]}
     assert tied.post("/v1/trees", json=spec).status_code == 201
     told = {
-        "sleigh": "velocity constraints into account: take the quantity 'velocity_dynamics', or target=fmu",
-        "bouncy": "contacts into account: take target=fmu",
+        "sleigh": "velocity constraints into account ('blade'): take the quantity 'velocity_dynamics', or target=fmu",
+        "bouncy": "contacts into account ('floor'): take target=fmu",
     }
     for name, message in told.items():
         answer = tied.get(f"/v1/trees/{name}/export?target=c&quantities=forward_dynamics")
