@@ -9,6 +9,7 @@ import subprocess
 import threading
 import time
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -74,9 +75,11 @@ class Tab:
 
     def until(self, script: str) -> Any:
         """The value of an expression as soon as it is one. A policy of the page forbids to wait within it."""
+        is_on_its_way = suppress(pytest.importorskip("playwright.sync_api").Error)  # then nothing is there yet
         for _ in range(400):
-            if found := self.page.evaluate(script):
-                return found
+            with is_on_its_way:
+                if found := self.page.evaluate(script):
+                    return found
             time.sleep(0.05)
         raise AssertionError(f"{script}; {self.wrong}; {self.page.inner_text('main')[:500]}")
 
