@@ -19,7 +19,7 @@ from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.reductions import REDUCTIONS
 from substructures.analysis.from_fields import motion_arguments
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.simulate import simulate
 from substructures.compile.motion import CompiledRun
 

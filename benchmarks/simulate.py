@@ -32,7 +32,8 @@ from substructures.analysis.from_fields import motion_arguments
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.integrators.compiled_steps import compiled_stepper
 from substructures.analysis.motion.integrators.integration import IntegratorSettings, integrate
-from substructures.analysis.motion.problems.problem import TAYLOR, Start
+from substructures.analysis.motion.problems.problem import TAYLOR
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide, forward_dynamics
 from substructures.analysis.motion.simulation import DYNAMICS
 from substructures.analysis.motion.taylor import taylor_stepper

@@ -31,8 +31,9 @@ from substructures.analysis.motion.problems.kinds import (
 )
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import Outputs
-from substructures.analysis.motion.problems.problem import Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
 from substructures.analysis.motion.problems.signals import Signal, Table
+from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.rolling import RollingProblem, simulate_rolling
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.motion.trajectory import Trajectory

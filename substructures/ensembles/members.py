@@ -17,8 +17,8 @@ from substructures.analysis.equations.nonholonomic.solved import RATES, solved
 from substructures.analysis.motion.ball_motion import kernel_in_rates
 from substructures.analysis.motion.conditions import DYNAMICS, Conditions, read_conditions, state_names
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, TreeMotion, usual_kind
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Table
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.right_hand_side import ACCELERATION, POWER, forward_kernel
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program

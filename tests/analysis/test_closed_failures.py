@@ -10,7 +10,7 @@ from simulated import simulated
 
 from substructures import InvalidInput
 from substructures.analysis.motion.problems.output_times import OutputTimes
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.simulation import TreeProblem, simulate_tree
 from substructures.analysis.simulate import Closed, Event, Linear, Table, simulate
 

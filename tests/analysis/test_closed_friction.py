@@ -20,7 +20,7 @@ from substructures.analysis.closed.dry_state import DryConstrained
 from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.closed.sticking_forces import bounded
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import FixedStep
 from substructures.compile import target

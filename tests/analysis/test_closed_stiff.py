@@ -12,7 +12,8 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.closed.reductions import Projected
 from substructures.analysis.closed.stepper import ClosedStepper
-from substructures.analysis.motion.problems.problem import Integrator, Start
+from substructures.analysis.motion.problems.problem import Integrator
+from substructures.analysis.motion.problems.start import Start
 
 from .closed_motions import METHODS
 

@@ -23,8 +23,8 @@ from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, C
 from substructures.analysis.motion.integrators.fixed_step import compiled_rk4, rk4
 from substructures.analysis.motion.integrators.steppers import scipy_stepper, within
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Interpolation
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.simulate import Table
 from substructures.compile import target

@@ -15,7 +15,7 @@ from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.contacts.contact_motion import SLIP, STARTS, STICK, ContactMotion
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.array import Array
 from substructures.compile import target
 from substructures.compile.motion import CompiledRun

@@ -17,7 +17,7 @@ from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.contacts.contact_motion import SLIP, STICK, ContactMotion
 from substructures.analysis.motion.contacts.deciding import DecidedContacts
 from substructures.analysis.motion.problems.contacts import contacts_of
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.compile import target
 

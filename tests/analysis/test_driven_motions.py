@@ -37,7 +37,7 @@ from substructures.analysis.equations.curvature import curvature
 from substructures.analysis.equations.perturbation import perturbation
 from substructures.analysis.equations.routh import routh
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.simulate import Outputs
 from substructures.compile import target
 from substructures.compile.motion import CompiledRun

@@ -19,7 +19,7 @@ from substructures import InvalidArgument, InvalidDocument, InvalidInput, Model
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.friction.dry_friction import DryMotion, friction_laws
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.simulate import Event, FixedStep, Table
 from substructures.compile import target

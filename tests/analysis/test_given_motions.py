@@ -14,8 +14,8 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import loop_state
 from substructures.analysis.closed.prescribed import Prescribed
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Curve, Table
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.simulate import ClosedMotion, Integrator, Outputs
 from substructures.compile import target
 from substructures.compile.motion import CompiledRun

@@ -15,7 +15,7 @@ from substructures import InvalidArgument, InvalidInput
 from substructures.analysis.equations.nonholonomic.quasi_velocities import quasi_velocity_equations
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.reduced_motion import FORMS, ReducedMotion
 from substructures.analysis.motion.rolling import NEEDS
 from substructures.analysis.simulate import (

@@ -29,8 +29,8 @@ from substructures.analysis.motion.conditions import read_conditions, state_name
 from substructures.analysis.motion.corners import Laws, follow
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.events import Event
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.varying_inputs import VaryingInputs
 from substructures.array import Array
 from substructures.compile import Kernel, compile_program

@@ -15,8 +15,8 @@ from substructures.analysis.arguments import real
 from substructures.analysis.closed.constrained import SINGULAR, Constrained, Singular, require_fixed
 from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import CLOSED, Consistent, consistent_state
-from substructures.analysis.motion.problems.problem import Start, StateVector
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.mechanics.closure_rows import RANK, rank_of, ranks

@@ -25,8 +25,8 @@ from substructures.analysis.closed.constrained import Constrained, Singular
 from substructures.analysis.closed.following import Index, followed, tangent
 from substructures.analysis.closed.loops import MET, SOLVED, independent_coordinates
 from substructures.analysis.closed.projection import consistent_state
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.verdict import About, Check, verdict
 from substructures.array import Array
 from substructures.errors import Fault, InvalidArgument, among, listed

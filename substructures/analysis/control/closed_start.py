@@ -16,7 +16,7 @@ from substructures.analysis.closed.pivoting import pivoted
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.control.holding import HOLDING, ties_of
 from substructures.analysis.control.problem import ControlProblem
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.array import Array
 from substructures.errors import InvalidArgument, listed
 from substructures.expr.differentiate import gradient

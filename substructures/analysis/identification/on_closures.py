@@ -23,7 +23,7 @@ from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.loops import independent_coordinates
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.identification.base_parameters import BaseParameters
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.array import Array
 from substructures.errors import InvalidArgument
 from substructures.expr.interpret import interpret_in_blocks

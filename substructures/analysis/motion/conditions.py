@@ -13,8 +13,8 @@ from substructures.analysis.equations.expressions import Given, read_expressions
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.events import DIRECTIONS, Event
-from substructures.analysis.motion.problems.problem import Start
 from substructures.analysis.motion.problems.signals import Curve, Signal, Table, require_covered
+from substructures.analysis.motion.problems.start import Start
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among

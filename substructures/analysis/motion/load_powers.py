@@ -17,7 +17,7 @@ from substructures.analysis.equations.kernels import evaluated
 from substructures.analysis.motion.conditions import read_conditions
 from substructures.analysis.motion.friction.dry_friction import friction_laws
 from substructures.analysis.motion.friction.transmitted import accelerations, has_not_begun, state_values
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.second_run import ROUNDING
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.verdict import Check

@@ -30,8 +30,9 @@ from substructures.analysis.motion.limits import with_limits
 from substructures.analysis.motion.problems.kinds import ConstrainedMotion, usual_kind
 from substructures.analysis.motion.problems.output_times import OutputTimes
 from substructures.analysis.motion.problems.outputs import SensitivityOutputs
-from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem, Start, StateVector
+from substructures.analysis.motion.problems.problem import TAYLOR, Integrator, MotionProblem
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.second_run import accurate, halves, second_run
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.motion.variation import Variation, displaced

@@ -21,7 +21,8 @@ from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.event_gaps import GAPS, gap_rates
 from substructures.analysis.motion.problems.events import DIRECTIONS, Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.problems.problem import MotionProblem, Start
+from substructures.analysis.motion.problems.problem import MotionProblem
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.trajectory import Crossing, Trajectory
 from substructures.analysis.verdict import Check
 from substructures.array import Array

@@ -14,8 +14,9 @@ from substructures.analysis.arguments import reals, whole
 from substructures.analysis.motion.conditions import state_names
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputTimes
-from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.orbits.families import orbit_family
 from substructures.analysis.orbits.orbit import Family, Orbit, Section, Shooting, stability

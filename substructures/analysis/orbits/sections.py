@@ -16,8 +16,9 @@ from substructures.analysis.arguments import NumberOrExpression, positive, whole
 from substructures.analysis.equations.formulas import require_moving
 from substructures.analysis.motion.problems.events import Event
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
-from substructures.analysis.motion.problems.problem import Integrator, Start, StateVector
+from substructures.analysis.motion.problems.problem import Integrator
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import Start, StateVector
 from substructures.analysis.motion.simulation import TreeProblem
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.orbits.flow import moved, require_steady_ties

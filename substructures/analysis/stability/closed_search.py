@@ -15,7 +15,7 @@ import scipy
 from substructures.analysis.closed.constrained import Constrained
 from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import multipliers_of
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.stability.equilibrium_search import RESIDUAL, STEPS, TOLERANCES, RestSearch, SearchRange
 from substructures.analysis.stability.operating_point import RestConditions
 from substructures.array import Array

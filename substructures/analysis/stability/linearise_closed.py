@@ -27,7 +27,7 @@ from substructures.analysis.closed.projection import consistent_state
 from substructures.analysis.equations.formulas import inputs_of, multipliers_of
 from substructures.analysis.equations.meetings import with_sides
 from substructures.analysis.equations.perturbation import perturbation
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.stability.linearisation_result import ClosedLinearisation
 from substructures.analysis.stability.operating_point import MATRICES, OperatingPoint, fault_of, is_small
 from substructures.analysis.stability.vibrations import first_order, input_matrix, modes, normed, stability

@@ -14,7 +14,7 @@ from substructures.analysis.closed.loops import independent_coordinates
 from substructures.analysis.equations.formulas import multipliers_of
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.equations.steady import steady_formulas
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.stability.closed_search import is_met, multiplier_units
 from substructures.analysis.stability.equilibrium_search import STEPS, TOLERANCES, RestSearch, SearchRange
 from substructures.analysis.stability.operating_point import RestConditions

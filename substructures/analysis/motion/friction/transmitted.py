@@ -12,7 +12,7 @@ from substructures.analysis.equations.kernels import evaluated
 from substructures.analysis.equations.nonholonomic.independent_rows import independent_rows
 from substructures.analysis.equations.nonholonomic.velocity_constraints import constraints_of
 from substructures.analysis.motion.conditions import read_conditions
-from substructures.analysis.motion.problems.problem import Start
+from substructures.analysis.motion.problems.start import Start
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.array import Array
 from substructures.expr.program import array, program

@@ -9,8 +9,8 @@ from typing import Literal, get_args
 from substructures.analysis.arguments import by_name, one_of, values_of
 from substructures.analysis.equations.nonholonomic.velocity_constraints import Constraint, closing
 from substructures.analysis.motion.problems.contacts import Contact
-from substructures.analysis.motion.problems.problem import StateVector
 from substructures.analysis.motion.problems.signals import Signal
+from substructures.analysis.motion.problems.start import StateVector
 from substructures.errors import InvalidArgument
 from substructures.quantities.part_models import ReactionModel
 from substructures.tree.model import Model
