@@ -9,8 +9,8 @@ from substructures.expr.replay import replay
 from substructures.expr.rings.expand import LIMIT as TERMS
 from substructures.expr.rings.expand import Expander
 from substructures.printers.listing import check_size
-from substructures.textbook import read
 from substructures.textbook.forms import to_expr
+from substructures.textbook.reading import read
 
 
 def stored_form(program: Program, form: str, limit: int) -> str:

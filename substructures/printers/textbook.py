@@ -13,8 +13,8 @@ from substructures.expr.program import Program
 from substructures.printers.language import Language, Listing, Piece
 from substructures.printers.listing import check_size
 from substructures.printers.numbers import has_decimals
-from substructures.textbook import AT_ONCE, LIMITS, Limits, Reading, Sum, Term, Trig, read
-from substructures.textbook.forms import Factor, atoms_of, leaves, numbers
+from substructures.textbook.forms import Factor, Sum, Term, Trig, atoms_of, leaves, numbers
+from substructures.textbook.reading import AT_ONCE, LIMITS, Limits, Reading, read
 from substructures.textbook.scales import ratio
 
 #: so many angles q1, q2, ..., and c12 is written for cos(q1 + q2); parameters decide nothing, so that one more of them
