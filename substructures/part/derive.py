@@ -13,6 +13,7 @@ from substructures.errors import InvalidArgument, InvalidDocument, TooLarge, amo
 from substructures.expr.garbage import without_collections
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.units.unit_check import UnitCheck
+from substructures.mechanics.formula_size import Entries, entries_of, expected_operations
 from substructures.part.certificate import certify_part
 from substructures.part.definition import Definition
 from substructures.part.forces.applied_forces import read_loads
@@ -22,7 +23,6 @@ from substructures.part.parameters import uncounted, without_effect
 from substructures.part.part import MAX_NODES, Part
 from substructures.part.poses import require_closures, require_poses, require_reduction
 from substructures.part.relations import left_out_warnings, require_relations, weightless_warnings
-from substructures.part.topology import Entries, entries_of, expected_operations
 from substructures.part.units import check_units
 
 PROGRAM = "the program of the substructure (in operations)"

@@ -32,8 +32,8 @@ Where relations move joints, axes a, b and those of f, n, K, kappa, F, N, applie
 joint, and there are by joint c: multiplier mu and offset delta (n) of q^c = mu y + delta. Where there are ball joints,
 christoffel, F and N are those of rates (:mod:`substructures.mechanics.balls`), each symmetric in b and c.
 
-A part with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols is stored without
-christoffel, kappa, F and N.
+A part with more than :data:`substructures.mechanics.formula_size.MOST_CHRISTOFFEL` Christoffel symbols is stored
+without christoffel, kappa, F and N.
 """
 
 from __future__ import annotations

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import NamedTuple
 
-from substructures.errors import Fault, InvalidDocument, TooLarge, among
+from substructures.errors import Fault, InvalidDocument, among
 from substructures.expr.steps import RESERVED
 from substructures.mechanics.balls import BallJoint
 from substructures.mechanics.kinematics import INTERFACE
@@ -14,11 +13,6 @@ from substructures.part.balls import BALLS, ball_faults, ball_names
 from substructures.part.definition import Body, Definition, Relation
 
 BASE = "base"
-
-#: with more Christoffel symbols than this no formulas of them are stored, nor of what is larger than the metric
-MOST_CHRISTOFFEL = 23_000
-#: most elements of the metric
-MOST_METRIC = 10_000
 
 #: (kind, axis of the frame before the joint) of every one degree of freedom joint in a joint type, in order.
 #: ``spherical`` is yaw, pitch, roll (about the third, the new second, the new first axis); singular at pitch = +-pi/2.
@@ -97,45 +91,6 @@ class Topology:
     def kinds(self) -> str:
         """'R' or 'P' for every coordinate."""
         return "".join("P" if joint.s else "R" for joint in self.moving)
-
-
-class Entries(NamedTuple):
-    """Independent elements, at most, of the metric and of the Christoffel symbols."""
-
-    metric: int
-    christoffel: int
-
-    @property
-    def is_large(self) -> bool:
-        """Whether formulas of the Christoffel symbols are left out."""
-        return self.christoffel > MOST_CHRISTOFFEL
-
-    def require(self, what: str) -> None:
-        """Raises TooLarge for a metric that is too large as well."""
-        if self.metric > MOST_METRIC:
-            raise TooLarge(f"{what} (in elements of its metric)", self.metric, MOST_METRIC)
-
-
-def entries_of(joints: Sequence[tuple[int, int]]) -> Entries:
-    """Of joints (parent, kind): a, and a and revolute b, on the path to every joint c.
-
-    Known before anything is derived, and what the size of a program grows with.
-    """
-    paths: list[tuple[int, int]] = []
-    for parent, s in joints:
-        # of every path to c: its length, and how many revolute joints are on it (Gamma_abc = 0 for prismatic b < c)
-        length, turning = paths[parent] if parent >= 0 else (0, 0)
-        paths.append((length + 1, turning + 1 - s))
-    return Entries(sum(length for length, _ in paths), sum(length * turning for length, turning in paths))
-
-
-def expected_operations(joints: Sequence[tuple[int, int]]) -> int:
-    """About how long the program of joints (parent, kind) with symbols for all inertias becomes.
-
-    Fitted to chains of 6 to 100 general joints, to 20 %; parallel axes and numbers make it shorter.
-    """
-    entries = entries_of(joints)
-    return (38 * entries.metric if entries.is_large else 5 * entries.christoffel) + 400 * len(joints)
 
 
 def topology(definition: Definition) -> Topology:

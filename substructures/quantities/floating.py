@@ -28,10 +28,10 @@ from substructures.certificate.derived.floating import (
 from substructures.errors import TooLarge
 from substructures.expr.program import Formulas, program
 from substructures.expr.replay import replay
+from substructures.mechanics.formula_size import MOST_CHRISTOFFEL, entries_of
 from substructures.part.derive import derive
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.part.topology import MOST_CHRISTOFFEL, entries_of
 from substructures.quantities.of_parts import formed
 from substructures.quantities.part_models import OfParts
 from substructures.tree.assembly import Assembly, joint_parents, unchecked

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 
 from substructures.errors import InvalidDocument, listed
 from substructures.expr.program import Program
-from substructures.part.topology import MOST_CHRISTOFFEL
+from substructures.mechanics.formula_size import MOST_CHRISTOFFEL
 
 
 def require_stored(program: Program, names: Iterable[str]) -> None:

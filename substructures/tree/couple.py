@@ -15,10 +15,10 @@ from substructures.expr.garbage import without_collections
 from substructures.expr.hoist import hoisted
 from substructures.expr.program import Formulas, Program, program
 from substructures.expr.units.unit_check import UnitCheck
+from substructures.mechanics.formula_size import entries_of, expected_operations
 from substructures.mechanics.state_names import ball_rows
 from substructures.part.outputs import over_formulas
 from substructures.part.part import MAX_NODES, Part
-from substructures.part.topology import entries_of, expected_operations
 from substructures.tree.assembly import Assembly, assemble, declared, division_by_zero, joint_parents
 from substructures.tree.certificate import blamed, certified, seconds_of
 from substructures.tree.coupling import Coupled, couple_parts

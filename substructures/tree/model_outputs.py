@@ -24,7 +24,8 @@ friction_load          n 2          what the force that a joint transmits adds t
 dependent              z            of a tree with loops in its formulas (reduced level): its dependent coordinates
 =====================  ===========  ==========================================================================
 
-A tree with more than :data:`substructures.part.topology.MOST_CHRISTOFFEL` Christoffel symbols has no christoffel.
+A tree with more than :data:`substructures.mechanics.formula_size.MOST_CHRISTOFFEL` Christoffel symbols has no
+christoffel.
 """
 
 from __future__ import annotations

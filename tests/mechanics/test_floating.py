@@ -204,6 +204,6 @@ def test_large_ones_are_refused(monkeypatch: pytest.MonkeyPatch) -> None:
     )
     with pytest.raises(TooLarge):
         floating_metric(spec, parts, 10)
-    monkeypatch.setattr("substructures.part.topology.MOST_CHRISTOFFEL", 5)
+    monkeypatch.setattr("substructures.mechanics.formula_size.MOST_CHRISTOFFEL", 5)
     with pytest.raises(TooLarge, match="in elements"):
         floating_christoffel(spec, parts)

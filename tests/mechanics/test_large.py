@@ -23,7 +23,7 @@ from substructures.analysis.equations.curvature import curvature
 from substructures.certificate import part_outputs
 from substructures.errors import VerificationFailed
 from substructures.expr.program import Program
-from substructures.part import topology
+from substructures.mechanics import formula_size
 from substructures.part.derive import recheck
 from substructures.quantities.from_parts import NumericTree
 from substructures.quantities.numbers.evaluation import evaluate
@@ -122,7 +122,7 @@ def test_numbers_of_the_christoffel_symbols_come_from_the_parts(part: Part, mode
 
 def lower(monkeypatch: pytest.MonkeyPatch, most: int) -> None:
     """Another limit, for the derivation and for its certificate."""
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", most)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", most)
     for name in ("MOST_CHRISTOFFEL", "ONCE_CHRISTOFFEL"):
         monkeypatch.setattr(part_outputs, name, most)
 
@@ -170,11 +170,11 @@ def test_large_parts_couple_with_small_ones(monkeypatch: pytest.MonkeyPatch) -> 
 def test_what_has_to_be_stored_is_not_left_to_the_derivation(monkeypatch: pytest.MonkeyPatch) -> None:
     """A certificate counts for itself: neither less nor more is accepted."""
     definition = Definition.read(chain(6))
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", 50)
     with pytest.raises(VerificationFailed):
         derive(definition)
     lower(monkeypatch, 50)
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 100_000)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", 100_000)
     with pytest.raises(VerificationFailed, match="no output that the documents know of"):
         derive(definition)
 
@@ -184,7 +184,7 @@ def test_what_older_versions_stored_is_certified(monkeypatch: pytest.MonkeyPatch
     tree = TreeSpec.read({**TREE, "instances": [{"name": "a", "substructure": "one"}]})
     old = derive(Definition.read(chain(6, "one")))
     model = couple(tree, {"a": old})
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", 50)
     monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 50)
     tree_again = partial(certify_tree, tree, {"a": old.definition}, model.summary())
     assert "christoffel" in recheck(old)["direct_form"]["max_relative_error"]
@@ -227,6 +227,6 @@ def test_a_metric_may_be_too_large_as_well(monkeypatch: pytest.MonkeyPatch) -> N
     one = {"name": "a", "substructure": "chain"}
     spec = TreeSpec.read({**TREE, "instances": [one, {"name": "b", "substructure": "chain", "at": "a.tip"}]})
     half = derive(Definition.read(chain(6)))
-    monkeypatch.setattr(topology, "MOST_METRIC", 50)
+    monkeypatch.setattr(formula_size, "MOST_METRIC", 50)
     with pytest.raises(TooLarge, match=r"the tree \(in elements of its metric\): 78"):
         couple(spec, {"a": half, "b": half})

@@ -10,7 +10,7 @@ from fastapi.testclient import TestClient
 
 from substructures import Definition, TreeSpec, couple, derive
 from substructures.certificate import part_outputs
-from substructures.part import topology
+from substructures.mechanics import formula_size
 from substructures.quantities.numbers.evaluation import evaluate
 
 TREE = {"name": "long", "gravity": [0, 0, "-9.81"], "instances": [{"name": "a", "substructure": "arm"}]}
@@ -37,7 +37,7 @@ def arm() -> dict[str, Any]:
 @pytest.fixture
 def large(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> TestClient:
     """A server on which more than 50 are too many, with a part and a tree that have more."""
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 50)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", 50)
     monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 50)
     answer = client.post("/v1/substructures", json=arm())
     assert answer.status_code == 201, answer.text
@@ -49,7 +49,7 @@ def large(client: TestClient, monkeypatch: pytest.MonkeyPatch) -> TestClient:
 def test_numbers_are_those_of_a_model_that_has_all(large: TestClient, monkeypatch: pytest.MonkeyPatch) -> None:
     """Of the Christoffel symbols too, for one state and several, beside outputs that are stored."""
     wanted = ["metric", "christoffel", "bias", "inverse_dynamics", "forward_dynamics"]
-    monkeypatch.setattr(topology, "MOST_CHRISTOFFEL", 100_000)
+    monkeypatch.setattr(formula_size, "MOST_CHRISTOFFEL", 100_000)
     monkeypatch.setattr(part_outputs, "MOST_CHRISTOFFEL", 100_000)
     model = couple(TreeSpec.read(TREE), {"a": derive(Definition.read(arm()))})
     q, qd, qdd = np.random.default_rng(0).uniform(-1, 1, (3, 3, 6))
