@@ -88,17 +88,17 @@ def _bound(mimic: Mimic, before: Mapping[str, tuple[str, Exact, Exact]]) -> tupl
     k, c = _exact(mimic.multiplier), _exact(mimic.offset)
     (a, mu_a, delta_a), (b, mu_b, delta_b) = (_lead(before, joint) for joint in (mimic.joint, mimic.of))
     # mu_a q_a + delta_a = k (mu_b q_b + delta_b) + c
-    rest, mu_b = _is("-", _is("+", _is("*", k, delta_b), c), delta_a), _is("*", k, mu_b)
+    rest, mu_b = _combined("-", _combined("+", _combined("*", k, delta_b), c), delta_a), _combined("*", k, mu_b)
     if a == b:
         return _AGAIN if isclose(_float(mu_a), _float(mu_b), rel_tol=_SAME) and abs(_float(rest)) < _SAME else _HELD
     if a == mimic.joint:
         return a, mimic.of, k, c
     if b == mimic.of and _float(k):
-        return b, mimic.joint, _is("/", Fraction(1), k), _is("/", _is("-", Fraction(0), c), k)
+        return b, mimic.joint, _combined("/", Fraction(1), k), _combined("/", _combined("-", Fraction(0), c), k)
     if _float(mu_a):
-        return a, b, _is("/", mu_b, mu_a), _is("/", rest, mu_a)
+        return a, b, _combined("/", mu_b, mu_a), _combined("/", rest, mu_a)
     if _float(mu_b):
-        return b, a, _is("/", mu_a, mu_b), _is("/", _is("-", Fraction(0), rest), mu_b)
+        return b, a, _combined("/", mu_a, mu_b), _combined("/", _combined("-", Fraction(0), rest), mu_b)
     return _HELD
 
 
@@ -108,11 +108,11 @@ def _lead(before: Mapping[str, tuple[str, Exact, Exact]], joint: str) -> tuple[s
     delta: Exact = Fraction(0)
     while joint in before:
         joint, k, c = before[joint]
-        mu, delta = _is("*", mu, k), _is("+", _is("*", mu, c), delta)
+        mu, delta = _combined("*", mu, k), _combined("+", _combined("*", mu, c), delta)
     return joint, mu, delta
 
 
-def _is(sign: str, x: Exact, y: Exact) -> Exact:
+def _combined(sign: str, x: Exact, y: Exact) -> Exact:
     """The sum, difference, product or quotient."""
     if isinstance(x, str) or isinstance(y, str):
         return f"({x}){sign}({y})"
