@@ -98,6 +98,7 @@ TABLE: dict[str, Row] = {
     "put /v1/trees/{name}/visibility": Row(
         TREE + "/{tree}/visibility", (409, 403, 404), (200, 403, 403), {"visibility": "public"}
     ),
+    "patch /v1/trees/{ref}": Row(TREE + "/{tree}", (201, 403, 404), (201, 403, 403), {"gravity": [0, 0, -1]}),
     "post /v1/trees/{ref}/couplings": Row(TREE + "/{tree}/couplings", (201, 403, 404), (201, 403, 403), CAMERA),
     "patch /v1/trees/{ref}/couplings/{instance}": Row(
         TREE + "/{tree}/couplings/eye", (201, 403, 404), (201, 403, 403), {"placement": {"position": [0, 0, 1]}}
