@@ -48,18 +48,18 @@ class Retries:
 
 def _told(error: httpx2.TransportError | ProblemError) -> httpx2.TransportError | ProblemError:
     """The same, saying where nothing answers in place of 'Connection refused'."""
-    if not isinstance(error, httpx2.ConnectError):
+    if not isinstance(error, httpx2.ConnectError | httpx2.ConnectTimeout):
         return error
     url = error.request.url
     told = f"nothing answers at {url.scheme}://{url.netloc.decode()} ({error}); 'substructures serve' starts a server"
-    return httpx2.ConnectError(told, request=error.request)
+    return type(error)(told, request=error.request)
 
 
 def _is_passing(error: Exception, is_repeatable: bool) -> bool:
     if isinstance(error, ProblemError):
         return error.status == 429 or (is_repeatable and error.status in GATEWAY and _is_worth_waiting(error))
-    if isinstance(error, httpx2.ConnectError | httpx2.ConnectTimeout):
-        return True
+    if isinstance(error, httpx2.ConnectError):
+        return True  # at once; a host that is silent has taken all of the time that was given
     return is_repeatable and isinstance(error, httpx2.NetworkError | httpx2.RemoteProtocolError)
 
 

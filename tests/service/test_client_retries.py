@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import json
 import os
+import socket
+import sys
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
 from pathlib import Path
 from threading import Thread
@@ -238,3 +241,17 @@ def test_nobody_listens(monkeypatch: pytest.MonkeyPatch) -> None:
     assert str(raised.value).startswith("nothing answers at http://127.0.0.1:9 (")
     assert str(raised.value).endswith("; 'substructures serve' starts a server")
     assert pauses == pytest.approx([0.1, 0.3, 0.9])
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="elsewhere a full queue refuses")
+def test_a_silent_host_is_waited_for_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """It takes no more connections, and does not refuse them either."""
+    monkeypatch.setattr(retries, "sleep", lambda _: pytest.fail("it is asked again"))
+    with socket.create_server(("127.0.0.1", 0), backlog=0) as silent, ExitStack() as opened:
+        for _ in range(4):  # until its queue is full
+            waiting = opened.enter_context(socket.socket())
+            waiting.setblocking(False)
+            waiting.connect_ex(silent.getsockname())
+        client = opened.enter_context(Client(f"http://127.0.0.1:{silent.getsockname()[1]}", timeout=0.2))
+        with pytest.raises(httpx2.ConnectTimeout, match=r"nothing answers at http://127\.0\.0\.1:"):
+            client.limits()
