@@ -9,7 +9,7 @@ import pytest
 from bad_documents import GOOD, Path, Plain, cell, changed, pointer_of, request
 
 from substructures import Definition, InvalidDocument, TooLarge, TreeSpec, couple, derive
-from substructures.part.topology import entries_of
+from substructures.mechanics.formula_size import entries_of
 from substructures.quantities.numbers.evaluation import evaluate
 
 B: Path = ("bodies", 1)
