@@ -5,7 +5,7 @@ from __future__ import annotations
 import inspect
 import os
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from dataclasses import dataclass
 from functools import wraps
 from pathlib import Path
@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated, Any, Concatenate, ParamSpec
 import typer
 
 from service.cli.address import KEY_FROM, SERVER, at
+from service.cli.output import shipped
 from service.settings import Settings, SettingsError, from_environment
 
 if TYPE_CHECKING:
@@ -64,13 +65,26 @@ class Server:
         if self.database is not None:
             if self.address not in (None, os.environ.get("SUBSTRUCTURES_SERVER")):
                 raise SettingsError("give either --server or --database")
-            from service.cli.own_server import serving  # noqa: PLC0415 -- of the store alone, with all that serves
-
-            with serving(settings(database=self.database)) as client:
+            with _serving(settings(database=self.database)) as client:
                 yield client
             return
         with at(self.address, self.key, self.key_from, self.is_other) as client:
             yield client
+
+
+@contextmanager
+def _serving(of_store: Settings) -> Iterator[Client]:
+    """A client of a store, which is served to this process alone. Raises DatabaseError, MigrationError."""
+    # with all that serves, which other commands do not need
+    from service.server import background  # noqa: PLC0415
+    from service.store.keys import lent  # noqa: PLC0415
+    from substructures.client import Client  # noqa: PLC0415
+
+    with ExitStack() as opened:
+        with shipped() as told:
+            address = opened.enter_context(background(of_store, told))
+        key = opened.enter_context(lent(of_store.database))
+        yield opened.enter_context(Client(address, key))
 
 
 def with_server(run: Callable[Concatenate[Server, P], int]) -> Callable[..., int]:

@@ -9,11 +9,12 @@ from __future__ import annotations
 import hmac
 import re
 import secrets
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import replace
 from datetime import timedelta
 
-from service.database.connections import Connection
+from service.database.connections import Connection, Database
 from service.messages.refusals import Refused
 from service.messages.viewer import ANYBODY, CONSOLE, OPEN, SCOPES, Viewer
 from service.queries import audit, keys, sessions
@@ -24,6 +25,7 @@ PREFIX = "sub"
 OWNER = r"[a-z0-9][a-z0-9-]{0,63}"
 DAYS = 36_500  # that a key may last
 SESSION = timedelta(hours=12)
+LENT = 1 / 24  # days of a key that is removed before
 HEADER = "the header 'Authorization: Bearer sub_...'"
 
 
@@ -87,6 +89,29 @@ def delete(connection: Connection, identifier: str, viewer: Viewer | None = None
     sessions.end_all(connection, identifier)
     keys.delete_key(connection, identifier)
     audit.note(connection, viewer or _console(key.owner), "key.delete", f"key {identifier}")
+
+
+@contextmanager
+def lent(url: str) -> Iterator[str | None]:
+    """A key for the commands that work on a store while the block lasts; None for a store without keys."""
+    database = Database(url, exclusive=False)
+    try:
+        with database.read() as connection:
+            is_open = not keys.any_key(connection)
+        if is_open:
+            yield None
+            return
+        with database.write() as connection:
+            text = create(connection, "a command on the store", SCOPES, LENT, CONSOLE)
+        try:
+            yield text
+        finally:
+            with database.write() as connection:
+                identifier = text.split("_")[1]
+                revoke(connection, identifier)
+                delete(connection, identifier)
+    finally:
+        database.close()
 
 
 def required(connection: Connection, identifier: str) -> keys.ApiKey:
