@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 
@@ -68,6 +68,24 @@ class AssemblyWriter:
         self.lines[at] = f"%i{n} = phi i64 [ {start}, %{before} ], [ %n{n}, %{self.block} ]"
         self.put(f"br label %head{n}")
         self.label(f"done{n}")
+
+    @contextmanager
+    def forever(self) -> Iterator[Callable[[str], None]]:
+        """while True; what it gives leaves the loop on a condition."""
+        self.counter += 1
+        n = self.counter
+        self.put(f"br label %again{n}")
+        self.label(f"again{n}")
+
+        def leave(condition: str) -> None:
+            """if condition: break."""
+            self.counter += 1
+            self.put(f"br i1 {condition}, label %left{n}, label %stay{self.counter}")
+            self.label(f"stay{self.counter}")
+
+        yield leave
+        self.put(f"br label %again{n}")
+        self.label(f"left{n}")
 
     @contextmanager
     def when(self, condition: str) -> Iterator[None]:

@@ -14,11 +14,12 @@ from substructures.compile.order import REGIONS
 from substructures.compile.sincos import LIMIT, sincos_body
 from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row
 
-#: words of the driver's context; ``counter`` counts the groups that were taken, and the word behind it is not zero
-#: when a result of any state is not finite
+#: words of the driver's context; ``counters``: of the groups that were taken of every part of the batch, which has
+#: ``turns`` groups, LINE bytes apart; the word behind the first one is not zero when a result of any state is not
+#: finite. A thread begins with the part ``own``
 CONTEXT = (
     *(word for region in REGIONS for word in (region, f"{region}_stride")),
-    *("o", "o_stride", "o_advance", "last", "counter"),
+    *("o", "o_stride", "o_advance", "last", "counters", "own", "parts", "turns"),
     *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group", "n_results"),
 )
 #: words of a row of the table of steps
@@ -43,6 +44,9 @@ def runtime(width: int) -> str:
 
 #: results that are looked at together, a power of 2, and sums in which they are
 LOOKED, CHAINS = 16, 4
+
+#: bytes that no two threads should write to at a time: two cache lines, which some processors fetch together
+LINE = 128
 
 BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
 
@@ -116,11 +120,12 @@ def _drive(width: int) -> str:
     """The states [0, last) in groups of vectors: inputs, every step for the whole group, outputs.
 
     Taking a function for several vectors in turn keeps its instructions in the cache. Several threads may drive the
-    same batch, each with scratch of its own: they share the counter of groups.
+    same batch, each with scratch of its own: they share the counters of groups. Each begins with a part of its own, so
+    that no two write to one page of the results, and goes on with what others have left.
     """
     w = AssemblyWriter(width)
     c = w.words("%context", CONTEXT)
-    tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", *REGIONS, "o")}
+    tables = {n: w.pointer(c[n]) for n in ("counters", "inputs", "steps", "outputs", *REGIONS, "o")}
     final = w.arithmetic("sub", c["last"], 1)
     advance = w.arithmetic("mul", c["group"], width)
 
@@ -128,9 +133,7 @@ def _drive(width: int) -> str:
         """The address of a block's row in a region."""
         return w.offset(base, w.arithmetic("mul", block, c[f"{region}_stride"]))
 
-    rounds = w.arithmetic("sdiv", w.arithmetic("add", c["last"], w.arithmetic("sub", advance, 1)), advance)
-    with w.loop("0", rounds), _turn(w, tables["counter"], rounds) as turn:
-        start = w.arithmetic("mul", turn, advance)
+    with w.loop("0", c["parts"]) as k, _turns(w, c, tables["counters"], k, advance) as start:
         # results stay in scratch, or move on through an array of the caller
         moved = w.offset(tables["o"], w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"]))
 
@@ -147,18 +150,26 @@ def _drive(width: int) -> str:
         _steps(w, tables["steps"], c["n_steps"], blocks, rows)
         with w.loop("0", blocks) as block:
             results = row(moved, "o", block)
-            seen = w.offset(tables["counter"], 8)
+            seen = w.offset(tables["counters"], 8)
             w.put(f"call void @look(ptr {results}, i64 {c['n_results']}, ptr {seen})")
             _rows(w, c, tables["outputs"], results, (start, block))
     return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
 
 
 @contextmanager
-def _turn(w: AssemblyWriter, counter: str, rounds: str) -> Iterator[str]:
-    """The next group that no other thread has taken, if there is one left."""
-    turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
-    with w.when(w.do(f"icmp slt i64 {turn}, {rounds}")):
-        yield turn
+def _turns(w: AssemblyWriter, c: dict[str, str], counters: str, k: str, advance: str) -> Iterator[str]:
+    """While there are groups that no other thread has taken in the k-th part from the own one: their first states."""
+    place = w.arithmetic("add", c["own"], k)
+    around = w.do(f"icmp slt i64 {place}, {c['parts']}")
+    part = w.do(f"select i1 {around}, i64 {place}, i64 {w.arithmetic('sub', place, c['parts'])}")
+    counter = w.offset(counters, w.arithmetic("mul", part, LINE))
+    before = w.arithmetic("mul", part, c["turns"])
+    with w.forever() as leave:
+        turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
+        start = w.arithmetic("mul", w.arithmetic("add", before, turn), advance)
+        leave(w.do(f"icmp sge i64 {turn}, {c['turns']}"))
+        leave(w.do(f"icmp sge i64 {start}, {c['last']}"))
+        yield start
 
 
 def _steps(w: AssemblyWriter, table: str, count: str, blocks: str, rows: Callable[[str], list[str]]) -> None:

@@ -13,7 +13,7 @@ import numpy as np
 
 from substructures.array import Array
 from substructures.compile.arguments import NamedColumns
-from substructures.compile.engine import Counter, Scratch, VectorRuntime, WordTable, address
+from substructures.compile.engine import Scratch, VectorRuntime, WordTable, address, counters
 from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
 from substructures.compile.runtime import STEP
@@ -237,7 +237,8 @@ class Stages:
         results = Scratch.zeros(1, self.width * (1 + self.results[stop]))
         results.array[:, : once.results.array.size] = once.results.array
         rows = [word for x in scratch for word in x[:2]] + [0] * 2 * (len(REGIONS) - stop)
-        counter, nothing = Counter(), (0, 0)
-        words = (*results[:2], 0, 1, ctypes.addressof(counter), *nothing, *self.steps(start, stop), *nothing, 1, 0)
+        taken, nothing = counters(), (0, 0)
+        batch = 1, ctypes.addressof(taken), 0, 1, 1
+        words = (*results[:2], 0, *batch, *nothing, *self.steps(start, stop), *nothing, 1, 0)
         self.runtime.drive(*rows, *words)
         return PreparedStages(tuple(scratch), results)
