@@ -92,7 +92,7 @@ class VectorRuntime:
     def of(cls, code: bytes, width: int) -> VectorRuntime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
         loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
-        call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
+        call = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(loaded.names["drive"])
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 
@@ -112,7 +112,8 @@ class VectorRuntime:
 
     def drive(self, *words: int) -> None:
         """One call of the driver, without the interpreter's lock; words in the order of CONTEXT."""
-        self.call(WORDS(*words))
+        context = array("q", words)
+        self.call(context.buffer_info()[0])
 
 
 _pools: dict[int, ThreadPoolExecutor] = {}

@@ -16,6 +16,7 @@ from substructures.compile.arguments import NamedColumns, batch_shape, merged
 from substructures.compile.engine import WORDS, Scratch, VectorRuntime, WordTable, address, counters, workers
 from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
+from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
 from substructures.compile.stages import Arguments, PreparedStages, Stages
 from substructures.errors import MissingValue
@@ -48,10 +49,26 @@ class _Job(NamedTuple):
     blocks: Array | None
 
 
+class _ThreadScratch(NamedTuple):
+    """Scratch of one thread for the stages behind the first, and for a zero and the results; ``held``: the numbers that
+    stand in it since an earlier call.
+    """
+
+    rows: list[Scratch]
+    held: list[Array | None]
+
+    def hold(self, k: int, numbers: Array, lanes: int) -> None:
+        """The k-th rows begin with these numbers, each of them in so many lanes."""
+        if self.held[k] is not numbers:
+            row = np.repeat(numbers, lanes)
+            self.rows[k].array[:, : row.size] = row
+            self.held[k] = numbers
+
+
 class _Prepared(NamedTuple):
     """Scratch of one thread, and the words of the driver's context."""
 
-    scratch: list[Scratch]
+    scratch: _ThreadScratch
     alive: Any
     words: tuple[int, ...]
 
@@ -73,7 +90,7 @@ class MachineKernel(Kernel):
         row = 8 * (sum(self._stages.rows[1:]) + self._o_row)
         self.group = min(MAX_GROUP, max(1, GROUP_BYTES // row))
         self._layouts: dict[tuple[str, bool | bytes], tuple[Layout, tuple[int, ...]]] = {}
-        self._scratch: list[list[Scratch]] = []
+        self._scratch: list[_ThreadScratch] = []
         # the object code lies in memory about twice: as it is loaded, and as tables
         self._held = ENGINE_BYTES + 2 * len(code) + KEPT * self.group * row
 
@@ -200,19 +217,17 @@ class MachineKernel(Kernel):
         try:
             scratch = self._scratch.pop()
         except IndexError:
-            scratch = [Scratch.zeros(self.group, size) for size in (*self._stages.rows[1:], self._o_row)]
+            new = [Scratch.zeros(self.group, size) for size in (*self._stages.rows[1:], self._o_row)]
+            scratch = _ThreadScratch(new, [None] * len(new))
         done, width = len(job.once.scratch), self.width
-        varying = scratch[done - 1 : -1] if done else [Scratch.zeros(self.group, self._stages.rows[0]), *scratch[:-1]]
-        rows = [*job.once.scratch, *varying]
-        for row, x in zip(varying, job.arguments[done:], strict=True):
-            if len(x.numbers):
-                count = len(x.numbers)
-                row.array[:, : count * width].reshape(-1, count, width)[...] = x.numbers[:, None]
+        first = job.once.scratch or (self._stages.scratch(0, job.arguments[0], self.group),)
+        for k in range(len(first), len(REGIONS)):
+            scratch.hold(k - 1, job.arguments[k].numbers, width)
+        rows = [*first, *scratch.rows[len(first) - 1 : -1]]
         words = [word for row in rows for word in row[:2]]
         if job.blocks is None:
-            ready = job.once.results.array
-            scratch[-1].array[:, : ready.size] = ready
-            words += (*scratch[-1][:2], 0)
+            scratch.hold(-1, job.once.results.array, 1)
+            words += (*scratch.rows[-1][:2], 0)
         else:
             # the array has no zero
             words += (address(job.blocks) - 8 * width, job.blocks.strides[0], job.blocks.strides[0])
