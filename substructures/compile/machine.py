@@ -246,9 +246,10 @@ class BoundCall:
     ) -> None:
         self.alive, self.call, self.counters = (alive, prepared), runtime.call, taken
         self.context = WORDS(*prepared.words)
-        self.words = runtime.loaded.names["drive"], ctypes.addressof(self.context)
+        self.place = ctypes.addressof(self.context)
+        self.words = runtime.loaded.names["drive"], self.place
 
     def __call__(self) -> None:
         """Once more."""
         self.counters[0] = 0
-        self.call(self.context)
+        self.call(self.place)

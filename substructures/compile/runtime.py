@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from struct import pack, unpack
 
-from substructures.compile.assembler import AssemblyWriter, attributes, literal, vector
+from substructures.compile.assembler import AssemblyWriter, attributes, literal
 from substructures.compile.order import REGIONS
 from substructures.compile.sincos import LIMIT, sincos_body
 from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row
@@ -38,8 +39,7 @@ def runtime(width: int) -> str:
         _look(width),
         _drive(width),
     ]
-    declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
-    return declared + "\n".join(body) + attributes(width)
+    return "\n".join(body) + attributes(width)
 
 
 #: results that are looked at together, a power of 2, and sums in which they are
@@ -52,29 +52,33 @@ BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
 
 
 def _sincos(width: int) -> str:
-    """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos."""
-    w = AssemblyWriter(width)
-    size = 8 * width
+    """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos, which
+    answer at the end where numbers are beyond the limit.
+    """
+    w, size, integers = AssemblyWriter(width, has_table=True), 8 * width, f"<{width} x i64>"
+    # negative in a lane where |x|, as bits, is beyond the limit, or no number
+    beyond = w.do(f"alloca {integers}, align {size}")
+    w.put(f"store {integers} zeroinitializer, ptr {beyond}, align {size}")
+    limit, plain = (f"<{', '.join([f'i64 {n}'] * width)}>" for n in (unpack("<q", pack("<d", LIMIT))[0], 2**63 - 1))
     with w.loop("0", "%count") as i:
         at = w.arithmetic("mul", i, size)
         x = w.do(f"load {w.kind}, ptr {w.offset('%a', at)}, align {size}")
-        sine, cosine = sincos_body(w, x)
-        w.put(f"store {w.kind} {sine}, ptr {w.offset('%b', at)}, align {size}")
-        w.put(f"store {w.kind} {cosine}, ptr {w.offset('%c', at)}, align {size}")
-        magnitude = w.do(f"call {w.kind} @llvm.fabs.v{width}f64({w.kind} {x})")
-        large = w.do(f"fcmp ugt {w.kind} {magnitude}, {literal(LIMIT, width)}")
-        mask = w.do(f"bitcast <{width} x i1> {large} to i{width}")
-        some = w.do(f"icmp ne i{width} {mask}, 0")
-        with w.when(some), w.loop("0", str(width)) as lane:
-            place = w.arithmetic("add", at, w.arithmetic("shl", lane, 3))
-            one = w.do(f"load double, ptr {w.offset('%a', place)}")
-            magnitude = w.do(f"call double @llvm.fabs.f64(double {one})")
-            beyond = w.do(f"fcmp ugt double {magnitude}, {LIMIT:.1f}")
-            with w.when(beyond):
-                for k, target in enumerate(("%b", "%c")):
-                    function = w.do(f"load ptr, ptr {w.offset('%extra', k, 'ptr')}")
-                    value = w.do(f"call double {function}(double {one})")
-                    w.put(f"store double {value}, ptr {w.offset(target, place)}")
+        for result, target in zip(sincos_body(w, x), ("%b", "%c"), strict=True):
+            w.put(f"store {w.kind} {result}, ptr {w.offset(target, at)}, align {size}")
+        magnitude = w.do(f"and {integers} {w.do(f'bitcast {w.kind} {x} to {integers}')}, {plain}")
+        before = w.do(f"load {integers}, ptr {beyond}, align {size}")
+        every = w.do(f"or {integers} {before}, {w.do(f'sub {integers} {limit}, {magnitude}')}")
+        w.put(f"store {integers} {every}, ptr {beyond}, align {size}")
+    every = w.do(f"load {integers}, ptr {beyond}, align {size}")
+    mask = w.do(f"bitcast <{width} x i1> {w.do(f'icmp slt {integers} {every}, zeroinitializer')} to i{width}")
+    with w.when(w.do(f"icmp ne i{width} {mask}, 0")), w.loop("0", w.arithmetic("mul", "%count", width)) as i:
+        one = w.do(f"load double, ptr {w.offset('%a', i, 'double')}")
+        magnitude = w.do(f"call double @llvm.fabs.f64(double {one})")
+        with w.when(w.do(f"fcmp ugt double {magnitude}, {LIMIT:.1f}")):
+            for k, target in enumerate(("%b", "%c")):
+                function = w.do(f"load ptr, ptr {w.offset('%extra', k, 'ptr')}")
+                value = w.do(f"call double {function}(double {one})")
+                w.put(f"store double {value}, ptr {w.offset(target, i, 'double')}")
     return "declare double @llvm.fabs.f64(double)\n" + w.function("sincos", BATCH)
 
 
