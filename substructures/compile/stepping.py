@@ -75,7 +75,7 @@ def _rates(width: int) -> str:
     with w.loop("0", c["n_calls"]) as k:
         words = w.words(w.offset(at["calls"], w.arithmetic("mul", k, 16)), ("drive", "context"))
         drive, context = w.pointer(words["drive"]), w.pointer(words["context"])
-        place = w.offset(context, CONTEXT.index("counter"), "i64")
+        place = w.offset(context, CONTEXT.index("counters"), "i64")
         w.put(f"store i64 0, ptr {w.pointer(w.do(f'load i64, ptr {place}, align 8'))}, align 8")
         w.put(f"call void {drive}(ptr {context})")
     with w.when(w.do(f"icmp ne i64 {c['saddle']}, 0")):
