@@ -11,7 +11,7 @@ import numpy as np
 from substructures.analysis.motion.integrators.steppers import LEAST_TOLERANCE, Stepper, scipy_stepper
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.array import Array
-from substructures.compile.motion import FAILED, FINISHED, HEAD, RUNNING, CompiledRates, CompiledRun
+from substructures.compile.motion import FINISHED, HEAD, MANY, RUNNING, WAY, CompiledRates, CompiledRun
 
 #: steps that are tried in one call of machine code: a few milliseconds, then whoever watches the progress is told
 MOST = 256
@@ -115,6 +115,32 @@ class CompiledStepper:
             self.status = "finished"
         return None
 
+    def ahead(self) -> Array:
+        """Steps (k, HEAD + size) that are made and not yet taken: time, evaluations up to there, state."""
+        if self._next == len(self._made):
+            self._tried = MOST
+            self._more()
+        return self._made[self._next :]
+
+    def take(self, count: int) -> None:
+        """Advance by so many of the steps ahead, at least one."""
+        if count > 1:
+            self._next += count - 1
+            self.t, self.y = float(self._made[self._next - 1, 0]), self._made[self._next - 1, HEAD:]
+        self.step()
+
+    def reach(self, ways: Array, states: Array, most: int = MANY) -> tuple[Array, Array]:
+        """States at the ends of ways (k, 3), which are start, first step and end, from ``states`` (k, size), each by
+        steps of its own, in about ``most`` evaluations at most; and whether the ends are reached (k,).
+        """
+        rows = np.zeros((len(ways), len(WAY) + states.shape[1]))
+        rows[:, :3], rows[:, len(WAY) :] = ways, states
+        self._short.reach(rows, most)
+        evaluations = int(rows[:, WAY.index("evaluations")].sum())
+        self._before += evaluations
+        self.nfev += evaluations
+        return rows[:, len(WAY) :], rows[:, WAY.index("status")] == FINISHED
+
     @property
     def h_abs(self) -> float:
         """The size of the step that is tried next."""
@@ -163,11 +189,7 @@ class CompiledStepper:
         """
         if t <= self.t_old:
             return self.y_old.copy()
-        self._short.begin(self.t_old, self.y_old, t, t - self.t_old)
-        while self._short.status == RUNNING:
-            self._short.advance()
-        self._before += self._short.evaluations
-        self.nfev += self._short.evaluations
-        if self._short.status == FAILED:
+        found, is_reached = self.reach(np.array([[self.t_old, t - self.t_old, t]]), self.y_old[None])
+        if not is_reached[0]:
             raise ArithmeticError(TOO_SMALL)
-        return self._short.state
+        return found[0]
