@@ -8,6 +8,7 @@ taken as they are there, with their corners, so that a motion on the wrong side 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -89,12 +90,15 @@ def _chosen(first: IntegratedMotion) -> tuple[list[Way], list[Way]]:
 def _has_length(way: Way) -> bool:
     """Whether there is more than rounding between two times: events may happen where a result is wanted."""
     a, b = way[0][0], way[1][0]
-    return b - a > SHORT * float(np.spacing(max(abs(a), abs(b))))
+    return b - a > SHORT * math.ulp(max(abs(a), abs(b)))
 
 
 def _spread(count: int, most: int) -> list[int]:
     """Some of the numbers below ``count``, the first and the last among them."""
-    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())) if count > 0 else []
+    if count <= most:
+        return list(range(count))
+    apart = (count - 1) / (most - 1)
+    return [round(k * apart) for k in range(most)]
 
 
 def careful(choice: Integrator, length: float | None = None) -> Integrator:

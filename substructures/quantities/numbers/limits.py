@@ -87,9 +87,9 @@ def reached(t: Array, q: Array, qd: Array) -> tuple[Array, Array]:
     c, d = 3 * rise - 2 * v0 - v1, v0 + v1 - 2 * rise
     with np.errstate(all="ignore"):
         root = np.sqrt(c * c - 3 * d * v0)
-        for s in ((-c + root) / (3 * d), (-c - root) / (3 * d), -v0 / (2 * c)):
-            inside = np.isfinite(s) & (s > 0) & (s < 1)
-            turned = q[:-1] + s * (v0 + s * (c + s * d))
-            low = np.minimum(low, np.where(inside, turned, np.inf).min(axis=0))
-            high = np.maximum(high, np.where(inside, turned, -np.inf).max(axis=0))
+        s = np.stack([(-c + root) / (3 * d), (-c - root) / (3 * d), -v0 / (2 * c)])
+        turned = q[:-1] + s * (v0 + s * (c + s * d))
+        inside = (s > 0) & (s < 1)
+        low = np.minimum(low, turned.min(axis=(0, 1), initial=np.inf, where=inside))
+        high = np.maximum(high, turned.max(axis=(0, 1), initial=-np.inf, where=inside))
     return low, high

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Literal, Protocol, runtime_checkable
+from typing import Any, Literal
 
 import numpy as np
 
@@ -20,17 +20,10 @@ NOT_FINITE = "All components of the initial state `y0` must be finite."
 TOO_SMALL = "Required step size is less than spacing between numbers."
 
 
-@runtime_checkable
-class Compiled(Protocol):
-    """A right-hand side that may be calls of kernels."""
-
-    def compiled(self) -> CompiledRates | None:
-        """As it is now; None where it is not."""
-
-
 def rates_of(f: Any) -> CompiledRates | None:
-    """The calls of kernels that a function consists of; None where it does not."""
-    return f.compiled() if isinstance(f, Compiled) else None
+    """The calls of kernels that a function consists of, as its method ``compiled`` has them; None where it does not."""
+    compiled: Callable[[], CompiledRates | None] | None = getattr(f, "compiled", None)
+    return None if compiled is None else compiled()
 
 
 def compiled_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:

@@ -171,7 +171,8 @@ def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) 
     """
     shape = model.of_shape
     found = first_integrals(shape, forces, zero)
-    told = str(found.summary()["integrals"])
-    if shape is not model and (found.degree > 1 or any(name in told for name in shape.numbers)):
-        return first_integrals(model, forces, zero)
+    if shape is not model:
+        told = str(found.summary()["integrals"])
+        if found.degree > 1 or any(name in told for name in shape.numbers):
+            return first_integrals(model, forces, zero)
     return replace(found, numbers=shape.numbers)
