@@ -21,6 +21,7 @@ from substructures.compile.lowering import ProgramStep
 from substructures.compile.runtime import CONTEXT, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
+DRIVER = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))
 #: groups of vectors that have been taken, and whether a result was not finite
 Counter = ctypes.c_int64 * 2
 #: of the scratch arrays: a cache line, and the widest vector
@@ -88,8 +89,8 @@ class VectorRuntime:
     @classmethod
     def of(cls, code: bytes, width: int) -> VectorRuntime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
-        loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
-        call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
+        loaded = target.Loaded.load(code, ["drive", "drive_one", "sincos", "unary", "binary"])
+        call = DRIVER(loaded.names["drive"])
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 

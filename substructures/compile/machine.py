@@ -13,10 +13,11 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import layout, target
 from substructures.compile.arguments import NamedColumns, batch_shape, merged
-from substructures.compile.engine import WORDS, Counter, Scratch, VectorRuntime, WordTable, address, workers
+from substructures.compile.engine import DRIVER, WORDS, Counter, Scratch, VectorRuntime, WordTable, address, workers
 from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.recipe import Recipe
+from substructures.compile.runtime import CONTEXT
 from substructures.compile.stages import Arguments, PreparedStages, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
@@ -221,9 +222,11 @@ class BoundCall:
     def __init__(
         self, alive: Any, runtime: VectorRuntime, prepared: _Prepared, counter: ctypes.Array[ctypes.c_int64]
     ) -> None:
-        self.alive, self.call, self.counter = (alive, prepared), runtime.call, counter
+        self.alive, self.counter = (alive, prepared), counter
         self.context = WORDS(*prepared.words)
-        self.words = runtime.loaded.names["drive"], ctypes.addressof(self.context)
+        driver = "drive_one" if self.context[CONTEXT.index("last")] == 1 else "drive"
+        self.words = runtime.loaded.names[driver], ctypes.addressof(self.context)
+        self.call = DRIVER(self.words[0])
 
     def __call__(self) -> None:
         """Once more."""
