@@ -10,8 +10,13 @@ from analysis_models import catalogue_model
 from simulated import simulated
 
 from substructures.analysis.motion import single_steps
+from substructures.analysis.motion.conditions import DYNAMICS, read_conditions
 from substructures.analysis.motion.integrators import integrated_motion, integration
-from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper
+from substructures.analysis.motion.integrators.at_once import taken_at_once
+from substructures.analysis.motion.integrators.compiled_steps import EXPLICIT, CompiledStepper, compiled_stepper
+from substructures.analysis.motion.integrators.steppers import roughly_within
+from substructures.analysis.motion.problems.start import Start
+from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.trajectory import Trajectory
 from substructures.analysis.simulate import Table
 from substructures.compile import target
@@ -113,6 +118,40 @@ def test_a_result_that_is_not_reached(monkeypatch: pytest.MonkeyPatch) -> None:
     assert (found.status, len(found.t)) == ("failed", 1)
     assert "Required step size" in found.message
     assert 0.5 <= found.t[-1] < 0.6
+
+
+def stepper_of(method: str) -> CompiledStepper:
+    """Of the acrobot, from the start to 1 s."""
+    model = catalogue_model("acrobot")
+    start = Start(**START).with_defaults(model)
+    conditions = read_conditions(model, start, (0, 1), DYNAMICS)
+    f = RightHandSide(model, conditions.values, conditions.zero, conditions)
+    made: CompiledStepper = compiled_stepper(method, 1e-7, 1e-9)(f, 0.0, conditions.start, 1.0)
+    return made
+
+
+@pytest.mark.parametrize("method", EXPLICIT)
+def test_states_within_a_step(method: str) -> None:
+    """Many at once are those one by one, its ends among them."""
+    solver = stepper_of(method)
+    for _ in range(3):
+        solver.step()
+    times = np.linspace(solver.t_old, solver.t, 9)
+    found, dense = solver.states_at(times), solver.dense_output()
+    np.testing.assert_array_equal(found, [dense(t) for t in times.tolist()])
+    np.testing.assert_array_equal(found[0], solver.y_old)
+    np.testing.assert_allclose(found[-1], solver.y, rtol=1e-12)
+    np.testing.assert_array_equal(roughly_within(solver)(times), found)
+
+
+def test_steps_that_are_watched_are_taken_one_by_one() -> None:
+    solver = stepper_of("RK45")
+    assert taken_at_once(solver, [], 0, 0.0, 3, None) is not None
+    assert solver.nfev > 0
+    before = solver.t
+    solver.is_watched = True
+    assert taken_at_once(solver, [], 0, 0.0, 3, None) is None
+    assert solver.t == before > 0
 
 
 def test_steps_done_again_one_by_one(monkeypatch: pytest.MonkeyPatch) -> None:

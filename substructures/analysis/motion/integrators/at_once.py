@@ -24,10 +24,10 @@ def taken_at_once(
     """At most so many further steps of a stepper, and the results at the ``outputs`` in them, from the ``first`` on.
     ``goes_on``: told where each step ends, and false where it is the last one.
 
-    None where one is to be taken by itself: a stepper of other kind, a step shorter than ``least`` or to what is not
-    finite, a result that is not reached.
+    None where one is to be taken by itself: a stepper of other kind or one that is watched, a step shorter than
+    ``least`` or to what is not finite, a result that is not reached.
     """
-    if not isinstance(solver, CompiledStepper):
+    if not isinstance(solver, CompiledStepper) or solver.is_watched:
         return None
     rows = solver.ahead()[: max(most, 0)]
     t, x = np.append(solver.t, rows[:, 0]), np.concatenate([solver.y[None], rows[:, HEAD:]])

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from substructures.analysis.motion.integrators.steppers import LEAST_TOLERANCE, Stepper, scipy_stepper
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
@@ -72,6 +73,9 @@ class CompiledStepper:
     scipy.integrate.OdeSolver.
     """
 
+    #: whether each step is looked at, so that they cannot be taken many at a time
+    is_watched = False
+
     def __init__(
         self,
         f: Any,
@@ -82,7 +86,7 @@ class CompiledStepper:
     ) -> None:
         """``evaluations`` until now; ``first``: as of ``begin``; ``run``: of so many steps in a call."""
         self.fun, self.nfev, self._method = f, evaluations, method
-        self._make, self._run = run, run(MOST)
+        self._make = run
         self.status: Literal["running", "finished", "failed"]
         self.begin(*first)
 
@@ -91,7 +95,9 @@ class CompiledStepper:
         self.t, self.t_old, self._end, self._before = t, t, end, self.nfev - 1
         self.y: Array = np.array(y)
         self.y_old, self.status = self.y, "running"
-        self._run.begin(t, self.y, end, first_step)
+        self._start = t, self.y, end, first_step
+        if "_run" in vars(self):
+            self._run.begin(*self._start)
         self._made: Array = np.zeros((0, HEAD + len(self.y)))
         self._next, self._tried = 0, 1
 
@@ -122,9 +128,10 @@ class CompiledStepper:
             self.t, self.y = float(self._made[self._next - 1, 0]), self._made[self._next - 1, HEAD:]
         self.step()
 
-    def reach(self, ways: Array, states: Array, most: int = MANY) -> tuple[Array, Array]:
-        """States at the ends of ways (k, 3), which are start, first step and end, from ``states`` (k, size), each by
-        steps of its own, in about ``most`` evaluations at most; and whether the ends are reached (k,).
+    def reach(self, ways: Array, states: Array, most: int = MANY) -> tuple[Array, NDArray[np.bool_]]:
+        """States at the ends of ways (k, 3), which are start, first step and end, from ``states`` (k, size), or from
+        one (1, size), each by steps of its own, in about ``most`` evaluations at most; and whether they are reached
+        (k,).
         """
         rows = np.zeros((len(ways), len(WAY) + states.shape[1]))
         rows[:, :3], rows[:, len(WAY) :] = ways, states
@@ -167,6 +174,13 @@ class CompiledStepper:
         return bool(len(self._made))
 
     @cached_property
+    def _run(self) -> CompiledRun:
+        """Of the steps themselves."""
+        run = self._make(MOST)
+        run.begin(*self._start)
+        return run
+
+    @cached_property
     def _short(self) -> CompiledRun:
         """For steps within the last one."""
         return self._make(1)
@@ -176,13 +190,16 @@ class CompiledStepper:
         return self._at
 
     def _at(self, t: float) -> Array:
-        """The state at a time within the last step, by a shorter step from its start, which is as accurate.
+        return self.states_at(np.array([t]))[0]
+
+    def states_at(self, times: Array) -> Array:
+        """States (k, size) at times (k,) within the last step, by shorter steps from its start, which are as accurate.
 
         Raises ArithmeticError where the method fails.
         """
-        if t <= self.t_old:
-            return self.y_old.copy()
-        found, is_reached = self.reach(np.array([[self.t_old, t - self.t_old, t]]), self.y_old[None])
-        if not is_reached[0]:
+        start = np.full(len(times), self.t_old)
+        ways = np.stack([start, times - start, times], axis=1)
+        found, is_reached = self.reach(ways, self.y_old[None])
+        if not (is_reached | (times <= start)).all():
             raise ArithmeticError(TOO_SMALL)
-        return found[0]
+        return found

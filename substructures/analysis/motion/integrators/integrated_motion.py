@@ -74,14 +74,22 @@ class IntegratedMotion:
 
     def keep(self, t: float, x: Array) -> None:
         """Note an accepted step."""
-        self.keep_all(np.array([t]), x[None])
+        self.steps += 1
+        if self.steps % self.stride == 0:
+            self.step_t.append(t)
+            self.step_x.append(x)
+        self._thin()
 
     def keep_all(self, t: Array, x: Array) -> None:
-        """Note accepted steps (k,), (k, N); every second one is dropped when there are too many."""
+        """Note accepted steps (k,), (k, N)."""
         # those whose number is a multiple of the stride
         chosen = slice(-(self.steps + 1) % self.stride, None, self.stride)
         self.steps += len(t)
         self.step_t += t[chosen].tolist()
         self.step_x += list(x[chosen].copy())
+        self._thin()
+
+    def _thin(self) -> None:
+        """Every second step is dropped when there are too many."""
         while len(self.step_t) > KEPT:
             self.step_t, self.step_x, self.stride = self.step_t[::2], self.step_x[::2], 2 * self.stride
