@@ -115,6 +115,12 @@ class AssemblyWriter:
         """A word as an address."""
         return self.do(f"inttoptr i64 {word} to ptr")
 
+    def copy(self, source: str, target: str, count: str) -> None:
+        """So many doubles."""
+        with self.loop("0", count) as i:
+            value = self.do(f"load double, ptr {self.offset(source, i, 'double')}, align 8")
+            self.put(f"store double {value}, ptr {self.offset(target, i, 'double')}, align 8")
+
     def arithmetic(self, op: str, a: str, b: str | int) -> str:
         """Integers."""
         return self.do(f"{op} i64 {a}, {b}")

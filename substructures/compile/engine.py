@@ -21,6 +21,7 @@ from substructures.compile.lowering import ProgramStep
 from substructures.compile.runtime import CONTEXT, LINE, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
+DRIVER = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 #: of the scratch arrays: a cache line, and the widest vector
 ALIGNMENT = 64
 
@@ -91,8 +92,8 @@ class VectorRuntime:
     @classmethod
     def of(cls, code: bytes, width: int) -> VectorRuntime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
-        loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
-        call = ctypes.CFUNCTYPE(None, ctypes.c_void_p)(loaded.names["drive"])
+        loaded = target.Loaded.load(code, ["drive", "drive_one", "sincos", "unary", "binary"])
+        call = DRIVER(loaded.names["drive"])
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 

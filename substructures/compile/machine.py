@@ -13,11 +13,12 @@ import numpy as np
 from substructures.array import Array
 from substructures.compile import layout, target
 from substructures.compile.arguments import NamedColumns, batch_shape, merged
-from substructures.compile.engine import WORDS, Scratch, VectorRuntime, WordTable, address, counters, workers
+from substructures.compile.engine import DRIVER, WORDS, Scratch, VectorRuntime, WordTable, address, counters, workers
 from substructures.compile.kernel import Blocks, Kernel, KernelCall, is_packed
 from substructures.compile.layout import Layout, Words
 from substructures.compile.order import REGIONS
 from substructures.compile.recipe import Recipe
+from substructures.compile.runtime import CONTEXT
 from substructures.compile.stages import Arguments, PreparedStages, Stages
 from substructures.errors import MissingValue
 from substructures.expr.program import Program
@@ -244,10 +245,12 @@ class BoundCall:
     def __init__(
         self, alive: Any, runtime: VectorRuntime, prepared: _Prepared, taken: ctypes.Array[ctypes.c_int64]
     ) -> None:
-        self.alive, self.call, self.counters = (alive, prepared), runtime.call, taken
+        self.alive, self.counters = (alive, prepared), taken
         self.context = WORDS(*prepared.words)
         self.place = ctypes.addressof(self.context)
-        self.words = runtime.loaded.names["drive"], self.place
+        driver = "drive_one" if self.context[CONTEXT.index("last")] == 1 else "drive"
+        self.words = runtime.loaded.names[driver], self.place
+        self.call = DRIVER(self.words[0])
 
     def __call__(self) -> None:
         """Once more."""

@@ -13,7 +13,7 @@ from struct import pack, unpack
 from substructures.compile.assembler import AssemblyWriter, attributes, literal
 from substructures.compile.order import REGIONS
 from substructures.compile.sincos import LIMIT, sincos_body
-from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row
+from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row, spread
 
 #: words of the driver's context; ``counters``: of the groups that were taken of every part of the batch, which has
 #: ``turns`` groups, LINE bytes apart; the word behind the first one is not zero when a result of any state is not
@@ -28,7 +28,7 @@ STEP = ("stage", "function", "a", "b", "c", "count", "extra")
 
 
 def runtime(width: int) -> str:
-    """The module: sincos, unary, binary, drive."""
+    """The module: sincos, unary, binary, drive, drive_one."""
     body = [
         _sincos(width),
         _library(width, 1),
@@ -38,6 +38,7 @@ def runtime(width: int) -> str:
         scatter_some(width),
         _look(width),
         _drive(width),
+        _drive_one(width),
     ]
     return "\n".join(body) + attributes(width)
 
@@ -158,6 +159,17 @@ def _drive(width: int) -> str:
             w.put(f"call void @look(ptr {results}, i64 {c['n_results']}, ptr {seen})")
             _rows(w, c, tables["outputs"], results, (start, block))
     return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
+
+
+def _drive_one(width: int) -> str:
+    """The same for one state, whose inputs are in all lanes: many calls one after the other, as along a motion."""
+    w = AssemblyWriter(width)
+    c = w.words("%context", CONTEXT)
+    rows = [w.pointer(c[region]) for region in (*REGIONS, "o")]
+    spread(w, w.pointer(c["inputs"]), c["n_inputs"])
+    _steps(w, w.pointer(c["steps"]), c["n_steps"], "1", lambda _: rows)
+    w.put(f"call void @scatter_some(ptr {w.pointer(c['outputs'])}, i64 {c['n_outputs']}, i64 0, ptr {rows[-1]}, i64 1)")
+    return w.function("drive_one", "ptr %context")
 
 
 @contextmanager

@@ -125,6 +125,11 @@ class RightHandSide:
         """Length of x: 2 n, and one for W where there is any power."""
         return 2 * self.n + self.has_power
 
+    @property
+    def has_breaks(self) -> bool:
+        """Whether an input or its slope jumps."""
+        return self.inputs is not None and self.inputs.has_breaks
+
     def enter(self, start: float, end: float) -> None:
         """Times are between two breaks of the inputs until the next call."""
         if self.inputs is not None:
