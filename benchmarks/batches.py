@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import subprocess
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from fractions import Fraction
+from multiprocessing import get_context
+from multiprocessing.connection import Connection
 from time import perf_counter
 from typing import Any
 
@@ -16,44 +18,60 @@ import numpy as np
 from benchmarks.robots import EVERYTHING, METRIC_FORCES, Robot
 from benchmarks.timing import alternating, ratio
 from substructures.compile import Kernel, compile_program
-from substructures.compile.engine import workers
 from substructures.expr.bind import bind
 
 
 def threads(robot: Robot, figures: dict[str, float], rounds: int) -> None:
-    """The same large batch with one thread and with two; with Gamma the memory is the limit rather than the cores."""
+    """The same large batch with one thread and with two, and in halves by two processes, which share nothing: what the
+    machine gives just now.
+    """
     for names, times_larger, figure in ((METRIC_FORCES, 64, "two_threads"), (EVERYTHING, 16, "two_threads_all")):
         kernel, count = robot.kernel(names), times_larger * len(robot.q)
-        columns = [(robot.model.coordinates, np.tile(robot.q, (times_larger, 1)))]
+        q = np.tile(robot.q, (times_larger, 1))
         out = {n: np.zeros((count, *kernel.shape(n, packed=True))) for n in names}
 
-        def work(n: int, kernel: Kernel = kernel, out: Any = out, columns: Any = columns) -> Callable[[], Any]:
-            return lambda: kernel.evaluate_into(out, robot.numbers, columns=columns, packed=True, threads=n)
+        def work(n: int, size: int, kernel: Kernel = kernel, out: Any = out, q: Any = q) -> Callable[[], Any]:
+            some = {name: array[:size] for name, array in out.items()}
+            columns = [(robot.model.coordinates, q[:size])]
+            return lambda: kernel.evaluate_into(some, robot.numbers, columns=columns, packed=True, threads=n)
 
-        times = alternating({"one": (work(1), count), "two": (work(2), count)}, rounds, perf_counter)
+        with in_processes([work(1, count // 2)] * 2) as halves:
+            works = {"one": (work(1, count), count), "two": (work(2, count), count), "halves": (halves, count)}
+            times = alternating(works, rounds, perf_counter)
         figures[figure] = ratio(times["one"], times["two"])
-        figures["two_threads_machine"] = free_threads(rounds)
+        figures[f"{figure}_machine"] = ratio(times["one"], times["halves"])
         print(
             f"two threads: {figures[figure]:.2f} times one ({robot.name}, {count:,} states, {', '.join(names)});"
-            f" threads that share nothing: {figures['two_threads_machine']:.2f}"
+            f" two processes with half of the states each: {figures[f'{figure}_machine']:.2f}"
         )
 
 
-def free_threads(rounds: int) -> float:
-    """What the machine gives two threads just now: hashing, in the first-level cache and without the interpreter."""
-    data = bytes(2**14)
+@contextmanager
+def in_processes(works: Sequence[Callable[[], Any]]) -> Iterator[Callable[[], None]]:
+    """A call that does each work once in a process of its own, with memory of its own, all at a time."""
 
-    def one() -> None:
-        for _ in range(200):
-            hashlib.sha256(data)
+    def serve(end: Connection, work: Callable[[], Any]) -> None:
+        while end.recv():
+            work()
+            end.send(True)
 
-    def two() -> None:
-        other = workers().submit(one)
-        one()
-        other.result()
+    context, ends = get_context("fork"), list[Connection]()
+    for work in works:
+        end, other = context.Pipe()
+        context.Process(target=serve, args=(other, work), daemon=True).start()
+        ends.append(end)
 
-    times = alternating({"one": (one, 1), "two": (two, 2)}, rounds, perf_counter)
-    return ratio(times["one"], times["two"])
+    def once() -> None:
+        for end in ends:
+            end.send(True)
+        for end in ends:
+            end.recv()
+
+    try:
+        yield once
+    finally:
+        for end in ends:
+            end.send(False)
 
 
 def parameters(robot: Robot, figures: dict[str, float], rounds: int) -> None:

@@ -56,7 +56,7 @@ class Check:
         size = np.abs(violation)
         bad = np.flatnonzero(~(size <= limit * scale + noise))
         first = float(t[bad[0]]) if len(bad) else None
-        return cls(*about, float(np.nanmax(size, initial=0.0)), scale, limit, first)
+        return cls(*about, float(np.fmax.reduce(size, initial=0.0)), scale, limit, first)
 
     @classmethod
     def at(cls, about: About, violation: float, t: float, scale: float = 1.0, limit: float = 0.0) -> Check:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import struct
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
 
 
@@ -19,17 +19,22 @@ def literal(value: float, width: int) -> str:
 
 
 def attributes(width: int) -> str:
-    """Of all functions. An aligned stack: a spilled vector does not lie across two cache lines."""
-    wide = f'"prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
-    return f"attributes #0 = {{ nounwind alignstack={8 * width} {wide} }}\n"
+    """Of functions: #0 with an aligned stack, where a spilled vector does not lie across two cache lines; #1 without:
+    calling one takes less.
+    """
+    wide = f'nounwind "prefer-vector-width"="{64 * width}" "min-legal-vector-width"="{64 * width}"'
+    return f"attributes #0 = {{ {wide} alignstack={8 * width} }}\nattributes #1 = {{ {wide} }}\n"
 
 
 class AssemblyWriter:
     """Writes LLVM assembly; loops as context managers, so that control flow reads like a program."""
 
-    def __init__(self, width: int) -> None:
+    def __init__(self, width: int, has_table: bool = False) -> None:
+        """``has_table``: constants of :meth:`real` stand in memory as vectors, and instructions read them there. LLVM,
+        left alone, makes each of them from one number before a loop, for which there are too few registers.
+        """
         self.width, self.kind, self.lines, self.counter = width, vector(width), list[str](), 0
-        self.block = "entry"
+        self.block, self.table = "entry", dict[float, int]() if has_table else None
 
     def name(self) -> str:
         """A fresh value."""
@@ -70,6 +75,24 @@ class AssemblyWriter:
         self.label(f"done{n}")
 
     @contextmanager
+    def forever(self) -> Iterator[Callable[[str], None]]:
+        """while True; what it gives leaves the loop on a condition."""
+        self.counter += 1
+        n = self.counter
+        self.put(f"br label %again{n}")
+        self.label(f"again{n}")
+
+        def leave(condition: str) -> None:
+            """if condition: break."""
+            self.counter += 1
+            self.put(f"br i1 {condition}, label %left{n}, label %stay{self.counter}")
+            self.label(f"stay{self.counter}")
+
+        yield leave
+        self.put(f"br label %again{n}")
+        self.label(f"left{n}")
+
+    @contextmanager
     def when(self, condition: str) -> Iterator[None]:
         """if condition."""
         self.counter += 1
@@ -92,18 +115,33 @@ class AssemblyWriter:
         """A word as an address."""
         return self.do(f"inttoptr i64 {word} to ptr")
 
+    def copy(self, source: str, target: str, count: str) -> None:
+        """So many doubles."""
+        with self.loop("0", count) as i:
+            value = self.do(f"load double, ptr {self.offset(source, i, 'double')}, align 8")
+            self.put(f"store double {value}, ptr {self.offset(target, i, 'double')}, align 8")
+
     def arithmetic(self, op: str, a: str, b: str | int) -> str:
         """Integers."""
         return self.do(f"{op} i64 {a}, {b}")
 
     def real(self, op: str, a: str, b: str | float) -> str:
         """Vectors of doubles; a number stands for all lanes."""
-        return self.do(f"{op} {self.kind} {a}, {literal(b, self.width) if isinstance(b, float) else b}")
+        return self.do(f"{op} {self.kind} {a}, {self.constant(b) if isinstance(b, float) else b}")
+
+    def constant(self, value: float) -> str:
+        """In all lanes."""
+        if self.table is None:
+            return literal(value, self.width)
+        place = self.offset("@table", self.table.setdefault(value, len(self.table)), self.kind)
+        return self.do(f"load {self.kind}, ptr {place}, align {8 * self.width}")
 
     def fused(self, op: str, a: str, b: str | float) -> str:
         """The same; a product may be contracted with the sum or difference that it goes into."""
         return self.real(f"{op} contract", a, b)
 
     def function(self, name: str, arguments: str) -> str:
-        """What has been written, as a function without a result."""
-        return f"define void @{name}({arguments}) #0 {{\nentry:\n" + "\n".join(self.lines) + "\nret void\n}\n"
+        """What has been written, as a function without a result, and with few vectors at a time."""
+        rows = ", ".join(f"{self.kind} {literal(value, self.width)}" for value in self.table or ())
+        table = f"@table = internal constant [{len(self.table)} x {self.kind}] [{rows}]\n" if self.table else ""
+        return f"{table}define void @{name}({arguments}) #1 {{\nentry:\n" + "\n".join(self.lines) + "\nret void\n}\n"

@@ -18,11 +18,10 @@ from numpy.typing import NDArray
 from substructures.array import Array
 from substructures.compile import cache, target
 from substructures.compile.lowering import ProgramStep
-from substructures.compile.runtime import CONTEXT, STEP, runtime
+from substructures.compile.runtime import CONTEXT, LINE, STEP, runtime
 
 WORDS = ctypes.c_int64 * len(CONTEXT)
-#: groups of vectors that have been taken, and whether a result was not finite
-Counter = ctypes.c_int64 * 2
+DRIVER = ctypes.CFUNCTYPE(None, ctypes.c_void_p)
 #: of the scratch arrays: a cache line, and the widest vector
 ALIGNMENT = 64
 
@@ -52,6 +51,11 @@ class WordTable(NamedTuple):
         """A table for one call."""
         memory = array("q", chain.from_iterable(rows))
         return cls(memory.buffer_info()[0], len(rows), memory)
+
+
+def counters(parts: int = 1) -> ctypes.Array[ctypes.c_int64]:
+    """Of the groups that were taken of the parts of a batch; the second word: whether a result was not finite."""
+    return (ctypes.c_int64 * (LINE // 8 * parts))()
 
 
 class Scratch(NamedTuple):
@@ -88,8 +92,8 @@ class VectorRuntime:
     @classmethod
     def of(cls, code: bytes, width: int) -> VectorRuntime:
         """Loads the object code of the shared functions. Raises RuntimeError."""
-        loaded = target.Loaded.load(code, ["drive", "sincos", "unary", "binary"])
-        call = ctypes.CFUNCTYPE(None, ctypes.POINTER(WORDS))(loaded.names["drive"])
+        loaded = target.Loaded.load(code, ["drive", "drive_one", "sincos", "unary", "binary"])
+        call = DRIVER(loaded.names["drive"])
         library = target.math_library()
         return cls(width, loaded, call, np.array([library["sin"], library["cos"]], dtype=np.int64))
 
@@ -109,7 +113,8 @@ class VectorRuntime:
 
     def drive(self, *words: int) -> None:
         """One call of the driver, without the interpreter's lock; words in the order of CONTEXT."""
-        self.call(WORDS(*words))
+        context = array("q", words)
+        self.call(context.buffer_info()[0])
 
 
 _pools: dict[int, ThreadPoolExecutor] = {}

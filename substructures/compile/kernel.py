@@ -119,10 +119,9 @@ class Kernel(ABC):
         columns = list(columns)
         batch = batch_shape(values, columns)
         out = Evaluated()
+        request = KernelCall(values, batch, out, packed, threads, True, places, columns, is_told=True)
         for n in self.names if names is None else names:
-            shape = (len(places[n]),) if n in places else self.shape(n, is_packed(n, packed))
-            out[n] = np.empty(batch + shape)
-        request = KernelCall(values, batch, out, packed, threads, False, places, columns, is_told=True)
+            out[n] = self._new(n, request)
         out.finite = self._run(request)
         return out
 
@@ -205,6 +204,11 @@ class Kernel(ABC):
             out = {n: array[: prod(batch)].reshape(batch + array.shape[1:]) for n, array in memory.items()}
             self._run(KernelCall(values, batch, out, packed, threads, columns=given))
             yield out
+
+    def _new(self, name: str, request: KernelCall) -> Array:
+        """An array for an output."""
+        given, packed = request.places.get(name), is_packed(name, request.packed)
+        return np.empty(request.batch + (self.shape(name, packed) if given is None else given.shape))
 
     @abstractmethod
     def _run(self, request: KernelCall) -> bool:

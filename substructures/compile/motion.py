@@ -7,13 +7,14 @@ from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from substructures.array import Array
 from substructures.compile import target
+from substructures.compile.assembler import AssemblyWriter
 from substructures.compile.engine import Scratch, address, assembled
 from substructures.compile.machine import BoundCall
 from substructures.compile.stepping import FAILED, FINISHED, HEAD, NUMBERS, RUN, RUNNING, WORDS, Tableau, stepping
@@ -22,6 +23,10 @@ from substructures.compile.tables import TimeTables
 __all__ = ["FAILED", "FINISHED", "HEAD", "RUNNING", "CompiledRates", "CompiledRun", "Tableau"]
 
 _Words = ctypes.c_int64 * len(RUN)
+#: of a row of ways, before the state: when it begins, its first step, when it ends; evaluations and status are written
+WAY = ("t", "h", "end", "evaluations", "status")
+#: evaluations where there is no limit
+MANY = 2**62
 
 
 @dataclass(frozen=True)
@@ -110,10 +115,51 @@ class CompiledRates:
         return self.x.size + (self.power is not None)
 
 
+def _reach() -> str:
+    """The states at the ends of ``count`` ways in place of those where they begin; each takes at most so many
+    evaluations. The run tries one step in a call of advance.
+    """
+    w = AssemblyWriter(1)
+    c = w.words("%run", RUN)
+    numbers, y = w.pointer(c["numbers"]), w.pointer(c["y"])
+    words = {name: w.offset(numbers, len(NUMBERS) + k, "i64") for k, name in enumerate(WORDS)}
+    with w.loop("0", "%count") as i:
+        row = w.offset("%ways", w.arithmetic("mul", i, w.arithmetic("add", c["size"], len(WAY))), "double")
+        state = w.offset(row, len(WAY), "double")
+        w.copy(row, numbers, "3")
+        w.copy(state, y, c["size"])
+        for place in words.values():
+            w.put(f"store i64 0, ptr {place}, align 8")
+        w.put("br label %try")
+        w.label("try")
+        w.put(f"store i64 0, ptr {words['accepted']}, align 8")
+        w.put("call void @advance(ptr %run)")
+        found = [w.do(f"load i64, ptr {words[name]}, align 8") for name in WAY[3:]]
+        may, runs = w.do(f"icmp slt i64 {found[0]}, %most"), w.do(f"icmp eq i64 {found[1]}, {RUNNING}")
+        w.put(f"br i1 {w.do(f'and i1 {may}, {runs}')}, label %try, label %tried")
+        w.label("tried")
+        for k, word in enumerate(found, 3):
+            value = w.do(f"sitofp i64 {word} to double")
+            w.put(f"store double {value}, ptr {w.offset(row, k, 'double')}, align 8")
+        w.copy(y, state, c["size"])
+    return w.function("reach", "ptr %run, ptr %ways, i64 %count, i64 %most")
+
+
+class _Loaded(NamedTuple):
+    """Functions of one method, and their code."""
+
+    code: target.Loaded
+    advance: Callable[[Any], None]
+    reach: Callable[[Any, int, int, int], None]
+
+
 @lru_cache(maxsize=16)
-def _loaded(tableau: Tableau, width: int, folder: Path | None) -> tuple[target.Loaded, Callable[[Any], None]]:
-    loaded = target.Loaded.load(assembled(stepping(tableau, width), folder), ["advance"])
-    return loaded, ctypes.CFUNCTYPE(None, ctypes.POINTER(_Words))(loaded.names["advance"])
+def _loaded(tableau: Tableau, width: int, folder: Path | None) -> _Loaded:
+    code = target.Loaded.load(assembled(stepping(tableau, width) + _reach(), folder), ["advance", "reach"])
+    run = ctypes.POINTER(_Words)
+    advance = ctypes.CFUNCTYPE(None, run)(code.names["advance"])
+    reach = ctypes.CFUNCTYPE(None, run, ctypes.c_void_p, ctypes.c_int64, ctypes.c_int64)(code.names["reach"])
+    return _Loaded(code, advance, reach)
 
 
 class CompiledRun:
@@ -149,7 +195,7 @@ class CompiledRun:
         own += [0, 0] if rates.tables is None else [address(rates.tables.words), len(rates.tables.words)]
         self._alive = rates, calls, saddle
         self._run = _Words(*own, 0)
-        self._loaded, self._advance = _loaded(tableau, width, rates.folder)
+        self._code = _loaded(tableau, width, rates.folder)
 
     def begin(self, t: float, x: Array, end: float, h: float) -> None:
         """From x (size,) at t on, to ``end``, with a first step h."""
@@ -169,7 +215,7 @@ class CompiledRun:
         """
         self._words[0] = 0
         self._run[-1] = min(most, len(self._steps))
-        self._advance(self._run)
+        self._code.advance(self._run)
         return self._steps[: self._words[0]]
 
     def rates(self, t: float, x: Array) -> Array:
@@ -177,6 +223,13 @@ class CompiledRun:
         self.begin(t, x, t, 1.0)
         self.advance(0)
         return self._rows.array[2, : x.size].copy()
+
+    def reach(self, ways: Array, most: int = MANY) -> None:
+        """The states at the ends of ways (k, len(WAY) + size) in place of those where they begin, each by steps of its
+        own, in about ``most`` evaluations at most; the columns WAY say which, and get what became of them.
+        """
+        self._run[-1] = 1
+        self._code.reach(self._run, address(ways), len(ways), most)
 
     @property
     def status(self) -> int:

@@ -8,17 +8,19 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from struct import pack, unpack
 
-from substructures.compile.assembler import AssemblyWriter, attributes, literal, vector
+from substructures.compile.assembler import AssemblyWriter, attributes, literal
 from substructures.compile.order import REGIONS
 from substructures.compile.sincos import LIMIT, sincos_body
-from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row
+from substructures.compile.transposition import gather, scatter, scatter_some, scratch_row, spread
 
-#: words of the driver's context; ``counter`` counts the groups that were taken, and the word behind it is not zero
-#: when a result of any state is not finite
+#: words of the driver's context; ``counters``: of the groups that were taken of every part of the batch, which has
+#: ``turns`` groups, LINE bytes apart; the word behind the first one is not zero when a result of any state is not
+#: finite. A thread begins with the part ``own``
 CONTEXT = (
     *(word for region in REGIONS for word in (region, f"{region}_stride")),
-    *("o", "o_stride", "o_advance", "last", "counter"),
+    *("o", "o_stride", "o_advance", "last", "counters", "own", "parts", "turns"),
     *("inputs", "n_inputs", "steps", "n_steps", "outputs", "n_outputs", "group", "n_results"),
 )
 #: words of a row of the table of steps
@@ -26,7 +28,7 @@ STEP = ("stage", "function", "a", "b", "c", "count", "extra")
 
 
 def runtime(width: int) -> str:
-    """The module: sincos, unary, binary, drive."""
+    """The module: sincos, unary, binary, drive, drive_one."""
     body = [
         _sincos(width),
         _library(width, 1),
@@ -36,41 +38,48 @@ def runtime(width: int) -> str:
         scatter_some(width),
         _look(width),
         _drive(width),
+        _drive_one(width),
     ]
-    declared = f"declare {vector(width)} @llvm.fabs.v{width}f64({vector(width)})\n"
-    return declared + "\n".join(body) + attributes(width)
+    return "\n".join(body) + attributes(width)
 
 
 #: results that are looked at together, a power of 2, and sums in which they are
 LOOKED, CHAINS = 16, 4
 
+#: bytes that no two threads should write to at a time: two cache lines, which some processors fetch together
+LINE = 128
+
 BATCH = "ptr %a, ptr %b, ptr %c, i64 %count, ptr %extra"
 
 
 def _sincos(width: int) -> str:
-    """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos."""
-    w = AssemblyWriter(width)
-    size = 8 * width
+    """Sines of ``count`` vectors from a to b, cosines to c; ``extra``: addresses of the C library's sin and cos, which
+    answer at the end where numbers are beyond the limit.
+    """
+    w, size, integers = AssemblyWriter(width, has_table=True), 8 * width, f"<{width} x i64>"
+    # negative in a lane where |x|, as bits, is beyond the limit, or no number
+    beyond = w.do(f"alloca {integers}, align {size}")
+    w.put(f"store {integers} zeroinitializer, ptr {beyond}, align {size}")
+    limit, plain = (f"<{', '.join([f'i64 {n}'] * width)}>" for n in (unpack("<q", pack("<d", LIMIT))[0], 2**63 - 1))
     with w.loop("0", "%count") as i:
         at = w.arithmetic("mul", i, size)
         x = w.do(f"load {w.kind}, ptr {w.offset('%a', at)}, align {size}")
-        sine, cosine = sincos_body(w, x)
-        w.put(f"store {w.kind} {sine}, ptr {w.offset('%b', at)}, align {size}")
-        w.put(f"store {w.kind} {cosine}, ptr {w.offset('%c', at)}, align {size}")
-        magnitude = w.do(f"call {w.kind} @llvm.fabs.v{width}f64({w.kind} {x})")
-        large = w.do(f"fcmp ugt {w.kind} {magnitude}, {literal(LIMIT, width)}")
-        mask = w.do(f"bitcast <{width} x i1> {large} to i{width}")
-        some = w.do(f"icmp ne i{width} {mask}, 0")
-        with w.when(some), w.loop("0", str(width)) as lane:
-            place = w.arithmetic("add", at, w.arithmetic("shl", lane, 3))
-            one = w.do(f"load double, ptr {w.offset('%a', place)}")
-            magnitude = w.do(f"call double @llvm.fabs.f64(double {one})")
-            beyond = w.do(f"fcmp ugt double {magnitude}, {LIMIT:.1f}")
-            with w.when(beyond):
-                for k, target in enumerate(("%b", "%c")):
-                    function = w.do(f"load ptr, ptr {w.offset('%extra', k, 'ptr')}")
-                    value = w.do(f"call double {function}(double {one})")
-                    w.put(f"store double {value}, ptr {w.offset(target, place)}")
+        for result, target in zip(sincos_body(w, x), ("%b", "%c"), strict=True):
+            w.put(f"store {w.kind} {result}, ptr {w.offset(target, at)}, align {size}")
+        magnitude = w.do(f"and {integers} {w.do(f'bitcast {w.kind} {x} to {integers}')}, {plain}")
+        before = w.do(f"load {integers}, ptr {beyond}, align {size}")
+        every = w.do(f"or {integers} {before}, {w.do(f'sub {integers} {limit}, {magnitude}')}")
+        w.put(f"store {integers} {every}, ptr {beyond}, align {size}")
+    every = w.do(f"load {integers}, ptr {beyond}, align {size}")
+    mask = w.do(f"bitcast <{width} x i1> {w.do(f'icmp slt {integers} {every}, zeroinitializer')} to i{width}")
+    with w.when(w.do(f"icmp ne i{width} {mask}, 0")), w.loop("0", w.arithmetic("mul", "%count", width)) as i:
+        one = w.do(f"load double, ptr {w.offset('%a', i, 'double')}")
+        magnitude = w.do(f"call double @llvm.fabs.f64(double {one})")
+        with w.when(w.do(f"fcmp ugt double {magnitude}, {LIMIT:.1f}")):
+            for k, target in enumerate(("%b", "%c")):
+                function = w.do(f"load ptr, ptr {w.offset('%extra', k, 'ptr')}")
+                value = w.do(f"call double {function}(double {one})")
+                w.put(f"store double {value}, ptr {w.offset(target, i, 'double')}")
     return "declare double @llvm.fabs.f64(double)\n" + w.function("sincos", BATCH)
 
 
@@ -116,11 +125,12 @@ def _drive(width: int) -> str:
     """The states [0, last) in groups of vectors: inputs, every step for the whole group, outputs.
 
     Taking a function for several vectors in turn keeps its instructions in the cache. Several threads may drive the
-    same batch, each with scratch of its own: they share the counter of groups.
+    same batch, each with scratch of its own: they share the counters of groups. Each begins with a part of its own, so
+    that no two write to one page of the results, and goes on with what others have left.
     """
     w = AssemblyWriter(width)
     c = w.words("%context", CONTEXT)
-    tables = {n: w.pointer(c[n]) for n in ("counter", "inputs", "steps", "outputs", *REGIONS, "o")}
+    tables = {n: w.pointer(c[n]) for n in ("counters", "inputs", "steps", "outputs", *REGIONS, "o")}
     final = w.arithmetic("sub", c["last"], 1)
     advance = w.arithmetic("mul", c["group"], width)
 
@@ -128,9 +138,7 @@ def _drive(width: int) -> str:
         """The address of a block's row in a region."""
         return w.offset(base, w.arithmetic("mul", block, c[f"{region}_stride"]))
 
-    rounds = w.arithmetic("sdiv", w.arithmetic("add", c["last"], w.arithmetic("sub", advance, 1)), advance)
-    with w.loop("0", rounds), _turn(w, tables["counter"], rounds) as turn:
-        start = w.arithmetic("mul", turn, advance)
+    with w.loop("0", c["parts"]) as k, _turns(w, c, tables["counters"], k, advance) as start:
         # results stay in scratch, or move on through an array of the caller
         moved = w.offset(tables["o"], w.arithmetic("mul", w.arithmetic("sdiv", start, width), c["o_advance"]))
 
@@ -147,18 +155,37 @@ def _drive(width: int) -> str:
         _steps(w, tables["steps"], c["n_steps"], blocks, rows)
         with w.loop("0", blocks) as block:
             results = row(moved, "o", block)
-            seen = w.offset(tables["counter"], 8)
+            seen = w.offset(tables["counters"], 8)
             w.put(f"call void @look(ptr {results}, i64 {c['n_results']}, ptr {seen})")
             _rows(w, c, tables["outputs"], results, (start, block))
     return "declare i64 @llvm.smin.i64(i64, i64)\n" + w.function("drive", "ptr %context")
 
 
+def _drive_one(width: int) -> str:
+    """The same for one state, whose inputs are in all lanes: many calls one after the other, as along a motion."""
+    w = AssemblyWriter(width)
+    c = w.words("%context", CONTEXT)
+    rows = [w.pointer(c[region]) for region in (*REGIONS, "o")]
+    spread(w, w.pointer(c["inputs"]), c["n_inputs"])
+    _steps(w, w.pointer(c["steps"]), c["n_steps"], "1", lambda _: rows)
+    w.put(f"call void @scatter_some(ptr {w.pointer(c['outputs'])}, i64 {c['n_outputs']}, i64 0, ptr {rows[-1]}, i64 1)")
+    return w.function("drive_one", "ptr %context")
+
+
 @contextmanager
-def _turn(w: AssemblyWriter, counter: str, rounds: str) -> Iterator[str]:
-    """The next group that no other thread has taken, if there is one left."""
-    turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
-    with w.when(w.do(f"icmp slt i64 {turn}, {rounds}")):
-        yield turn
+def _turns(w: AssemblyWriter, c: dict[str, str], counters: str, k: str, advance: str) -> Iterator[str]:
+    """While there are groups that no other thread has taken in the k-th part from the own one: their first states."""
+    place = w.arithmetic("add", c["own"], k)
+    around = w.do(f"icmp slt i64 {place}, {c['parts']}")
+    part = w.do(f"select i1 {around}, i64 {place}, i64 {w.arithmetic('sub', place, c['parts'])}")
+    counter = w.offset(counters, w.arithmetic("mul", part, LINE))
+    before = w.arithmetic("mul", part, c["turns"])
+    with w.forever() as leave:
+        turn = w.do(f"atomicrmw add ptr {counter}, i64 1 monotonic, align 8")
+        start = w.arithmetic("mul", w.arithmetic("add", before, turn), advance)
+        leave(w.do(f"icmp sge i64 {turn}, {c['turns']}"))
+        leave(w.do(f"icmp sge i64 {start}, {c['last']}"))
+        yield start
 
 
 def _steps(w: AssemblyWriter, table: str, count: str, blocks: str, rows: Callable[[str], list[str]]) -> None:

@@ -10,7 +10,7 @@ the limit, next to zeros included.
 
 from __future__ import annotations
 
-from substructures.compile.assembler import AssemblyWriter, literal
+from substructures.compile.assembler import AssemblyWriter
 
 #: beyond this (and for infinities and NaN) the C library answers, lane by lane
 LIMIT = 2.0**17
@@ -46,8 +46,8 @@ def sincos_body(w: AssemblyWriter, x: str) -> tuple[str, str]:
         r = w.fused("fsub", r, w.fused("fmul", k, part))
     z = w.fused("fmul", r, r)
     sine = _with_sign_of(w, r, w.fused("fadd", r, w.fused("fmul", w.fused("fmul", r, z), _polynomial(w, z, SINE))))
-    tail = w.fused("fsub", w.fused("fmul", z, _polynomial(w, z, COSINE)), literal(0.5, w.width))
-    cosine = w.fused("fadd", w.fused("fmul", z, tail), literal(1.0, w.width))
+    tail = w.fused("fsub", w.fused("fmul", z, _polynomial(w, z, COSINE)), 0.5)
+    cosine = w.fused("fadd", w.fused("fmul", z, tail), 1.0)
     return _quadrant(w, shifted, sine, cosine)
 
 

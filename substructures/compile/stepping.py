@@ -69,31 +69,20 @@ def _rates(width: int) -> str:
     at = {name: w.pointer(c[name]) for name in ("calls", "time", "state", "written", "power")}
     w.put(f"store double %t, ptr {at['time']}, align 8")
     width_of_x = w.arithmetic("add", c["n_copied"], c["n_written"])
-    with w.loop("0", width_of_x) as i:
-        _copy(w, w.offset("%x", i, "double"), w.offset(at["state"], i, "double"))
+    w.copy("%x", at["state"], width_of_x)
     w.put(f"call void @tables_at(ptr {w.pointer(c['tables'])}, i64 {c['n_tables']}, double %t)")
     with w.loop("0", c["n_calls"]) as k:
         words = w.words(w.offset(at["calls"], w.arithmetic("mul", k, 16)), ("drive", "context"))
         drive, context = w.pointer(words["drive"]), w.pointer(words["context"])
-        place = w.offset(context, CONTEXT.index("counter"), "i64")
+        place = w.offset(context, CONTEXT.index("counters"), "i64")
         w.put(f"store i64 0, ptr {w.pointer(w.do(f'load i64, ptr {place}, align 8'))}, align 8")
         w.put(f"call void {drive}(ptr {context})")
     with w.when(w.do(f"icmp ne i64 {c['saddle']}, 0")):
         w.put(f"call void @saddle_point(ptr {w.pointer(c['saddle'])}, ptr {at['written']})")
-    with w.loop("0", c["n_copied"]) as i:
-        behind = w.arithmetic("add", i, c["n_copied"])
-        _copy(w, w.offset("%x", behind, "double"), w.offset("%f", i, "double"))
-    with w.loop("0", c["n_written"]) as i:
-        behind = w.arithmetic("add", i, c["n_copied"])
-        _copy(w, w.offset(at["written"], i, "double"), w.offset("%f", behind, "double"))
-    with w.when(w.do(f"icmp sgt i64 {c['size']}, {width_of_x}")):
-        _copy(w, at["power"], w.offset("%f", width_of_x, "double"))
+    w.copy(w.offset("%x", c["n_copied"], "double"), "%f", c["n_copied"])
+    w.copy(at["written"], w.offset("%f", c["n_copied"], "double"), c["n_written"])
+    w.copy(at["power"], w.offset("%f", width_of_x, "double"), w.arithmetic("sub", c["size"], width_of_x))
     return w.function("rates", "ptr %run, double %t, ptr %x, ptr %f")
-
-
-def _copy(w: AssemblyWriter, source: str, target: str) -> None:
-    value = w.do(f"load double, ptr {source}, align 8")
-    w.put(f"store double {value}, ptr {target}, align 8")
 
 
 class _Advance:
@@ -229,11 +218,8 @@ class _Advance:
         row = w.offset(self.steps, w.arithmetic("mul", accepted, w.arithmetic("add", self.c["size"], HEAD)), "double")
         self._store(new, row)
         self._store(w.do(f"sitofp i64 {self._word('evaluations')} to double"), w.offset(row, 1, "double"))
-        with w.loop("0", self.c["size"]) as i:
-            _copy(w, w.offset(self.k[-1], i, "double"), w.offset(self.k[0], i, "double"))
-            _copy(w, w.offset(self.new, i, "double"), w.offset(self.y, i, "double"))
-            behind = w.arithmetic("add", i, HEAD)
-            _copy(w, w.offset(self.new, i, "double"), w.offset(row, behind, "double"))
+        for source, target in ((self.k[-1], self.k[0]), (self.new, self.y), (self.new, w.offset(row, HEAD, "double"))):
+            w.copy(source, target, self.c["size"])
         self._set_word("accepted", w.arithmetic("add", accepted, 1))
 
     def _rates(self, t: str, x: str, f: str) -> None:

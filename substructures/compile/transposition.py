@@ -47,6 +47,21 @@ def gather(width: int) -> str:
     return w.function("gather", COLUMNS)
 
 
+def spread(w: AssemblyWriter, table: str, count: str) -> None:
+    """Inputs of one state into all lanes of the scratch arrays; ``%context``: of the driver."""
+    with w.loop("0", count) as i:
+        row = w.words(w.offset(table, w.arithmetic("mul", i, 8 * len(INPUT))), INPUT)
+        start, target = w.pointer(row["base"]), scratch_row(w, row["stage"], "0")
+        for name, columns in (("pairs", 2), ("singles", 1)):
+            with w.loop("0", row[f"n_{name}"]) as g:
+                at, *targets = _column(w, row[name], g, target, columns)
+                for k, to in enumerate(targets):
+                    one = w.do(f"load double, ptr {w.offset(w.offset(start, at), k, 'double')}, align 8")
+                    first = w.do(f"insertelement {w.kind} undef, double {one}, i32 0")
+                    every = f"{w.kind} {first}, {w.kind} undef, <{w.width} x i32> zeroinitializer"
+                    w.put(f"store {w.kind} {w.do(f'shufflevector {every}')}, ptr {to}, align {8 * w.width}")
+
+
 def scratch_row(w: AssemblyWriter, stage: str, block: str) -> str:
     """Scratch row of a stage for a vector of the group."""
     row = w.words(w.offset("%context", w.arithmetic("mul", stage, 16)), ("base", "stride"))

@@ -113,6 +113,8 @@ def numeric(given: Any, pointer: str) -> Array:
     """A finite array of doubles from nested lists of numbers, or of arrays. Raises InvalidArgument with the first
     fault's place.
     """
+    if type(given) is float and math.isfinite(given):  # most are
+        return np.array(given)
     if isinstance(given, np.ndarray) and given.dtype.kind in "fiu":
         values = given.astype(np.float64, copy=False)
     else:

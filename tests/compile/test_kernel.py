@@ -171,15 +171,25 @@ def test_blocks(mixture: Program, monkeypatch: pytest.MonkeyPatch) -> None:
     np.testing.assert_array_equal(kernel.blocks(many).array, kernel.blocks(many, threads=2).array)
 
 
-def test_bound_calls_read_their_arrays_anew(mixture: Program) -> None:
-    kernel = compile_program(mixture, list(mixture.outputs))
-    m, state = np.array([1.5]), np.array([[0.25, 0.5]])
-    out = {"metric": np.zeros((1, 2, 2))}
-    call = kernel.bind(out, {"m": m, "l": 0.75}, columns=[(("x", "y"), state)])
-    for m[0], state[0, 0] in ((1.5, 0.25), (2.5, 0.25), (2.5, -1.0)):
+@WIDTHS
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize("packed", [False, True])
+@pytest.mark.parametrize("columns", [("x", "y"), ("y",)])
+def test_bound_calls_read_their_arrays_anew(
+    mixture: Program, width: int, count: int, packed: bool, columns: tuple[str, ...]
+) -> None:
+    """One state, for which there is a driver of its own, and several; neighbouring columns and single ones."""
+    kernel = compile_program(mixture, list(mixture.outputs), width=width)
+    m, state = np.full(count, 1.5), np.linspace([0.25, 0.5], [1.25, -0.5], count)
+    out = {name: np.full((count, *kernel.shape(name, packed)), np.nan) for name in mixture.outputs}
+    own = {"m": m, "l": 0.75, "x": state[:, 0]}
+    given = {name: x for name, x in own.items() if name not in columns}
+    call = kernel.bind(out, given, columns=[(columns, state[:, -len(columns) :])], packed=packed)
+    for m[0], state[0, 0], state[-1, 1] in ((1.5, 0.25, 0.5), (2.5, 0.25, 0.5), (2.5, -1.0, -0.25)):
         call()
-        values = {"m": m[0], "l": 0.75, "x": state[:, 0], "y": state[:, 1]}
-        np.testing.assert_array_equal(out["metric"], kernel.evaluate(values)["metric"])
+        values = {"m": m.copy(), "l": 0.75, "x": state[:, 0].copy(), "y": state[:, 1].copy()}
+        for name, array in kernel.evaluate(values, packed=packed).items():
+            np.testing.assert_array_equal(out[name], array)
 
 
 def test_same_bits_from_threads_and_splits(mixture: Program) -> None:

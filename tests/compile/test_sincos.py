@@ -83,3 +83,13 @@ def test_sine_of_minus_zero(kernel: Any) -> None:
     found = kernel.evaluate({"x": np.array([-0.0, 0.0, -0.0, -5e-324])})
     assert list(np.signbit(found["sin"])) == [True, False, True, True]
     assert (found["cos"] == 1).all()
+
+
+@pytest.mark.parametrize("far", "abc")
+def test_an_angle_beyond_the_limit_beside_others(collected: Callable[..., Program], far: str) -> None:
+    g, names = Graph(), "abc"
+    kernel = compile_program(collected(g, {}, **{x: g.function("sin", g.symbol(x)) for x in names}), list(names))
+    values = {x: np.array([0.5, -1e18, np.nan] if x == far else [0.5, 0.25, -3.0]) for x in names}
+    found = kernel.evaluate(values)
+    for x in names:
+        np.testing.assert_array_max_ulp(found[x], np.sin(values[x]), 2)

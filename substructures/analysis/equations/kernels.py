@@ -45,5 +45,10 @@ def evaluated(source: Program, values: Mapping[str, Any], names: Sequence[str], 
     spent[0] += size * (INTERPRETED + VALUE * states)
     if spent[0] > COMPILED + LINE * size:
         found = program_kernel(chosen).evaluate(values, names)
-        return {name: np.array(np.broadcast_to(x, (states, *chosen.outputs[name].shape))) for name, x in found.items()}
+        return {name: _owned(x, (states, *chosen.outputs[name].shape)) for name, x in found.items()}
     return interpret_in_blocks(chosen, values, list(names), states)
+
+
+def _owned(x: Array, shape: tuple[int, ...]) -> Array:
+    """An array of this shape that can be written to."""
+    return x if x.shape == shape else np.array(np.broadcast_to(x, shape))

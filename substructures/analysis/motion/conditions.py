@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from substructures.analysis.arguments import NumberOrExpression
-from substructures.analysis.equations.expressions import Given, read_expressions
+from substructures.analysis.equations.expressions import Given, read_expressions, vector
 from substructures.analysis.equations.kernels import program_kernel
 from substructures.analysis.motion.integrators.zeros import Watch
 from substructures.analysis.motion.problems.events import DIRECTIONS, Event
@@ -18,8 +18,9 @@ from substructures.analysis.motion.problems.start import Start
 from substructures.array import Array
 from substructures.documents import escape
 from substructures.errors import Fault, InvalidArgument, among
+from substructures.expr.graph import Graph
 from substructures.expr.interpret import interpret_in_blocks
-from substructures.expr.program import Program
+from substructures.expr.program import Program, program
 from substructures.quantities.numbers.states import read_states, symbol_values
 from substructures.quantities.quantity import POWERS, REACTIONS, outputs_of
 from substructures.tree.model import Model
@@ -31,6 +32,7 @@ RESERVED = frozenset(
 RESERVED |= {"contact_forces", POWERS, *outputs_of(REACTIONS)}
 #: what the equations of motion of a tree are made of
 DYNAMICS = ("metric", "bias", "forces", "potential_energy")
+NO_EXPRESSIONS = program(Graph(), {name: vector(()) for name in ("inputs", "events", "series")}, {})
 
 
 @dataclass(frozen=True)
@@ -144,12 +146,12 @@ def read_conditions(
         "series": [(x, f"/series/{escape(name)}") for name, x in followed.items()],
     }
     # u = u(q, q', t), quantities of events and series: one program for all
-    expressions = read_expressions(model, groups)
+    expressions = read_expressions(model, groups) if any(groups.values()) else NO_EXPRESSIONS
     _check_names(model, start.parameters, followed)
     _require_rates(model, start.inputs)
     constant = {name: x for name, x in start.inputs.items() if not isinstance(x, (Table, str))}
     found = symbol_values(model, {"parameters": start.parameters, "inputs": constant}, states, needs)
-    values = {n: float(np.ravel(v)[0]) for n, v in found.items()}
+    values = {n: float(np.asarray(v).item(0)) for n, v in found.items()}
     # what moves is no constant of the kernels
     for name in (*state_names(model), "t", *formulas, *curves):
         values.pop(name, None)

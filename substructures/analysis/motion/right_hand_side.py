@@ -151,6 +151,11 @@ class RightHandSide:
         """Where q (m,) comes at constant rates, d (n,) in all."""
         return moved_on(*self._turning, q, d)
 
+    @property
+    def has_breaks(self) -> bool:
+        """Whether an input or its slope jumps."""
+        return self.inputs is not None and self.inputs.has_breaks
+
     def enter(self, start: float, end: float) -> None:
         """Times are between two breaks of the inputs until the next call."""
         if self.inputs is not None:

@@ -11,7 +11,7 @@ from substructures.analysis.motion.integrators.progress import ProgressReport
 from substructures.analysis.motion.problems.output_times import OutputGrid, OutputTimes
 from substructures.analysis.motion.problems.problem import Integrator, MotionProblem
 from substructures.analysis.motion.second_run import accurate, at_end, second_run
-from substructures.analysis.motion.single_steps import From, Groups, careful, steps_again
+from substructures.analysis.motion.single_steps import From, Groups, careful, each, steps_again
 from substructures.analysis.verdict import Check
 from substructures.array import Array
 
@@ -49,4 +49,4 @@ def computed_again(
 
     if is_whole:
         return accurate(second_run(first, problem.integrator, run), groups, problem.drift_limit)
-    return steps_again(first, groups, problem.drift_limit, alone or step)
+    return steps_again(first, groups, problem.drift_limit, alone or each(step))

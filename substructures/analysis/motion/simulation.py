@@ -36,7 +36,7 @@ from substructures.analysis.motion.resets import Accelerations, Resets, acting, 
 from substructures.analysis.motion.right_hand_side import RightHandSide, is_definite
 from substructures.analysis.motion.second_judges import computed_again
 from substructures.analysis.motion.second_run import state_groups
-from substructures.analysis.motion.single_steps import careful, one_by_one
+from substructures.analysis.motion.single_steps import at_once, careful
 from substructures.analysis.motion.taylor import require_taylor, taylor_stepper
 from substructures.analysis.motion.trajectory import Crossing, Trajectory, crossings, in_order
 from substructures.analysis.motion.tree_problem import TreeProblem
@@ -100,7 +100,7 @@ def _simulate(problem: TreeProblem, conditions: Conditions) -> Trajectory:
 
     # where every state says all of what comes after it
     is_plain = not isinstance(f, DecidedContacts) and problem.kind.friction != "exact"
-    alone = one_by_one(f, careful(problem.integrator).stepper(), f.enter) if is_plain else None
+    alone = at_once(f, careful(problem.integrator).stepper()) if is_plain else None
     again = computed_again(problem, motion, state_groups(f.m, f.n), move, is_whole=is_whole, alone=alone)
     f.leave()
     return replace(found, checks=(*found.checks, *instead, *again))

@@ -8,17 +8,20 @@ taken as they are there, with their corners, so that a motion on the wrong side 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
+from substructures.analysis.motion.integrators.compiled_steps import CompiledStepper
 from substructures.analysis.motion.integrators.fixed_step import FixedStep
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.integration import Function
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.problems.problem import TAYLOR, Integrator
+from substructures.analysis.motion.right_hand_side import RightHandSide
 from substructures.analysis.motion.second_run import LEAST, ROUNDING, TIGHTER
 from substructures.analysis.verdict import About, Check
 from substructures.array import Array
@@ -33,9 +36,9 @@ MOST = 10_000
 State = tuple[float, Array]
 #: from where to where
 Way = tuple[State, State]
-#: begins anew from a state: (span, state), to the state at the end; raises ArithmeticError that says why it does not
-#: come there
-From = Callable[[tuple[float, float], Array], Array]
+#: begins anew from states: of spans (K, 2) and states (K, N) those at the ends (K, N); raises ArithmeticError that says
+#: why it does not come there
+From = Callable[[Array, Array], Array]
 #: by name: columns of the states, unit, columns whose rounding is in them
 Groups = Mapping[str, tuple[slice, str, slice]]
 
@@ -47,17 +50,15 @@ def steps_again(first: IntegratedMotion, groups: Groups, limit: float, again: Fr
     """
     steps, more = ([], []) if first.status == "failed" or first.cancelled else _chosen(first)
     pairs = sorted([*steps, *more], key=lambda pair: pair[1][0])
-    ends = []
-    for (t, x), (end, _) in pairs:
-        try:
-            ends.append(again((t, end), x))
-        except ArithmeticError as error:
-            why = f"a step could not be done again: {error}"
-            return (Check.left_out("steps", "accurate", why, needed=True),)
     if not pairs:
         return ()
-    one, two = np.array([x for _, (_, x) in pairs]), np.array(ends)
-    times, along = np.array([end for _, (end, _) in pairs]), np.abs(np.array(first.step_x))
+    spans = np.array([(start, end) for (start, _), (end, _) in pairs])
+    try:
+        two = again(spans, np.array([x for (_, x), _ in pairs]))
+    except ArithmeticError as error:
+        why = f"a step could not be done again: {error}"
+        return (Check.left_out("steps", "accurate", why, needed=True),)
+    one, times, along = np.array([x for _, (_, x) in pairs]), spans[:, 1], np.abs(np.array(first.step_x))
     errors = [_relative(one, two, along, group) for group in groups.values()]
     ways = f"{len(steps)} of the {first.steps:,} steps, and {len(pairs) - len(steps)} ways from one to a result"
     about: About = ("steps", "accurate", f"{ways}, done again in shorter ones, end where they ended", "1")
@@ -89,12 +90,15 @@ def _chosen(first: IntegratedMotion) -> tuple[list[Way], list[Way]]:
 def _has_length(way: Way) -> bool:
     """Whether there is more than rounding between two times: events may happen where a result is wanted."""
     a, b = way[0][0], way[1][0]
-    return b - a > SHORT * float(np.spacing(max(abs(a), abs(b))))
+    return b - a > SHORT * math.ulp(max(abs(a), abs(b)))
 
 
 def _spread(count: int, most: int) -> list[int]:
     """Some of the numbers below ``count``, the first and the last among them."""
-    return sorted(set(np.linspace(0, count - 1, min(count, most)).round().astype(int).tolist())) if count > 0 else []
+    if count <= most:
+        return list(range(count))
+    apart = (count - 1) / (most - 1)
+    return [round(k * apart) for k in range(most)]
 
 
 def careful(choice: Integrator, length: float | None = None) -> Integrator:
@@ -139,4 +143,29 @@ def one_by_one(f: Function, stepper: Stepper, enter: Callable[[float, float], No
             raise ArithmeticError(message or f"{MOST:,} steps do not reach its end, or it is not finite")
         return np.array(solver.y, dtype=np.float64)
 
-    return again
+    return each(again)
+
+
+def at_once(f: RightHandSide, stepper: Stepper) -> From:
+    """The same, together where the function is machine code that is the same at all times; one by one where it is not,
+    or where they do not all come to their ends.
+    """
+    otherwise = one_by_one(f, stepper, f.enter)
+
+    def every(spans: Array, states: Array) -> Array:
+        """In at least two steps each: the first is half the way."""
+        (a, b), half = spans.T, (spans[:, 1] - spans[:, 0]) / 2
+        with np.errstate(all="ignore"):
+            solver = stepper(f, a[0], states[0], b[0], first_step=half[0]) if np.isfinite(states).all() else None
+            if isinstance(solver, CompiledStepper):
+                ends, is_reached = solver.reach(np.stack([a, half, b], axis=1), states, MOST)
+                if is_reached.all() and np.isfinite(ends).all():
+                    return ends
+        return otherwise(spans, states)
+
+    return otherwise if f.has_breaks else every
+
+
+def each(again: Callable[[tuple[float, float], Array], Array]) -> From:
+    """One after the other: of a span and the state at its start the state at its end."""
+    return lambda spans, states: np.array([again((a, b), x) for (a, b), x in zip(spans.tolist(), states, strict=True)])

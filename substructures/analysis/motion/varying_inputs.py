@@ -47,13 +47,13 @@ class VaryingInputs:
         tables = [*zip(self._table[0, :, None], curves, strict=True), *others]
         #: in machine code
         self.tables = TimeTables([x for x, _ in tables], [curve for _, curve in tables]) if tables else None
-        self._has_breaks, self._is_entered = any(curve.breaks for curve in self._curves.values()), False
+        self.has_breaks, self._is_entered = any(curve.breaks for curve in self._curves.values()), False
 
     def runs(self) -> list[Callable[[], None]] | None:
         """What computes all inputs but tables, by kernels or otherwise, until a break; None where tables have breaks,
         before :meth:`enter`.
         """
-        return None if self._has_breaks and not self._is_entered else [laws.run for laws in self.laws]
+        return None if self.has_breaks and not self._is_entered else [laws.run for laws in self.laws]
 
     def fill(self) -> None:
         """Evaluate at the present state and time."""

@@ -78,18 +78,18 @@ def reached(t: Array, q: Array, qd: Array) -> tuple[Array, Array]:
 
     Source: E. Hairer, S. P. Norsett, G. Wanner, Solving ordinary differential equations I, section II.6.
     """
-    low, high = q.min(axis=0, initial=np.inf), q.max(axis=0, initial=-np.inf)
-    h = np.diff(t)[:, None]
+    # a row for each coordinate, whose numbers are neighbours
+    q, qd = np.ascontiguousarray(q.T), np.ascontiguousarray(qd.T)
+    low, high = q.min(axis=1, initial=np.inf), q.max(axis=1, initial=-np.inf)
+    h, start = np.diff(t), q[:, :-1]
     if not len(h):
         return low, high
     # q(s) = q0 + h v0 s + c s^2 + d s^3, with q'(s) = 0 in 0 < s < 1
-    rise, v0, v1 = np.diff(q, axis=0), h * qd[:-1], h * qd[1:]
+    rise, v0, v1 = q[:, 1:] - start, h * qd[:, :-1], h * qd[:, 1:]
     c, d = 3 * rise - 2 * v0 - v1, v0 + v1 - 2 * rise
     with np.errstate(all="ignore"):
         root = np.sqrt(c * c - 3 * d * v0)
         for s in ((-c + root) / (3 * d), (-c - root) / (3 * d), -v0 / (2 * c)):
-            inside = np.isfinite(s) & (s > 0) & (s < 1)
-            turned = q[:-1] + s * (v0 + s * (c + s * d))
-            low = np.minimum(low, np.where(inside, turned, np.inf).min(axis=0))
-            high = np.maximum(high, np.where(inside, turned, -np.inf).max(axis=0))
+            turned = np.where((s > 0) & (s < 1), start + s * (v0 + s * (c + s * d)), start)
+            low, high = np.minimum(low, turned.min(axis=1)), np.maximum(high, turned.max(axis=1))
     return low, high

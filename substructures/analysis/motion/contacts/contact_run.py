@@ -95,7 +95,7 @@ def landing(contacts: DecidedContacts, plain: Stepper) -> Stepper:
                     solver.y, solver.f = y, solver.fun(solver.t, y)
             return message
 
-        solver.step = landed
+        solver.step, solver.is_watched = landed, True
         return solver
 
     return make

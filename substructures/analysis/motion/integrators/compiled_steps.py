@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import cached_property
-from typing import Any, Literal, Protocol, runtime_checkable
+from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from substructures.analysis.motion.integrators.steppers import LEAST_TOLERANCE, Stepper, scipy_stepper
 from substructures.analysis.motion.integrators.tableaux import TABLEAUX
 from substructures.array import Array
-from substructures.compile.motion import FAILED, FINISHED, HEAD, RUNNING, CompiledRates, CompiledRun
+from substructures.compile.motion import FINISHED, HEAD, MANY, RUNNING, WAY, CompiledRates, CompiledRun
 
 #: steps that are tried in one call of machine code: a few milliseconds, then whoever watches the progress is told
 MOST = 256
@@ -20,17 +21,10 @@ NOT_FINITE = "All components of the initial state `y0` must be finite."
 TOO_SMALL = "Required step size is less than spacing between numbers."
 
 
-@runtime_checkable
-class Compiled(Protocol):
-    """A right-hand side that may be calls of kernels."""
-
-    def compiled(self) -> CompiledRates | None:
-        """As it is now; None where it is not."""
-
-
 def rates_of(f: Any) -> CompiledRates | None:
-    """The calls of kernels that a function consists of; None where it does not."""
-    return f.compiled() if isinstance(f, Compiled) else None
+    """The calls of kernels that a function consists of, as its method ``compiled`` has them; None where it does not."""
+    compiled: Callable[[], CompiledRates | None] | None = getattr(f, "compiled", None)
+    return None if compiled is None else compiled()
 
 
 def compiled_stepper(method: str, rtol: float, atol: float, max_step: float | None = None) -> Stepper:
@@ -79,6 +73,9 @@ class CompiledStepper:
     scipy.integrate.OdeSolver.
     """
 
+    #: whether each step is looked at, so that they cannot be taken many at a time
+    is_watched = False
+
     def __init__(
         self,
         f: Any,
@@ -89,7 +86,7 @@ class CompiledStepper:
     ) -> None:
         """``evaluations`` until now; ``first``: as of ``begin``; ``run``: of so many steps in a call."""
         self.fun, self.nfev, self._method = f, evaluations, method
-        self._make, self._run = run, run(MOST)
+        self._make = run
         self.status: Literal["running", "finished", "failed"]
         self.begin(*first)
 
@@ -98,7 +95,9 @@ class CompiledStepper:
         self.t, self.t_old, self._end, self._before = t, t, end, self.nfev - 1
         self.y: Array = np.array(y)
         self.y_old, self.status = self.y, "running"
-        self._run.begin(t, self.y, end, first_step)
+        self._start = t, self.y, end, first_step
+        if "_run" in vars(self):
+            self._run.begin(*self._start)
         self._made: Array = np.zeros((0, HEAD + len(self.y)))
         self._next, self._tried = 0, 1
 
@@ -114,6 +113,33 @@ class CompiledStepper:
         if self._next == len(self._made) and self._run.status == FINISHED:
             self.status = "finished"
         return None
+
+    def ahead(self) -> Array:
+        """Steps (k, HEAD + size) that are made and not yet taken: time, evaluations up to there, state."""
+        if self._next == len(self._made):
+            self._tried = MOST
+            self._more()
+        return self._made[self._next :]
+
+    def take(self, count: int) -> None:
+        """Advance by so many of the steps ahead, at least one."""
+        if count > 1:
+            self._next += count - 1
+            self.t, self.y = float(self._made[self._next - 1, 0]), self._made[self._next - 1, HEAD:]
+        self.step()
+
+    def reach(self, ways: Array, states: Array, most: int = MANY) -> tuple[Array, NDArray[np.bool_]]:
+        """States at the ends of ways (k, 3), which are start, first step and end, from ``states`` (k, size), or from
+        one (1, size), each by steps of its own, in about ``most`` evaluations at most; and whether they are reached
+        (k,).
+        """
+        rows = np.zeros((len(ways), len(WAY) + states.shape[1]))
+        rows[:, :3], rows[:, len(WAY) :] = ways, states
+        self._short.reach(rows, most)
+        evaluations = int(rows[:, WAY.index("evaluations")].sum())
+        self._before += evaluations
+        self.nfev += evaluations
+        return rows[:, len(WAY) :], rows[:, WAY.index("status")] == FINISHED
 
     @property
     def h_abs(self) -> float:
@@ -148,6 +174,13 @@ class CompiledStepper:
         return bool(len(self._made))
 
     @cached_property
+    def _run(self) -> CompiledRun:
+        """Of the steps themselves."""
+        run = self._make(MOST)
+        run.begin(*self._start)
+        return run
+
+    @cached_property
     def _short(self) -> CompiledRun:
         """For steps within the last one."""
         return self._make(1)
@@ -157,17 +190,16 @@ class CompiledStepper:
         return self._at
 
     def _at(self, t: float) -> Array:
-        """The state at a time within the last step, by a shorter step from its start, which is as accurate.
+        return self.states_at(np.array([t]))[0]
+
+    def states_at(self, times: Array) -> Array:
+        """States (k, size) at times (k,) within the last step, by shorter steps from its start, which are as accurate.
 
         Raises ArithmeticError where the method fails.
         """
-        if t <= self.t_old:
-            return self.y_old.copy()
-        self._short.begin(self.t_old, self.y_old, t, t - self.t_old)
-        while self._short.status == RUNNING:
-            self._short.advance()
-        self._before += self._short.evaluations
-        self.nfev += self._short.evaluations
-        if self._short.status == FAILED:
+        start = np.full(len(times), self.t_old)
+        ways = np.stack([start, times - start, times], axis=1)
+        found, is_reached = self.reach(ways, self.y_old[None])
+        if not (is_reached | (times <= start)).all():
             raise ArithmeticError(TOO_SMALL)
-        return self._short.state
+        return found

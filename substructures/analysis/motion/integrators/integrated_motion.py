@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal
+from typing import Literal, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -12,6 +13,15 @@ from substructures.array import Array
 
 #: accepted steps that are kept for the judges
 KEPT = 20_000
+
+
+class Stretch(NamedTuple):
+    """Steps: times (k,) and states (k, N) at their ends; results in them: times (m,) and states (m, N)."""
+
+    t: Array
+    x: Array
+    result_t: Sequence[float]
+    result_x: Array
 
 
 @dataclass
@@ -50,11 +60,36 @@ class IntegratedMotion:
         self.end("stopped", f"cancelled at t = {t:.9g} s")
         self.cancelled = True
 
+    def keep_last(self, t: float, x: Array) -> None:
+        """The last state that was reached is a result, where it is none yet."""
+        if not self.t or self.t[-1] < t:
+            self.t.append(t)
+            self.x.append(x)
+
+    def go_on(self, stretch: Stretch) -> None:
+        """Steps that were taken at once, and their results."""
+        self.keep_all(stretch.t, stretch.x)
+        self.t += stretch.result_t
+        self.x += list(stretch.result_x)
+
     def keep(self, t: float, x: Array) -> None:
-        """Note an accepted step; every second one is dropped when there are too many."""
+        """Note an accepted step."""
         self.steps += 1
         if self.steps % self.stride == 0:
             self.step_t.append(t)
             self.step_x.append(x)
-        if len(self.step_t) > KEPT:
+        self._thin()
+
+    def keep_all(self, t: Array, x: Array) -> None:
+        """Note accepted steps (k,), (k, N)."""
+        # those whose number is a multiple of the stride
+        chosen = slice(-(self.steps + 1) % self.stride, None, self.stride)
+        self.steps += len(t)
+        self.step_t += t[chosen].tolist()
+        self.step_x += list(x[chosen].copy())
+        self._thin()
+
+    def _thin(self) -> None:
+        """Every second step is dropped when there are too many."""
+        while len(self.step_t) > KEPT:
             self.step_t, self.step_x, self.stride = self.step_t[::2], self.step_x[::2], 2 * self.stride

@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from substructures.analysis.motion.integrators.at_once import taken_at_once
 from substructures.analysis.motion.integrators.integrated_motion import IntegratedMotion
 from substructures.analysis.motion.integrators.steppers import Stepper
 from substructures.analysis.motion.integrators.zeros import Corner, Dense, Watch, zeros_of
@@ -79,8 +80,8 @@ def integrate(
             if motion.status != "finished":
                 break
             start = end
-    if motion.status != "finished":
-        run.keep_last()
+    if motion.status != "finished" and run.last is not None:
+        motion.keep_last(*run.last)
     return motion
 
 
@@ -122,13 +123,6 @@ class _Run:
             if watch.corner is not None and level == 0 and watch.corner.slides(t, x):
                 self._left(watch.corner, t, x)
 
-    def keep_last(self) -> None:
-        """The last state that was reached, as a result."""
-        motion = self.motion
-        if self.last is not None and (not motion.t or motion.t[-1] < self.last[0]):
-            motion.t.append(self.last[0])
-            motion.x.append(self.last[1])
-
     def segment(self, start: float, x: Array, end: float) -> Array:
         """Integrate from start to end, from corner to corner; the last state."""
         x = self._piece(start, x, end)
@@ -149,6 +143,8 @@ class _Run:
                 is_tolerance = (x == 0).any() and np.isfinite(self.f(start, x)).all()
                 raise ArithmeticError(NO_ERROR if is_tolerance else "the equations have no finite value")
             while solver.status == "running" and motion.status == "finished" and self.corner is None:
+                if self._takes_many(solver):
+                    continue
                 message = solver.step()
                 if solver.status == "failed":
                     motion.end("failed", self._advice(solver.t, str(message)))
@@ -160,6 +156,25 @@ class _Run:
         finally:
             motion.evaluations += 0 if solver is None else solver.nfev
         return np.asarray(solver.y, dtype=np.float64)
+
+    def _takes_many(self, solver: Any) -> bool:
+        """Whether steps could be taken at once, between which nothing is watched."""
+        if self.watches or self.slid is not None:
+            return False
+        least, most = TINY * self.span, self.settings.max_steps - 1 - self.motion.steps
+        told = None if self.progress is None else self._goes_on
+        found = taken_at_once(solver, self.outputs, self.next, least, most, told)
+        if found is not None:
+            self.motion.go_on(found)
+            self.next += len(found.result_t)
+            self.last, self.tiny = (float(found.t[-1]), found.x[-1]), 0
+        return found is not None
+
+    def _goes_on(self, t: float) -> bool:
+        """Whether whoever watches the progress has not had enough."""
+        if self.progress is not None and self.progress(t) is False and self.motion.status == "finished":
+            self.motion.cancel(t)
+        return self.motion.status == "finished"
 
     def _advice(self, t: float, message: str) -> str:
         if self.slid is not None and t - self.slid[0] < JUMP * self.span:
@@ -189,8 +204,7 @@ class _Run:
         if motion.status == "finished" and motion.steps >= self.settings.max_steps and solver.status == "running":
             advice = f"raise 'max_steps', loosen the tolerances, or {self.settings.advice}"
             motion.end("failed", f"{motion.steps:,} steps reached only t = {solver.t:.9g} s: {advice}")
-        if self.progress is not None and self.progress(solver.t) is False and motion.status == "finished":
-            motion.cancel(solver.t)
+        self._goes_on(solver.t)
 
     def collect(self, last: float, dense: Callable[[float], Array]) -> None:
         """Results at the wanted times up to ``last``."""

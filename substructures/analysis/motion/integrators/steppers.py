@@ -57,6 +57,9 @@ def within(solver: Any, make: Stepper, end: float | None = None) -> Callable[[fl
 
 def roughly_within(solver: Any) -> Callable[[Array], Array]:
     """States (K, N) at times (K,) within the last step by the stepper's own polynomial."""
+    if hasattr(solver, "states_at"):  # at once
+        at: Callable[[Array], Array] = solver.states_at
+        return at
     found = getattr(solver, "rough_output", solver.dense_output)()
     if hasattr(found, "t_min"):  # SciPy's
         return lambda times: np.asarray(found(times).T)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from math import prod
 
 import numpy as np
@@ -101,22 +102,33 @@ class _Scales:
     """Sizes (...) that drifts are compared with: the largest sum of absolute values of what a quantity consists of."""
 
     def __init__(self, along: AlongMotion) -> None:
-        model, states, found = along.model, along.states, along.sizes
-        self.states, self.duration = states, np.abs(states.t).max(axis=-1, initial=0)
-        self.model, self.parameters, speed = model, states.values, np.abs(states.qd)
-        self.rates = speed.max(axis=-2, initial=0)
-        # max over time of |g_ab| |q'^b|
-        self.momenta = np.einsum("...kab,...kb->...ka", np.abs(found["metric"]), speed).max(axis=-2, initial=0)
+        self.states, self.found, self.model = along.states, along.sizes, along.model
+        self.parameters, self.speed = along.states.values, np.abs(along.states.qd)
+
+    @cached_property
+    def momenta(self) -> Array:
+        """Largest |g_ab| |q'^b| (..., n)."""
+        return np.asarray(
+            np.einsum("...kab,...kb->...ka", np.abs(self.found["metric"]), self.speed).max(axis=-2, initial=0)
+        )
+
+    def _energy(self) -> Array:
+        """The largest kinetic energy, or the change of the potential energy."""
         # T = g_ab q'^a q'^b / 2
-        kinetic = 0.5 * np.einsum("...kab,...ka,...kb->...k", found["metric"], states.qd, states.qd)
-        potential = found["potential_energy"]
+        qd, potential = self.states.qd, self.found["potential_energy"]
+        kinetic = 0.5 * np.einsum("...kab,...ka,...kb->...k", self.found["metric"], qd, qd)
         change = np.ptp(potential, axis=-1) if potential.shape[-1] else np.zeros(potential.shape[:-1])
-        self.whole = {
-            # m s is the sum of P_a q^a where P does not change
-            "mass_moment": self._whole(found["linear_momentum"], self._moved(np.abs(states.q))),
-            "energy": np.maximum(kinetic.max(axis=-1, initial=0), change),
-            **{k: self._whole(found[k], speed) for k in ("linear_momentum", "angular_momentum")},
-        }
+        return np.maximum(kinetic.max(axis=-1, initial=0), change)
+
+    def _whole(self, kind: str) -> Array:
+        """Of the whole: energy, momenta, or moments of mass."""
+        if kind == "energy":
+            return self._energy()
+        # m s is the sum of P_a q^a where P does not change
+        is_moment = kind == "mass_moment"
+        columns = self.found["linear_momentum" if is_moment else kind]
+        far = self._moved(np.abs(self.states.q)) if is_moment else self.speed
+        return np.asarray(np.einsum("...kai,...ka->...k", np.abs(columns), far).max(axis=-1, initial=0))
 
     def _moved(self, q: Array) -> Array:
         """How far rates (n,) have moved the whole, of turns of ball joints at most as far as once around."""
@@ -126,10 +138,6 @@ class _Scales:
             far = np.sum([places[name] for name in ball["positions"][: len(slides)]], axis=0)
             places |= dict.fromkeys(slides, far) | dict.fromkeys(ball["velocities"][-3:], np.ones(q.shape[:-1]))
         return np.stack([places[name] for name in self.model.coordinates], axis=-1) if places else q
-
-    @staticmethod
-    def _whole(columns: Array, speed: Array) -> Array:
-        return np.asarray(np.einsum("...kai,...ka->...k", np.abs(columns), speed).max(axis=-1, initial=0))
 
     def of(self, integral: Integral, value: Array) -> Array:
         """The size of one integral with these values."""
@@ -145,20 +153,20 @@ class _Scales:
             return np.asarray((sizes * self.momenta[..., places]).sum(axis=-1))
         if integral.terms:
             return self._of_terms(integral)
-        size = self.whole[SIZED.get(integral.kind, integral.kind)]
+        size = self._whole(SIZED.get(integral.kind, integral.kind))
         if integral.kind in ("impulse", "galilei"):
             # P - F t, s - P t + F t^2 / 2
-            longest = self.duration if integral.kind == "galilei" else 1.0
+            longest = np.abs(self.states.t).max(axis=-1, initial=0) if integral.kind == "galilei" else 1.0
             size = size * longest + np.abs(value).max(axis=-1, initial=0)
         if integral.kind == "galilei":
-            size = size + self.whole["mass_moment"]
+            size = size + self._whole("mass_moment")
         return np.asarray(size)
 
     def _of_terms(self, integral: Integral) -> Array:
         """Of a sum of coefficients times momenta or velocities."""
         names = self.model.coordinates
         size = {f"p.{name}": self.momenta[..., a] for a, name in enumerate(names)}
-        size |= {f"{name}'": self.rates[..., a] for a, name in enumerate(names)}
+        size |= {f"{name}'": self.speed[..., a].max(axis=-1, initial=0) for a, name in enumerate(names)}
         c = read_expressions(self.model, {"c": [(text, "/terms") for text, _ in integral.terms]})
         largest = np.abs(self.states.found(self.model, c, ["c"])["c"]).max(axis=-2, initial=0)
         each = [largest[..., k] * prod(size[w] for w in some) for k, (_, some) in enumerate(integral.terms)]
@@ -171,7 +179,8 @@ def integrals_along(model: Model, forces: Sequence[str], zero: Collection[str]) 
     """
     shape = model.of_shape
     found = first_integrals(shape, forces, zero)
-    told = str(found.summary()["integrals"])
-    if shape is not model and (found.degree > 1 or any(name in told for name in shape.numbers)):
-        return first_integrals(model, forces, zero)
+    if shape is not model:
+        told = str(found.summary()["integrals"])
+        if found.degree > 1 or any(name in told for name in shape.numbers):
+            return first_integrals(model, forces, zero)
     return replace(found, numbers=shape.numbers)

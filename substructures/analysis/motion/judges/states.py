@@ -33,7 +33,8 @@ class MotionStates:
 
     def symbols(self, model: Model) -> dict[str, float | Array]:
         """Values of all symbols, one after the other where they vary."""
-        values = {name: np.ravel(x) if np.ndim(x) else x for name, x in self.values.items()} | {"t": np.ravel(self.t)}
+        values = {name: np.ravel(x) if isinstance(x, np.ndarray) and x.ndim else x for name, x in self.values.items()}
+        values["t"] = np.ravel(self.t)
         values |= {name: np.ravel(self.q[..., a]) for a, name in enumerate(model.positions)}
         return values | {f"{name}'": np.ravel(self.qd[..., a]) for a, name in enumerate(model.coordinates)}
 
@@ -41,9 +42,8 @@ class MotionStates:
         """Outputs of a program along the motions, (..., K) and their own axes."""
         values, count = self.symbols(model), self.t.size
         if self.t.ndim == 1:
-            flat = evaluated(source, values, names, count)
-        else:
-            flat = program_kernel(source.select(list(names))).evaluate(values, names)
+            return evaluated(source, values, names, count)
+        flat = program_kernel(source.select(list(names))).evaluate(values, names)
         axes = {name: source.outputs[name].shape for name in names}
         return {
             n: np.broadcast_to(x, (count, *axes[n])).reshape(*self.t.shape, *axes[n]).copy() for n, x in flat.items()
