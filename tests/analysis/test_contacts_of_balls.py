@@ -355,7 +355,7 @@ def test_what_takes_both_takes_them_together(monkeypatch: pytest.MonkeyPatch, na
     """Each analysis, and each formula of analyses, of the table of what goes together."""
     trees = tied_combinations.TREES
     both = {**trees["balls"], "contacts": trees["contacts"]["contacts"]}
-    monkeypatch.setitem(trees, "both", both)
+    monkeypatch.setitem(trees, "balls that touch", both)
     if name != "reduced-equations":
         alone = {kind: tied_combinations.refusal(name, kind) for kind in ("balls", "contacts")}
-        assert tied_combinations.refusal(name, "both") == (alone["balls"] or alone["contacts"])
+        assert tied_combinations.refusal(name, "balls that touch") == (alone["balls"] or alone["contacts"])
