@@ -201,8 +201,10 @@ class Program:
 def renumbered(operation: Operation, new: Mapping[int, int], symbol: Mapping[int, int]) -> Operation:
     """The operation with its operands (or symbol number) replaced."""
     op = operation[0]
+    if op in BINARY:
+        return op, new[operation[1]], new[operation[2]]
     if op in ARITY:
-        return (op, *(new[i] for i in operation[1:]))
+        return (op, *[new[i] for i in operation[1:]])
     if op == "sym":
         return op, symbol[operation[1]]
     return (op, new[operation[1]], operation[2]) if op == "powi" else operation
