@@ -9,8 +9,7 @@ of the error with which it is computed. With the unit roundoff u and operands x,
 (N. J. Higham, Accuracy and Stability of Numerical Algorithms, 2nd ed., section 3.3). Functions of the library are taken
 to be within one unit in the last place. Arguments count as given; default values of parameters are rounded. Where a
 divisor could vanish, as far as its ball tells, what it depends on is halved again and again: so accelerations have a
-bound where the ranges are no wider than that takes. What has none in the middle of the ranges has none in any ranges
-around it, however they are halved.
+bound where the ranges are no wider than that takes. What has none in the middle of the ranges has none at all.
 """
 
 from __future__ import annotations
